@@ -1,0 +1,43 @@
+# Sourced by demo and check: a bare Debian 12 to a build. Every step is skipped when it is already done.
+
+fail() {
+  echo "$(basename "$0"): $*" >&2
+  exit 1
+}
+
+require_machine() {
+  [ -r /etc/os-release ] && . /etc/os-release
+  [ "${ID:-}" = debian ] && [ "${VERSION_ID:-}" = 12 ] ||
+    fail "needs Debian 12 (bookworm), and this is ${PRETTY_NAME:-another system}; use a Debian 12 machine or container."
+  local free_mib
+  free_mib=$(df -Pm . | awk 'NR == 2 { print $4 }')
+  [ "$free_mib" -ge 3000 ] || fail "needs about 3 GB of free disk here, and only $free_mib MiB are free."
+}
+
+install_packages() {
+  local missing=() name
+  while read -r name; do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
+  done < <(grep -v '^#' .ci/packages)
+  [ ${#missing[@]} -gt 0 ] || return 0
+  echo "== Adding Debian packages: ${missing[*]}"
+  [ "$(id -u)" = 0 ] || fail "these packages are missing and only root can add them; run it as root, or: sudo apt-get install ${missing[*]}"
+  local log=build/packages.log
+  mkdir -p build
+  { apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"; } \
+    >"$log" 2>&1 </dev/null ||
+    fail "apt-get could not add the packages (is the network up?); its messages are in $log."
+}
+
+# build PRESET BUILD_DIR [CMAKE_OPTION...] -- [TARGET...]
+build() {
+  local preset=$1 folder=$2 options=()
+  shift 2
+  while [ $# -gt 0 ] && [ "$1" != -- ]; do options+=("$1"); shift; done
+  shift
+  echo "== Building $folder (the first time takes some minutes)"
+  local log=$folder/build.log
+  mkdir -p "$folder"
+  { cmake --preset "$preset" -B "$folder" "${options[@]}" && cmake --build "$folder" -j 2 ${1:+--target "$@"}; } \
+    >"$log" 2>&1 || { tail -n 40 "$log" >&2; fail "the build failed; the whole log is $log."; }
+}

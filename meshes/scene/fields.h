@@ -1,0 +1,81 @@
+// The scene's keys, declared once: parsing, error texts, `touchstone plan`, the resolved scene, the
+// content hash and the scene reference in the documentation all read the tables below.
+#pragma once
+
+#include "scene/scene.h"
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace touchstone::scene {
+
+/// Who reads a key. What `shared` holds changes both sides' answers.
+enum class Side { shared, fast, reference, compare };
+
+/// Allowed values of a number, or of every element of a vector.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false, high_open = false;
+
+  [[nodiscard]] bool contains(double value) const noexcept;  ///< false for NaN
+  [[nodiscard]] std::string text() const;                    ///< "(0, 0.5]"
+};
+
+/// Where a key's value lives in a T (the Scene, or one Waypoint).
+template <class T>
+struct Choice {
+  std::vector<std::string_view> names;  ///< in the order of the enumeration
+  std::function<int(const T&)> get;
+  std::function<void(T&, int)> set;
+};
+template <class T>
+using Access = std::variant<double& (*)(T&), int& (*)(T&), std::string& (*)(T&), std::optional<double>& (*)(T&),
+                            Vec3& (*)(T&), Eigen::Quaterniond& (*)(T&), Choice<T>>;
+
+/// The key applies only where another key has this value; elsewhere giving it is an error.
+struct Condition {
+  std::string_view key, value;
+};
+
+template <class T>
+struct Field {
+  std::string_view key;   ///< dotted, with the unit as suffix
+  std::string_view unit;  ///< SI; empty for a pure number, a word or a text
+  Range range;
+  std::optional<std::string_view> default_value;  ///< as TOML; a key without one must be given, unless optional
+  Side side;
+  Access<T> access;
+  std::optional<Condition> only_when;
+  std::string_view doc;  ///< one line
+};
+
+/// Every key of a scene file but the track's.
+[[nodiscard]] const std::vector<Field<Scene>>& scene_fields();
+
+/// The keys of one [[track]] row.
+[[nodiscard]] const std::vector<Field<Waypoint>>& waypoint_fields();
+
+/// Is the key's value of this scene in force (its condition holds)?
+[[nodiscard]] bool applies(const Field<Scene>& field, const Scene& scene);
+
+/// Shortest text that reads back as the same double and is a TOML float.
+[[nodiscard]] std::string number_text(double value);
+
+/// The value as TOML; empty for an optional value that is absent.
+template <class T>
+[[nodiscard]] std::string value_text(const Field<T>& field, const T& object);
+
+/// The allowed values in words: a range with unit, or the list of choices.
+template <class T>
+[[nodiscard]] std::string expected_text(const Field<T>& field);
+
+/// The scene reference of the documentation, as a Markdown table.
+[[nodiscard]] std::string scene_reference_markdown();
+
+}  // namespace touchstone::scene

@@ -1,0 +1,187 @@
+#include "scene/results.h"
+
+#include "scene/build_info.h"
+#include "scene/error.h"
+#include "scene/scene_io.h"
+
+#include <nlohmann/json.hpp>
+
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <fstream>
+#include <functional>
+#include <thread>
+
+namespace touchstone::scene {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// One column per value of `get`, over all records.
+template <class Record, class Get>
+Column column(std::string name, const std::vector<Record>& records, Get get) {
+  Column out{std::move(name), {}};
+  for (const Record& record : records) out.values.push_back(get(record));
+  return out;
+}
+
+constexpr const char* axis_names[] = {"x", "y", "z"};
+
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
+  return text;
+}
+
+std::string processor_name() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("model name")) return line.substr(std::min(line.find(':') + 2, line.size()));
+  }
+  return "unknown";
+}
+
+}  // namespace
+
+std::vector<Column> track_columns(const std::vector<InstantRecord>& records) {
+  std::vector<Column> columns;
+  columns.push_back(column("time_s", records, [](const InstantRecord& r) { return r.time_s; }));
+  for (int axis = 0; axis < 3; ++axis) {
+    columns.push_back(column("tool_" + std::string(axis_names[axis]) + "_m", records,
+                             [axis](const InstantRecord& r) { return r.tool.position_m[axis]; }));
+  }
+  const Eigen::Index order[] = {3, 0, 1, 2};  // Eigen keeps x, y, z, w
+  const char* names[] = {"tool_qw", "tool_qx", "tool_qy", "tool_qz"};
+  for (int i = 0; i < 4; ++i) {
+    columns.push_back(
+        column(names[i], records, [at = order[i]](const InstantRecord& r) { return r.tool.orientation.coeffs()[at]; }));
+  }
+  columns.push_back(column("depth_m", records, [](const InstantRecord& r) { return r.depth_m; }));
+  return columns;
+}
+
+std::vector<Column> record_columns(const std::vector<InstantRecord>& records, const std::string& prefix) {
+  std::size_t regions = 0;
+  for (const InstantRecord& record : records) regions = std::max(regions, record.regions.size());
+  std::vector<Column> columns;
+  for (std::size_t i = 0; i < regions; ++i) {
+    const std::string name = prefix + "region" + std::to_string(i) + "_";
+    const auto add = [&](const std::string& quantity, const std::function<double(const RegionRecord&)>& get) {
+      columns.push_back(column(name + quantity, records,
+                               [&](const InstantRecord& r) { return i < r.regions.size() ? get(r.regions[i]) : 0.0; }));
+    };
+    add("depth_m", [](const RegionRecord& r) { return r.depth_m; });
+    for (int axis = 0; axis < 3; ++axis) {
+      add("force_" + std::string(axis_names[axis]) + "_n", [axis](const RegionRecord& r) { return r.force_n[axis]; });
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      add("torque_" + std::string(axis_names[axis]) + "_nm",
+          [axis](const RegionRecord& r) { return r.torque_nm[axis]; });
+    }
+    add("area_m2", [](const RegionRecord& r) { return r.area_m2; });
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    columns.push_back(column(prefix + "support_force_" + axis_names[axis] + "_n", records,
+                             [axis](const InstantRecord& r) { return r.support_force_n[axis]; }));
+  }
+  return columns;
+}
+
+void write_file(const std::filesystem::path& path, const std::string& content) {
+  const std::filesystem::path temporary = path.string() + ".part";
+  {
+    std::ofstream out(temporary, std::ios::binary);
+    out << content;
+    out.flush();
+    if (!out) {
+      throw std::filesystem::filesystem_error("cannot write", path, std::make_error_code(std::errc::io_error));
+    }
+  }
+  std::filesystem::rename(temporary, path);
+}
+
+void write_csv(const std::filesystem::path& path, const std::vector<Column>& columns) {
+  std::string text;
+  for (const Column& c : columns) text += (text.empty() ? "" : ",") + c.name;
+  text += '\n';
+  const std::size_t rows = columns.empty() ? 0 : columns.front().values.size();
+  char number[32];
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      std::snprintf(number, sizeof number, "%s%.17g", i == 0 ? "" : ",", columns[i].values.at(row));
+      text += number;
+    }
+    text += '\n';
+  }
+  write_file(path, text);
+}
+
+void write_summary(const std::filesystem::path& path, const Figures& figures) {
+  Json json;
+  Json units;
+  for (const Figure& figure : figures) {
+    json[figure.key] = figure.text.empty() ? number_or_null(figure.number) : Json(figure.text);
+    units[figure.key] = figure.unit;
+  }
+  json["units"] = units;
+  write_file(path, json.dump(2) + "\n");
+}
+
+Manifest make_manifest(const Scene& scene, const std::string& command) {
+  utsname host{};
+  uname(&host);
+  return {command,
+          scene_hash(scene),
+          resolved_toml(scene),
+          {{"version", build_info.version},
+           {"commit", build_info.commit},
+           {"compiler", build_info.compiler},
+           {"build", build_info.build_type},
+           {"host", host.nodename},
+           {"system", std::string(host.sysname) + " " + host.release + " " + host.machine},
+           {"processor", processor_name()},
+           {"processors", std::to_string(std::thread::hardware_concurrency())},
+           {"date", utc_now()}},
+          {}};
+}
+
+void write_manifest(const std::filesystem::path& path, const Manifest& manifest) {
+  Json json;
+  json["command"] = manifest.command;
+  json["scene_hash"] = manifest.scene_hash;
+  for (const auto& [name, value] : manifest.entries) json[name] = value;
+  for (const StageTime& time : manifest.times) {
+    json["times"][time.stage] = {{"wall_s", number_or_null(time.wall_s)}, {"cpu_s", number_or_null(time.cpu_s)}};
+  }
+  json["resolved_scene"] = manifest.resolved_scene;
+  write_file(path, json.dump(2) + "\n");
+}
+
+void prepare_result_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw InputError("--out " + folder.string() + ": cannot make the folder (" + error.message() +
+                     "); expected a folder that can be written to");
+  }
+  // Being root or on a read-only disk makes permissions a poor witness: try it.
+  const std::filesystem::path probe = folder / ".touchstone-probe";
+  std::ofstream out(probe);
+  out << "probe";
+  out.flush();
+  const bool good = static_cast<bool>(out);
+  out.close();
+  std::filesystem::remove(probe, error);
+  if (!good)
+    throw InputError("--out " + folder.string() + ": cannot write there; expected a folder that can be written to");
+}
+
+}  // namespace touchstone::scene

@@ -1,0 +1,60 @@
+// The result folder: what every verb leaves behind, for people, ParaView, pandas and CI.
+#pragma once
+
+#include "scene/record.h"
+#include "scene/scene.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace touchstone::scene {
+
+/// One column of a table; the name ends in its unit.
+struct Column {
+  std::string name;
+  std::vector<double> values;
+};
+
+/// Columns of one side: depth, force, torque, area per region (region0_..., as many as occur).
+/// @param prefix put before every name, such as "fast_"; may be empty
+[[nodiscard]] std::vector<Column> record_columns(const std::vector<InstantRecord>& records, const std::string& prefix);
+
+/// time_s and the tool's pose, which both sides share.
+[[nodiscard]] std::vector<Column> track_columns(const std::vector<InstantRecord>& records);
+
+/// Writes to a temporary name and renames, so that a reader never sees half a file.
+/// @throws std::filesystem::filesystem_error
+void write_file(const std::filesystem::path& path, const std::string& content);
+
+/// Comma-separated, one header line, numbers with 17 digits so that they read back exactly.
+void write_csv(const std::filesystem::path& path, const std::vector<Column>& columns);
+
+/// One flat JSON object, dotted key to number or text, plus "units" with the same keys.
+/// A number that is not finite is written as null.
+void write_summary(const std::filesystem::path& path, const Figures& figures);
+
+/// Wall and CPU time of a named stage [s].
+struct StageTime {
+  std::string stage;
+  double wall_s = 0.0, cpu_s = 0.0;
+};
+
+/// Manifest as lines of name and value: scene hash, version, compiler, host, date, times.
+struct Manifest {
+  std::string command;
+  std::string scene_hash;
+  std::string resolved_scene;                                ///< TOML with every value in force
+  std::vector<std::pair<std::string, std::string>> entries;  ///< version, compiler, host, date, and what a verb adds
+  std::vector<StageTime> times;
+};
+
+/// Entries known everywhere: version, commit, compiler, build type, host, processors, date.
+[[nodiscard]] Manifest make_manifest(const Scene& scene, const std::string& command);
+
+void write_manifest(const std::filesystem::path& path, const Manifest& manifest);
+
+/// Makes the folder, or says in one InputError why it cannot be written to.
+void prepare_result_folder(const std::filesystem::path& folder);
+
+}  // namespace touchstone::scene

@@ -1,0 +1,19 @@
+// Rules that tie several keys of a scene together; single keys are checked against fields.cc.
+#pragma once
+
+#include "scene/scene.h"
+
+#include <string>
+#include <vector>
+
+namespace touchstone::scene {
+
+/// A broken rule and the key it is reported at, such as "track[2].time_s".
+struct Violation {
+  std::string key, message;
+};
+
+/// Every broken rule of a scene whose single values are all in range.
+[[nodiscard]] std::vector<Violation> broken_rules(const Scene& scene);
+
+}  // namespace touchstone::scene

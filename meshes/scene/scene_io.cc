@@ -1,0 +1,412 @@
+#include "scene/scene_io.h"
+
+#include "scene/fields.h"
+#include "scene/hash.h"
+#include "scene/rules.h"
+#include "scene/track_csv.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+namespace touchstone::scene {
+namespace {
+
+constexpr std::string_view track_file_key = "file";
+constexpr std::string_view override_mark = "--set ";
+
+/// Edit distance with transpositions, to suggest the key that was meant.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+std::string nearest(std::string_view key, const std::vector<std::string>& known) {
+  const auto best = std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
+    return edit_distance(key, a) < edit_distance(key, b);
+  });
+  return *best;
+}
+
+/// What stands in the file, for an error message.
+std::string written(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) return number_text(number->get());
+  if (const auto* array = node.as_array()) {
+    std::string out;
+    for (const toml::node& element : *array) out += (out.empty() ? "" : ", ") + written(element);
+    return "[" + out + "]";
+  }
+  if (node.is_table()) return "a table";
+  std::ostringstream out;
+  node.visit([&](const auto& n) {
+    if constexpr (toml::is_string<decltype(n)>)
+      out << quoted(n.get());
+    else if constexpr (!toml::is_table<decltype(n)> && !toml::is_array<decltype(n)>)
+      out << n;
+  });
+  return out.str();
+}
+
+/// Reads one file's document into a Scene, collecting every fault with its place.
+class Reader {
+ public:
+  Reader(const toml::table& document, std::filesystem::path file) : document_(document), file_(std::move(file)) {}
+
+  Scene read() {
+    Scene scene;
+    scene.name = file_.stem().string();
+    find_unknown(document_, "");
+    // Choices first: conditions of other keys ask for them.
+    for (const bool choices : {true, false}) {
+      for (const auto& field : scene_fields()) {
+        if (std::holds_alternative<Choice<Scene>>(field.access) == choices) read_scene_field(field, scene);
+      }
+    }
+    read_track(scene);
+    if (faults_.empty()) {
+      for (const Violation& v : broken_rules(scene)) add_fault(v.key, v.message);
+    }
+    if (!faults_.empty()) throw InputError(sorted(faults_));
+    return scene;
+  }
+
+ private:
+  static std::vector<Fault> sorted(std::vector<Fault> faults) {
+    std::stable_sort(faults.begin(), faults.end(), [](const Fault& a, const Fault& b) {
+      return std::tie(a.file, a.line, a.column) < std::tie(b.file, b.line, b.column);
+    });
+    return faults;
+  }
+
+  [[nodiscard]] Fault at(const toml::source_region& source, std::string message) const {
+    const std::string file = source.path ? *source.path : file_.string();
+    if (file.starts_with(override_mark)) return {file, 0, 0, std::move(message)};
+    return {file, static_cast<int>(source.begin.line), static_cast<int>(source.begin.column), std::move(message)};
+  }
+
+  /// A fault at a key's place; a key that is absent is reported at the nearest table above it.
+  void add_fault(const std::string& key, const std::string& message) {
+    const auto place = places_.find(key);
+    if (place != places_.end()) {
+      Fault fault = place->second;
+      fault.message = key + ": " + message;
+      faults_.push_back(std::move(fault));
+      return;
+    }
+    const toml::node* above = nullptr;
+    for (std::size_t dot = key.rfind('.'); above == nullptr && dot != std::string::npos;
+         dot = key.rfind('.', dot - 1)) {
+      above = document_.at_path(key.substr(0, dot)).node();
+    }
+    faults_.push_back(above != nullptr ? at(above->source(), key + ": " + message)
+                                       : Fault{file_.string(), 0, 0, key + ": " + message});
+  }
+
+  void find_unknown(const toml::table& table, const std::string& prefix) {
+    static const std::vector<std::string> known = [] {
+      std::vector<std::string> keys = {"track"};
+      for (const auto& field : scene_fields()) keys.emplace_back(field.key);
+      return keys;
+    }();
+    for (const auto& [key, node] : table) {
+      const std::string path = prefix + std::string(key.str());
+      if (path == "track") continue;
+      const bool is_section =
+          std::any_of(known.begin(), known.end(), [&](const std::string& k) { return k.starts_with(path + "."); });
+      if (is_section && node.is_table()) {
+        find_unknown(*node.as_table(), path + ".");
+      } else if (is_section) {
+        faults_.push_back(at(node.source(), path + ": expected a table, [" + path + "]"));
+      } else if (std::find(known.begin(), known.end(), path) == known.end()) {
+        faults_.push_back(at(key.source(), unknown_key_message(path, known)));
+      }
+    }
+  }
+
+  static std::string unknown_key_message(const std::string& path, std::vector<std::string> known) {
+    // Sections are keys too: [boddy] should lead to [body], not to a long key below it.
+    std::set<std::string> names(known.begin(), known.end());
+    for (const std::string& key : known) {
+      for (std::size_t dot = key.find('.'); dot != std::string::npos; dot = key.find('.', dot + 1))
+        names.insert(key.substr(0, dot));
+    }
+    return "unknown key \"" + path + "\"; did you mean \"" + nearest(path, {names.begin(), names.end()}) + "\"?";
+  }
+
+  void read_scene_field(const Field<Scene>& field, Scene& scene) {
+    const std::string key(field.key);
+    const toml::node_view node = document_.at_path(field.key);
+    if (field.only_when && !failed_.contains(std::string(field.only_when->key)) && !applies(field, scene)) {
+      if (node) {
+        faults_.push_back(at(node.node()->source(), key + ": only applies where " + std::string(field.only_when->key) +
+                                                        " = \"" + std::string(field.only_when->value) + "\""));
+      }
+      return;
+    }
+    if (field.only_when && failed_.contains(std::string(field.only_when->key))) return;
+    if (node) {
+      places_[key] = at(node.node()->source(), "");
+      read_value(field, *node.node(), key, scene);
+    } else if (!read_default(field, scene) &&
+               !std::holds_alternative<std::optional<double>& (*)(Scene&)>(field.access)) {
+      add_fault(key, "missing; expected " + expected_text(field));
+      failed_.insert(key);
+    }
+  }
+
+  template <class T>
+  bool read_default(const Field<T>& field, T& object) {
+    if (!field.default_value) return false;
+    const toml::table parsed = toml::parse("value = " + std::string(*field.default_value));
+    read_value(field, *parsed.get("value"), std::string(field.key), object);
+    return true;
+  }
+
+  /// @param key  full path, for the message
+  template <class T>
+  void read_value(const Field<T>& field, const toml::node& node, const std::string& key, T& object) {
+    const bool good = std::visit([&](const auto& access) { return assign(field, access, node, object); }, field.access);
+    if (good) return;
+    faults_.push_back(at(node.source(), key + " = " + written(node) + "; expected " + expected_text(field)));
+    failed_.insert(key);
+  }
+
+  template <class T>
+  static bool assign(const Field<T>& field, double& (*const& member)(T&), const toml::node& node, T& object) {
+    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+    if (!value || !field.range.contains(*value)) return false;
+    member(object) = *value;
+    return true;
+  }
+  template <class T>
+  static bool assign(const Field<T>& field, std::optional<double>& (*const& member)(T&), const toml::node& node,
+                     T& object) {
+    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+    if (!value || !field.range.contains(*value)) return false;
+    member(object) = *value;
+    return true;
+  }
+  template <class T>
+  static bool assign(const Field<T>& field, int& (*const& member)(T&), const toml::node& node, T& object) {
+    const auto value = node.is_integer() ? node.value<std::int64_t>() : std::nullopt;
+    if (!value || !field.range.contains(static_cast<double>(*value))) return false;
+    member(object) = static_cast<int>(*value);
+    return true;
+  }
+  template <class T>
+  static bool assign(const Field<T>&, std::string& (*const& member)(T&), const toml::node& node, T& object) {
+    const auto value = node.is_string() ? node.value<std::string>() : std::nullopt;
+    if (!value) return false;
+    member(object) = *value;
+    return true;
+  }
+  /// Numbers of an array, or nothing when it is not one of `count` numbers in range.
+  template <class T>
+  static std::optional<std::vector<double>> numbers(const Field<T>& field, const toml::node& node, std::size_t count) {
+    const toml::array* array = node.as_array();
+    if (array == nullptr || array->size() != count) return std::nullopt;
+    std::vector<double> values;
+    for (const toml::node& element : *array) {
+      const auto value = element.is_number() ? element.value<double>() : std::nullopt;
+      if (!value || !field.range.contains(*value)) return std::nullopt;
+      values.push_back(*value);
+    }
+    return values;
+  }
+  template <class T>
+  static bool assign(const Field<T>& field, Vec3& (*const& member)(T&), const toml::node& node, T& object) {
+    const auto v = numbers(field, node, 3);
+    if (!v) return false;
+    member(object) = Vec3((*v)[0], (*v)[1], (*v)[2]);
+    return true;
+  }
+  template <class T>
+  static bool assign(const Field<T>& field, Eigen::Quaterniond& (*const& member)(T&), const toml::node& node,
+                     T& object) {
+    const auto v = numbers(field, node, 4);
+    if (!v) return false;
+    const Eigen::Quaterniond q((*v)[0], (*v)[1], (*v)[2], (*v)[3]);
+    if (q.norm() == 0.0) return false;
+    member(object) = q.normalized();
+    return true;
+  }
+  template <class T>
+  static bool assign(const Field<T>&, const Choice<T>& access, const toml::node& node, T& object) {
+    const auto value = node.is_string() ? node.value<std::string>() : std::nullopt;
+    const auto found = std::find(access.names.begin(), access.names.end(), value.value_or(""));
+    if (!value || found == access.names.end()) return false;
+    access.set(object, static_cast<int>(found - access.names.begin()));
+    return true;
+  }
+
+  void read_track(Scene& scene) {
+    const toml::node* track = document_.get("track");
+    if (track == nullptr) {
+      add_fault("track", "missing; expected [[track]] rows with time_s and position_m, or [track] file = \"...csv\"");
+      return;
+    }
+    places_["track"] = at(track->source(), "");
+    if (const toml::table* table = track->as_table()) {
+      read_track_file(*table, scene);
+    } else if (const toml::array* rows = track->as_array(); rows != nullptr && rows->is_array_of_tables()) {
+      for (std::size_t i = 0; i < rows->size(); ++i) read_waypoint(*(*rows)[i].as_table(), i, scene);
+    } else {
+      add_fault("track", "expected [[track]] rows, or [track] file = \"...csv\"");
+    }
+  }
+
+  void read_track_file(const toml::table& table, Scene& scene) {
+    for (const auto& [key, node] : table) {
+      if (key.str() != track_file_key) {
+        faults_.push_back(at(key.source(), "unknown key \"track." + std::string(key.str()) +
+                                               "\"; did you mean \"track.file\", or [[track]] rows?"));
+      }
+    }
+    const auto name = table[track_file_key].value<std::string>();
+    if (!name) {
+      faults_.push_back(at(table.source(), "track.file: expected the name of a CSV file"));
+      return;
+    }
+    const std::filesystem::path csv = file_.parent_path() / *name;
+    std::vector<int> lines;
+    scene.track = read_track_csv(csv, faults_, lines);
+    places_["track"] = {csv.string(), 0, 0, ""};
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      for (const char* key : {".time_s", ".position_m"}) {
+        places_["track[" + std::to_string(i) + "]" + key] = {csv.string(), lines[i], 1, ""};
+      }
+    }
+  }
+
+  void read_waypoint(const toml::table& row, std::size_t index, Scene& scene) {
+    const std::string prefix = "track[" + std::to_string(index) + "].";
+    for (const auto& [key, node] : row) {
+      std::vector<std::string> known;
+      for (const auto& field : waypoint_fields()) known.emplace_back(field.key);
+      if (std::find(known.begin(), known.end(), key.str()) == known.end()) {
+        faults_.push_back(at(key.source(), "unknown key \"" + prefix + std::string(key.str()) + "\"; did you mean \"" +
+                                               nearest(key.str(), known) + "\"?"));
+      }
+    }
+    Waypoint waypoint;
+    for (const auto& field : waypoint_fields()) {
+      const std::string key = prefix + std::string(field.key);
+      if (const toml::node* node = row.get(field.key)) {
+        places_[key] = at(node->source(), "");
+        read_value(field, *node, key, waypoint);
+      } else if (!read_default(field, waypoint)) {
+        faults_.push_back(at(row.source(), key + ": missing; expected " + expected_text(field)));
+      }
+    }
+    scene.track.push_back(waypoint);
+  }
+
+  const toml::table& document_;
+  std::filesystem::path file_;
+  std::vector<Fault> faults_;
+  std::map<std::string, Fault> places_;  ///< where each key stands; message empty
+  std::set<std::string> failed_;         ///< keys whose value is not to be relied on
+};
+
+[[noreturn]] void rethrow(const toml::parse_error& error, const std::string& file) {
+  const toml::source_position where = error.source().begin;
+  throw InputError({{file, static_cast<int>(where.line), static_cast<int>(where.column),
+                     "not valid TOML: " + std::string(error.description())}});
+}
+
+/// Moves, so that the values keep the place they were read from.
+void merge(toml::table&& from, toml::table& into) {
+  for (auto& [key, node] : from) {
+    toml::table* old = into[key.str()].as_table();
+    if (toml::table* table = node.as_table(); table != nullptr && old != nullptr) {
+      merge(std::move(*table), *old);
+    } else {
+      node.visit([&, &key = key](auto& n) { into.insert_or_assign(key, std::move(n)); });
+    }
+  }
+}
+
+void apply_override(const std::string& setting, toml::table& document) {
+  const std::string place = std::string(override_mark) + setting;
+  const std::size_t equals = setting.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw InputError(place + ": expected key=value, such as fast.C_n=0.1");
+  const std::string key = setting.substr(0, equals), value = setting.substr(equals + 1);
+  try {
+    merge(toml::parse(key + " = " + value, place), document);
+  } catch (const toml::parse_error&) {
+    // A shell user should not have to quote words twice.
+    try {
+      merge(toml::parse(key + " = '" + value + "'", place), document);
+    } catch (const toml::parse_error& error) {
+      rethrow(error, place);
+    }
+  }
+}
+
+template <class Keep>
+std::string toml_text(const Scene& scene, Keep keep) {
+  std::ostringstream out;
+  std::string section;
+  for (const auto& field : scene_fields()) {
+    const std::string value = value_text(field, scene);
+    if (!applies(field, scene) || value.empty() || !keep(field)) continue;
+    const std::string key(field.key);
+    const std::size_t dot = key.rfind('.');
+    const std::string table = dot == std::string::npos ? "" : key.substr(0, dot);
+    if (table != section) out << "\n[" << (section = table) << "]\n";
+    out << (dot == std::string::npos ? key : key.substr(dot + 1)) << " = " << value << '\n';
+  }
+  for (const Waypoint& waypoint : scene.track) {
+    out << "\n[[track]]\n";
+    for (const auto& field : waypoint_fields()) out << field.key << " = " << value_text(field, waypoint) << '\n';
+  }
+  return out.str();
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::filesystem::path& file,
+                  const std::vector<std::string>& overrides) {
+  toml::table document;
+  try {
+    document = toml::parse(text, file.string());
+  } catch (const toml::parse_error& error) {
+    rethrow(error, file.string());
+  }
+  for (const std::string& setting : overrides) apply_override(setting, document);
+  return Reader(document, file).read();
+}
+
+Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  if (!in || std::filesystem::is_directory(file) || !(text << in.rdbuf())) {
+    throw InputError({{file.string(), 0, 0, "cannot read the scene; expected a readable TOML file"}});
+  }
+  return parse_scene(text.str(), file, overrides);
+}
+
+std::string resolved_toml(const Scene& scene) {
+  return toml_text(scene, [](const auto&) { return true; });
+}
+
+std::string scene_hash(const Scene& scene) {
+  return hash_text(toml_text(scene, [](const auto& field) { return field.key != "title"; }));
+}
+
+}  // namespace touchstone::scene

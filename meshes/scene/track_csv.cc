@@ -1,0 +1,106 @@
+#include "scene/track_csv.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <string_view>
+
+namespace touchstone::scene {
+namespace {
+
+constexpr std::array<std::string_view, 8> column_names = {"time_s", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"};
+constexpr std::string_view expected_header = "time_s,x_m,y_m,z_m, with or without ,qw,qx,qy,qz";
+
+struct Cell {
+  std::string_view text;
+  int column;  ///< 1-based, in characters
+};
+
+std::vector<Cell> split(std::string_view line) {
+  std::vector<Cell> cells;
+  std::size_t begin = 0;
+  while (true) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    std::size_t first = begin, last = end;
+    while (first < last && (line[first] == ' ' || line[first] == '\t')) ++first;
+    while (last > first && (line[last - 1] == ' ' || line[last - 1] == '\t')) --last;
+    cells.push_back({line.substr(first, last - first), static_cast<int>(first) + 1});
+    if (end == line.size()) return cells;
+    begin = end + 1;
+  }
+}
+
+}  // namespace
+
+std::vector<Waypoint> read_track_csv(const std::filesystem::path& file, std::vector<Fault>& faults,
+                                     std::vector<int>& lines) {
+  const std::string name = file.string();
+  std::vector<Waypoint> track;
+  std::ifstream in(file);
+  if (!in || std::filesystem::is_directory(file)) {
+    faults.push_back({name, 0, 0, "cannot read the track; expected a readable CSV file"});
+    return track;
+  }
+  std::vector<std::size_t> meaning;  // of each column: index into column_names
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.empty() || line.front() == '#') continue;
+    const std::vector<Cell> cells = split(line);
+    if (meaning.empty()) {
+      for (const Cell& cell : cells) {
+        const auto found = std::find(column_names.begin(), column_names.end(), cell.text);
+        const auto index = static_cast<std::size_t>(found - column_names.begin());
+        if (found == column_names.end() || std::find(meaning.begin(), meaning.end(), index) != meaning.end()) {
+          faults.push_back({name, number, cell.column,
+                            "unknown or repeated column \"" + std::string(cell.text) + "\"; expected " +
+                                std::string(expected_header)});
+          return track;
+        }
+        meaning.push_back(index);
+      }
+      if (meaning.size() != 4 && meaning.size() != 8) {
+        faults.push_back({name, number, 1, "the header misses columns; expected " + std::string(expected_header)});
+        return track;
+      }
+      if (meaning.size() == 4 && *std::max_element(meaning.begin(), meaning.end()) > 3) {
+        faults.push_back(
+            {name, number, 1, "the header misses time or position; expected " + std::string(expected_header)});
+        return track;
+      }
+      continue;
+    }
+    if (cells.size() != meaning.size()) {
+      faults.push_back(
+          {name, number, 1,
+           "expected " + std::to_string(meaning.size()) + " values, found " + std::to_string(cells.size())});
+      continue;
+    }
+    std::array<double, 8> value = {0, 0, 0, 0, 1, 0, 0, 0};
+    bool good = true;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const std::string_view text = cells[i].text;
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value[meaning[i]]);
+      if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value[meaning[i]])) {
+        faults.push_back({name, number, cells[i].column,
+                          "\"" + std::string(text) + "\" for " + std::string(column_names[meaning[i]]) +
+                              "; expected a finite number"});
+        good = false;
+      }
+    }
+    const Eigen::Quaterniond q(value[4], value[5], value[6], value[7]);
+    if (good && q.norm() == 0.0) {
+      faults.push_back({name, number, 1, "the quaternion is zero; expected a non-zero length"});
+      good = false;
+    }
+    if (!good) continue;
+    track.push_back({value[0], {Vec3(value[1], value[2], value[3]), q.normalized()}});
+    lines.push_back(number);
+  }
+  if (meaning.empty()) faults.push_back({name, 0, 0, "the track is empty; expected " + std::string(expected_header)});
+  return track;
+}
+
+}  // namespace touchstone::scene

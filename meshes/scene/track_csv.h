@@ -1,0 +1,19 @@
+// Tracks recorded as a table.
+#pragma once
+
+#include "scene/error.h"
+#include "scene/scene.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace touchstone::scene {
+
+/// Reads a track: a header line with time_s, x_m, y_m, z_m and, where the tool turns, qw, qx, qy, qz,
+/// in any order; then one pose per line. Lines that start with # are passed over.
+/// @param faults  receives every fault, with line and column; nothing is thrown
+/// @param lines   receives the line of each pose, for later errors
+[[nodiscard]] std::vector<Waypoint> read_track_csv(const std::filesystem::path& file, std::vector<Fault>& faults,
+                                                   std::vector<int>& lines);
+
+}  // namespace touchstone::scene

@@ -1,0 +1,39 @@
+# cmake -DSOURCE_DIR=... -P include_rules.cmake
+# The arrows of the design, read from the includes: meshes <- fast, meshes <- reference, all <- compare.
+
+set(forbidden_meshes    "fast/|reference/|compare/|deal.II/|vtk|mpi|fcl/|ceres/|cholmod|CLI/")
+set(forbidden_fast      "reference/|compare/|deal.II/|vtk|mpi|ceres/|cholmod|toml")
+set(forbidden_reference "fast/|compare/|vtk|mpi|fcl/|ceres/|toml|CLI/")
+set(forbidden_compare   "deal.II/|fcl/|cholmod|mpi|toml")
+set(wrong "")
+
+foreach(folder meshes fast reference compare)
+  file(GLOB_RECURSE files "${SOURCE_DIR}/${folder}/*.h" "${SOURCE_DIR}/${folder}/*.cc")
+  if(NOT files)
+    list(APPEND wrong "${folder}/: no source found, so nothing was checked")
+  endif()
+  foreach(file ${files})
+    file(STRINGS "${file}" includes REGEX "^[ \t]*#[ \t]*include")
+    foreach(line ${includes})
+      # One file may read TOML: the scene reader.
+      if(line MATCHES "[<\"](${forbidden_${folder}})" OR
+         (folder STREQUAL meshes AND line MATCHES "[<\"]toml" AND NOT file MATCHES "/scene_io\\.cc$"))
+        list(APPEND wrong "${file}: ${line}")
+      endif()
+    endforeach()
+  endforeach()
+endforeach()
+
+# The folder list is the design: nothing else at the top but root-level files.
+file(GLOB entries RELATIVE "${SOURCE_DIR}" "${SOURCE_DIR}/*" "${SOURCE_DIR}/.*")
+foreach(entry ${entries})
+  if(IS_DIRECTORY "${SOURCE_DIR}/${entry}" AND
+     NOT entry MATCHES "^(\\.|\\.\\.|\\.git|\\.ci|meshes|fast|reference|compare|tests|reports|build|out)$")
+    list(APPEND wrong "${entry}/: not a folder of the design")
+  endif()
+endforeach()
+
+if(wrong)
+  list(JOIN wrong "\n  " text)
+  message(FATAL_ERROR "Broken dependency rules:\n  ${text}")
+endif()

@@ -1,0 +1,92 @@
+#include "scene/results.h"
+
+#include "scene/error.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+namespace touchstone::scene {
+namespace {
+
+class ResultFolder : public testing::Test {
+ protected:
+  void SetUp() override {
+    dir_ = std::filesystem::path(testing::TempDir()) /
+           ("results-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::remove_all(dir_);
+    std::filesystem::create_directories(dir_);
+  }
+  void TearDown() override { std::filesystem::remove_all(dir_); }
+  [[nodiscard]] std::string read(const std::string& name) const {
+    std::ifstream in(dir_ / name);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+  std::filesystem::path dir_;
+};
+
+TEST_F(ResultFolder, CsvReadsBackExactly) {
+  write_csv(dir_ / "c.csv", {{"a_m", {1.0 / 3.0, 2.0}}, {"b_n", {-1e-300, 0.1}}});
+  std::istringstream in(read("c.csv"));
+  std::string header, cell;
+  std::getline(in, header);
+  EXPECT_EQ(header, "a_m,b_n");
+  std::getline(in, cell, ',');
+  EXPECT_EQ(std::stod(cell), 1.0 / 3.0);
+  std::getline(in, cell);
+  EXPECT_EQ(std::stod(cell), -1e-300);
+}
+
+TEST_F(ResultFolder, SummaryIsFlatWithUnitsForEveryKey) {
+  write_summary(dir_ / "s.json", {{"force.nrmse", 0.25, "", ""},
+                                  {"fast.step_us.p50", 12.5, "", "us"},
+                                  {"fast.status", 0, "ok", ""},
+                                  {"x", NAN, "", ""}});
+  const auto json = nlohmann::json::parse(read("s.json"));
+  EXPECT_EQ(json["force.nrmse"], 0.25);
+  EXPECT_EQ(json["fast.status"], "ok");
+  EXPECT_TRUE(json["x"].is_null());
+  EXPECT_EQ(json["units"]["fast.step_us.p50"], "us");
+  EXPECT_EQ(json["units"].size() + 1, json.size());
+}
+
+TEST_F(ResultFolder, RecordsBecomeColumnsOfEqualLength) {
+  std::vector<InstantRecord> records(3);
+  records[1].regions.push_back({0.002, Vec3(1, 2, 3), Vec3(4, 5, 6), 7e-6});
+  records[1].depth_m = 0.002;
+  const auto columns = record_columns(records, "fast_");
+  for (const Column& c : columns) EXPECT_EQ(c.values.size(), 3u) << c.name;
+  const auto value = [&](const std::string& name) {
+    for (const Column& c : columns) {
+      if (c.name == name) return c.values[1];
+    }
+    ADD_FAILURE() << name;
+    return 0.0;
+  };
+  EXPECT_EQ(value("fast_region0_force_z_n"), 3.0);
+  EXPECT_EQ(value("fast_region0_torque_x_nm"), 4.0);
+  EXPECT_EQ(value("fast_region0_area_m2"), 7e-6);
+}
+
+TEST_F(ResultFolder, UnusableFolderIsOneMessage) {
+  std::ofstream(dir_ / "file") << "x";
+  EXPECT_THROW(prepare_result_folder(dir_ / "file" / "below"), InputError);
+  EXPECT_THROW(prepare_result_folder("/proc/touchstone"), InputError);
+  EXPECT_NO_THROW(prepare_result_folder(dir_ / "new" / "deep"));
+}
+
+TEST_F(ResultFolder, AFailedWriteLeavesNothingHalfWritten) {
+  EXPECT_THROW(write_file(dir_ / "missing" / "f", "x"), std::filesystem::filesystem_error);
+  write_file(dir_ / "f", "new");
+  EXPECT_EQ(read("f"), "new");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir_), {}), 1);
+}
+
+}  // namespace
+}  // namespace touchstone::scene
