@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <functional>
@@ -116,8 +116,8 @@ void write_csv(const std::filesystem::path& path, const std::vector<Column>& col
   char number[32];
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      std::snprintf(number, sizeof number, "%s%.17g", i == 0 ? "" : ",", columns[i].values.at(row));
-      text += number;
+      if (i > 0) text += ',';
+      text.append(number, std::to_chars(number, number + sizeof number, columns[i].values.at(row)).ptr);
     }
     text += '\n';
   }

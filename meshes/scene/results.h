@@ -27,7 +27,7 @@ struct Column {
 /// @throws std::filesystem::filesystem_error
 void write_file(const std::filesystem::path& path, const std::string& content);
 
-/// Comma-separated, one header line, numbers with 17 digits so that they read back exactly.
+/// Comma-separated, one header line, numbers as short as they read back exactly.
 void write_csv(const std::filesystem::path& path, const std::vector<Column>& columns);
 
 /// One flat JSON object, dotted key to number or text, plus "units" with the same keys.

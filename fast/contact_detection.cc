@@ -1,0 +1,135 @@
+#include "fast/contact_detection.h"
+
+#include "fast/rest_distance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchstone::fast {
+namespace {
+
+using scene::Mat3;
+using scene::Vec3;
+
+template <class Body>
+InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, const Placement& at, int limit,
+                          RegionPoints& points) noexcept {
+  const Body& body = static_cast<const Body&>(shape);
+  InsideSummary summary;
+  int count = 0;
+  const auto nodes = static_cast<std::int32_t>(tool.tree.size());
+  for (std::int32_t node = 0; node < nodes && count < limit;) {
+    const SampleBall& ball = tool.tree[static_cast<std::size_t>(node)];
+    // Not ">": a centre at NaN distance is passed over too.
+    if (!(body.signed_distance_m(at.R_WT * ball.center_T_m + at.origin_W_m) <= ball.radius_m)) {
+      node = ball.next;
+      continue;
+    }
+    ++node;
+    if (!ball.leaf) continue;
+    for (auto i = static_cast<std::size_t>(ball.begin); i < static_cast<std::size_t>(ball.end); ++i) {
+      const Vec3 p_T(tool.x_T_m[i], tool.y_T_m[i], tool.z_T_m[i]);
+      const Vec3 p_W = at.R_WT * p_T + at.origin_W_m;
+      const RestDistance rest = rest_distance(body, p_W);
+      if (!(rest.signed_distance_m < 0.0)) continue;
+      const double weight = -rest.signed_distance_m * tool.area_m2[i];
+      summary.normal_sum += weight * rest.normal;
+      summary.weight_sum += weight;
+      summary.deepest_m = std::max(summary.deepest_m, -rest.signed_distance_m);
+      const auto k = static_cast<std::size_t>(count++);
+      points.x_W_m[k] = p_W.x();
+      points.y_W_m[k] = p_W.y();
+      points.z_W_m[k] = p_W.z();
+      points.x_T_m[k] = p_T.x();
+      points.y_T_m[k] = p_T.y();
+      points.z_T_m[k] = p_T.z();
+      points.nx_T[k] = tool.nx_T[i];
+      points.ny_T[k] = tool.ny_T[i];
+      points.nz_T[k] = tool.nz_T[i];
+      points.area_m2[k] = tool.area_m2[i];
+    }
+  }
+  points.count = count;
+  return summary;
+}
+
+template <class Body>
+RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const Vec3& d, RegionPoints& points) noexcept {
+  const Body& body = static_cast<const Body&>(shape);
+  const auto way_out_m = exit_along(body, -d);
+  const Vec3 d_T = R_WT.transpose() * d;
+  RegionExtent extent;
+  Vec3 center_sum = Vec3::Zero(), plain_sum = Vec3::Zero(), deepest_W_m = Vec3::Zero();
+  int kept = 0;
+  for (int i = 0; i < points.count; ++i) {
+    auto k = static_cast<std::size_t>(i);
+    const double cos_theta = points.nx_T[k] * d_T.x() + points.ny_T[k] * d_T.y() + points.nz_T[k] * d_T.z();
+    if (cos_theta < 0.0) continue;
+    if (kept != i) points.move(i, kept);
+    k = static_cast<std::size_t>(kept++);
+    const Vec3 p_W(points.x_W_m[k], points.y_W_m[k], points.z_W_m[k]);
+    const double depth_m = way_out_m(p_W);
+    points.cos_theta[k] = cos_theta;
+    points.depth_m[k] = depth_m;
+    const double projected_m2 = points.area_m2[k] * cos_theta;
+    const Vec3 on_surface_m = p_W - depth_m * d;
+    if (kept == 1 || depth_m > extent.deepest_m) {
+      extent.deepest_m = depth_m;
+      deepest_W_m = p_W;
+    }
+    extent.area_m2 += projected_m2;
+    center_sum += projected_m2 * on_surface_m;
+    plain_sum += on_surface_m;
+  }
+  points.count = kept;
+  if (kept > 0) extent.thickness_m = extent.deepest_m + exit_along(body, d)(deepest_W_m);
+  // Samples that all stand on edge cover no area: each counts the same.
+  if (extent.area_m2 > 0.0) {
+    extent.center_W_m = center_sum / extent.area_m2;
+  } else if (kept > 0) {
+    extent.center_W_m = plain_sum / kept;
+  }
+  return extent;
+}
+
+template <class Body>
+double exit_distance(const scene::Shape& shape, const Vec3& p_W_m, const Vec3& direction) noexcept {
+  return exit_along(static_cast<const Body&>(shape), direction)(p_W_m);
+}
+
+template <class Body>
+constexpr Detection detection_of{&find_inside<Body>, &measure_depths<Body>, &exit_distance<Body>};
+
+}  // namespace
+
+RegionPoints::RegionPoints(int capacity) {
+  for (auto* column :
+       {&x_W_m, &y_W_m, &z_W_m, &x_T_m, &y_T_m, &z_T_m, &nx_T, &ny_T, &nz_T, &area_m2, &cos_theta, &depth_m, &share}) {
+    column->resize(static_cast<std::size_t>(capacity));
+  }
+}
+
+void RegionPoints::move(int from, int to) noexcept {
+  const auto i = static_cast<std::size_t>(from), k = static_cast<std::size_t>(to);
+  for (auto* column : {&x_W_m, &y_W_m, &z_W_m, &x_T_m, &y_T_m, &z_T_m, &nx_T, &ny_T, &nz_T, &area_m2}) {
+    (*column)[k] = (*column)[i];
+  }
+}
+
+Detection detection_for(const scene::Box&) noexcept { return detection_of<scene::Box>; }
+Detection detection_for(const scene::Sphere&) noexcept { return detection_of<scene::Sphere>; }
+
+Vec3 direction_from(const InsideSummary& inside, const Vec3& otherwise) noexcept {
+  const double length = inside.normal_sum.norm();
+  if (!(length > 1e-6 * inside.weight_sum)) return otherwise;
+  return -inside.normal_sum / length;
+}
+
+Vec3 follow_direction(const Vec3& d, const InsideSummary& inside) noexcept {
+  const double length = inside.normal_sum.norm();
+  const bool normals_agree = length > 0.5 * inside.weight_sum;
+  const bool same_side = -inside.normal_sum.dot(d) > 0.0;
+  return normals_agree && same_side ? Vec3(-inside.normal_sum / length) : d;
+}
+
+}  // namespace touchstone::fast

@@ -1,0 +1,39 @@
+// Global deformation: the displacements of the anchor points and of the contact point spread over the patches between
+// them, section V-E.
+#pragma once
+
+#include "fast/surface_patches.h"
+
+#include <vector>
+
+namespace touchstone::fast {
+
+/// The contact point that takes part in the interpolation.
+struct ContactPoint {
+  scene::Vec3 displacement_m = scene::Vec3::Zero();  ///< D d; zero on held surface, which does not give
+  scene::Vec3 normal = scene::Vec3::UnitZ();         ///< of the rest surface at p0
+  int patch = 0;                                     ///< that holds p0
+  PatchPlace place;                                  ///< of p0 in it
+};
+
+/// Fills field.displacement_m of every vertex.
+///
+/// A quantity q of patch k is the sum of its anchor points' q by weight. On the patch that holds p0 the contact point
+/// enters as one more interpolation point: its q less what the anchor points alone give at p0, times a hat over the
+/// star of p0, which falls linearly along every ray from 1 at p0 to 0 on the edges of the patch. Neighbouring patches
+/// therefore stay joined wherever p0 lies, and what the support holds stays put: a held anchor point has no
+/// displacement, and held surface has no weight and lies on or beyond an edge (PatchPlace).
+using Interpolate = void (*)(const SurfacePatches&, const std::vector<scene::Vec3>& anchor_displacement_m,
+                             const ContactPoint&, SurfaceField&) noexcept;
+
+/// As printed: q is the length of the displacement and its angle to the outward normal. Errata E15: the angle alone
+/// leaves the azimuth open; here it is that of the mean displacement of the patch's interpolation points. A point that
+/// does not move has no angle and takes that of the same mean. Lengths are kept >= 0 and angles within 0 to pi.
+void interpolate_published(const SurfacePatches&, const std::vector<scene::Vec3>& anchor_displacement_m,
+                           const ContactPoint&, SurfaceField&) noexcept;
+
+/// Errata E15: q is the displacement vector.
+void interpolate_corrected(const SurfacePatches&, const std::vector<scene::Vec3>& anchor_displacement_m,
+                           const ContactPoint&, SurfaceField&) noexcept;
+
+}  // namespace touchstone::fast

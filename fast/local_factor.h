@@ -1,0 +1,40 @@
+// Local neighbourhood deformation: the factor on the global displacement inside R, section V-F.
+#pragma once
+
+#include "fast/surface_patches.h"
+
+namespace touchstone::fast {
+
+/// The paper's constants of the local factor.
+struct LocalConstants {
+  double C_n = 0.0;    ///< strength
+  double C_r_m = 0.0;  ///< core radius, > 0
+  double r_R_m = 0.0;  ///< radius of the neighbourhood R
+};
+
+/// How large the contact region is.
+struct RegionSize {
+  int points = 0;        ///< n, tool samples in the region
+  double area_m2 = 0.0;  ///< A, RegionExtent::area_m2
+};
+
+/// As printed, with the natural logarithm:
+/// w'_p = (1 + C_n ln((r + C_r) / (r_R + C_r))) / (1 + ln n) for a noncontact point at distance r from p0 inside R, n
+/// at least 1. Contact points, r <= sqrt(A / pi), keep their displacement. Errata E16: jumps at r_R, hangs on the
+/// number of samples, and turns negative for a large C_n.
+[[nodiscard]] double local_factor_published(const LocalConstants&, const RegionSize&, double r_m) noexcept;
+
+/// Errata E16: n is replaced by max(1, A / A_0) with A_0 = pi C_r^2, a contact no larger than the core being a point;
+/// the area's part fades to 1 at r_R, where the rest is 1 already; never negative. It acts on every point of R, so
+/// that no edge appears at the rim of the contact.
+[[nodiscard]] double local_factor_corrected(const LocalConstants&, const RegionSize&, double r_m) noexcept;
+
+/// Multiplies the displacement of every vertex with r < r_R, r its rest distance from p0.
+using ApplyLocalFactor = void (*)(const SurfacePatches&, const LocalConstants&, const RegionSize&,
+                                  const scene::Vec3& p0_W_m, SurfaceField&) noexcept;
+void apply_local_factor_published(const SurfacePatches&, const LocalConstants&, const RegionSize&,
+                                  const scene::Vec3& p0_W_m, SurfaceField&) noexcept;
+void apply_local_factor_corrected(const SurfacePatches&, const LocalConstants&, const RegionSize&,
+                                  const scene::Vec3& p0_W_m, SurfaceField&) noexcept;
+
+}  // namespace touchstone::fast

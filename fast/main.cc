@@ -1,0 +1,42 @@
+// touchstone-fast: the real-time side alone, for the machine with the device. Links neither deal.II, VTK nor MPI.
+#include "fast/command_line.h"
+#include "fast/results.h"
+#include "scene/scene_io.h"
+
+#include <iostream>
+
+using namespace touchstone;
+
+namespace {
+
+int plan(const fast::VerbOptions& options) {
+  const scene::Scene scene = options.load();
+  std::cout << scene::resolved_toml(scene) << '\n' << fast::plan_text("The fast model computes", fast::plan(scene));
+  return fast::done;
+}
+
+int run(const fast::VerbOptions& options) {
+  const scene::Scene scene = options.load();
+  const std::filesystem::path folder = options.folder(scene, "fast");
+  scene::prepare_result_folder(folder);
+  const fast::Run run =
+      fast::run_into_folder(scene, folder, scene::make_manifest(scene, "touchstone-fast fast"), options.quiet);
+  std::cout << fast::summary_text(run) << "Results: " << folder.string() << '\n';
+  return fast::done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Real-time contact of a rigid tool with an elastic body.", "touchstone-fast");
+  fast::VerbOptions options;
+  int exit_code = fast::done;
+  fast::add_verb(
+      app, "plan", "what the fast model computes for a scene, what it leaves out and why", options,
+      [&] { return plan(options); }, exit_code);
+  fast::add_verb(
+      app, "fast", "the real-time pipeline over the scene's track in virtual time", options,
+      [&] { return run(options); }, exit_code)
+      ->add_option("--out", options.out, "result folder (default out/<scene>-fast)");
+  return fast::run_command_line(app, argc, argv, exit_code);
+}

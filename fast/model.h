@@ -1,0 +1,50 @@
+// Everything the real-time step knows before the first contact. Built once from a scene, constant after that.
+#pragma once
+
+#include "fast/anchor_points.h"
+#include "fast/beam_skeleton.h"
+#include "fast/contact_detection.h"
+#include "fast/contact_law.h"
+#include "fast/interpolation.h"
+#include "fast/local_factor.h"
+#include "fast/mass_distribution.h"
+#include "fast/normals.h"
+#include "fast/surface_patches.h"
+#include "fast/tool_samples.h"
+#include "scene/scene.h"
+#include "scene/surface.h"
+
+#include <memory>
+
+namespace touchstone::fast {
+
+/// The stages in which the published and the corrected formulation differ, chosen when the model is built.
+struct Formulas {
+  DistributeMass distribute_mass = nullptr;
+  SplitForce split_force = nullptr;
+  Interpolate interpolate = nullptr;
+  ApplyLocalFactor apply_local_factor = nullptr;  ///< null where C_n = 0: there is no such stage
+};
+
+/// The constant part of the fast model.
+struct FastModel {
+  /// Allocates and precomputes; throws std::bad_alloc only.
+  /// @param scene validated, and without unsupported() faults
+  explicit FastModel(const scene::Scene& scene);
+
+  std::unique_ptr<const scene::Shape> body;  ///< rest shape
+  Detection detection;
+  ToolSamples tool;
+  DuffingLaw law;
+  std::unique_ptr<const AnchorPoints> anchors;
+  BeamSkeleton skeleton;
+  LocalConstants local;
+  scene::Surface surface;  ///< rest points and triangles in full precision
+  SurfacePatches rest;
+  NormalStencils normals;
+  Formulas formulas;
+
+  [[nodiscard]] std::size_t memory_bytes() const noexcept;
+};
+
+}  // namespace touchstone::fast

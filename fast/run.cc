@@ -1,0 +1,160 @@
+#include "fast/run.h"
+
+#include "fast/step.h"
+
+#include <xxhash.h>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+namespace touchstone::fast {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double microseconds(Clock::duration duration) { return std::chrono::duration<double, std::micro>(duration).count(); }
+
+/// A tick of virtual time; `instant` is the record it makes, or -1.
+struct Tick {
+  double time_s;
+  int instant;
+};
+
+/// Ticks at the scene's rate. The tick nearest to an instant takes the instant's own time, so that both sides answer at
+/// exactly equal poses.
+std::vector<Tick> ticks_of(const scene::Scene& scene) {
+  const double begin_s = scene.track.front().time_s, end_s = scene.track.back().time_s;
+  const std::vector<double> instants_s = scene::instants_s(scene);
+  std::vector<Tick> ticks;
+  std::size_t next = 0;
+  const auto last = static_cast<std::int64_t>(std::llround((end_s - begin_s) * scene.fast.rate_hz));
+  for (std::int64_t k = 0; k <= last; ++k) {
+    const auto nearest = [&](double time_s) { return std::llround((time_s - begin_s) * scene.fast.rate_hz) <= k; };
+    const bool regular = next == instants_s.size() || !nearest(instants_s[next]);
+    if (regular) ticks.push_back({begin_s + static_cast<double>(k) / scene.fast.rate_hz, -1});
+    // Instants closer together than the ticks each get one of their own.
+    for (; next < instants_s.size() && nearest(instants_s[next]); ++next) {
+      ticks.push_back({instants_s[next], static_cast<int>(next)});
+    }
+  }
+  return ticks;
+}
+
+Percentiles percentiles(std::vector<double> sample_us) {
+  if (sample_us.empty()) return {};
+  std::sort(sample_us.begin(), sample_us.end());
+  const auto at = [&](double part) {
+    const auto rank = static_cast<std::size_t>(std::ceil(part * static_cast<double>(sample_us.size())));
+    return sample_us[std::max<std::size_t>(rank, 1) - 1];
+  };
+  return {at(0.5), at(0.99), at(0.999), sample_us.back()};
+}
+
+/// Hash over every tick's force and the shape after the last.
+class StateHash {
+ public:
+  StateHash() { XXH3_64bits_reset(state_.get()); }
+  void add_force(const scene::Vec3& force_n) { XXH3_64bits_update(state_.get(), force_n.data(), sizeof(double) * 3); }
+  [[nodiscard]] std::uint64_t finish(const SurfaceField& field) {
+    for (const Columns3* columns : {&field.displacement_m, &field.normal}) {
+      for (const auto& column : *columns)
+        XXH3_64bits_update(state_.get(), column.data(), column.size() * sizeof(float));
+    }
+    return XXH3_64bits_digest(state_.get());
+  }
+
+ private:
+  struct Free {
+    void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
+  };
+  std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
+};
+
+Eigen::Matrix3Xd matrix_of(const Columns3& columns) {
+  Eigen::Matrix3Xd matrix(3, static_cast<Eigen::Index>(columns[0].size()));
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& column = columns[static_cast<std::size_t>(axis)];
+    matrix.row(axis) =
+        Eigen::Map<const Eigen::RowVectorXf>(column.data(), static_cast<Eigen::Index>(column.size())).cast<double>();
+  }
+  return matrix;
+}
+
+scene::InstantRecord record_of(const scene::Scene& scene, const FastModel& model, const FastState& state, double time_s,
+                               const scene::Pose& pose) {
+  scene::InstantRecord record;
+  record.time_s = time_s;
+  record.tool = pose;
+  record.depth_m = scene::rest_depth_m(*model.body, scene.tool, pose);
+  record.displacement_m = matrix_of(state.field.displacement_m);
+  record.support_force_n = support_force_n(state.ends);
+  if (state.in_contact()) {
+    const ContactRegion& region = state.region;
+    record.regions.push_back({record.depth_m, region.force.force_n, region.force.torque_nm, region.extent.area_m2});
+  }
+  return record;
+}
+
+}  // namespace
+
+std::vector<scene::Fault> unsupported(const scene::Scene&) { return {}; }
+
+std::string status_text(std::uint32_t status) {
+  std::string text;
+  const auto add = [&](StepStatus bit, const char* words) {
+    if ((status & static_cast<std::uint32_t>(bit)) == 0) return;
+    text += (text.empty() ? "" : ", ") + std::string(words);
+  };
+  add(StepStatus::not_finite, "pose not finite, last good answer held");
+  add(StepStatus::depth_limited, "depth limited to half of the body's thickness");
+  add(StepStatus::law_saturated, "contact law saturated at its peak");
+  add(StepStatus::anchors_limited, "anchor displacement limited to that of the contact (raise fast.s_c_m2)");
+  return text.empty() ? "ok" : text;
+}
+
+Run run(const scene::Scene& scene, const std::function<void(double)>& progress) {
+  const Clock::time_point start = Clock::now();
+  const FastModel model(scene);
+  FastState state(model);
+  Run run;
+  run.setup_s = std::chrono::duration<double>(Clock::now() - start).count();
+  run.surface = model.surface;
+  run.memory_bytes = model.memory_bytes() + state.memory_bytes();
+
+  const std::vector<Tick> ticks = ticks_of(scene);
+  std::vector<double> step_us, force_us;
+  step_us.reserve(ticks.size());
+  force_us.reserve(ticks.size());
+  StateHash hash;
+  const std::size_t report_every = std::max<std::size_t>(1, ticks.size() / 100);
+  for (std::size_t k = 0; k < ticks.size(); ++k) {
+    const scene::Pose pose = scene::pose_at(scene.track, ticks[k].time_s);
+    const Clock::time_point begin = Clock::now();
+    StepStatus status = step_force(model, pose, state);
+    const Clock::time_point published = Clock::now();
+    if (status != StepStatus::not_finite) status |= step_shape(model, state);
+    const Clock::time_point end = Clock::now();
+
+    step_us.push_back(microseconds(end - begin));
+    if (state.in_contact()) {
+      force_us.push_back(microseconds(published - begin));
+      run.regions_max = 1;
+    }
+    run.status |= static_cast<std::uint32_t>(status);
+    hash.add_force(state.region.force.force_n);
+    if (ticks[k].instant >= 0) {
+      run.instants.push_back(record_of(scene, model, state, ticks[k].time_s, pose));
+      run.normals.push_back(matrix_of(state.field.normal));
+    }
+    if (progress && k % report_every == 0) progress(static_cast<double>(k + 1) / static_cast<double>(ticks.size()));
+  }
+  if (progress) progress(1.0);
+  run.step = percentiles(std::move(step_us));
+  run.force = percentiles(std::move(force_us));
+  run.ticks = static_cast<int>(ticks.size());
+  run.state_hash = hash.finish(state.field);
+  return run;
+}
+
+}  // namespace touchstone::fast

@@ -1,0 +1,50 @@
+// The real-time pipeline over a scene's track in virtual time: what `touchstone fast` does.
+#pragma once
+
+#include "scene/error.h"
+#include "scene/plan.h"
+#include "scene/record.h"
+#include "scene/scene.h"
+#include "scene/surface.h"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace touchstone::fast {
+
+/// Percentiles of a sample of durations [us].
+struct Percentiles {
+  double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
+};
+
+/// One side's answer over the whole track.
+struct Run {
+  scene::Surface surface;                      ///< rest surface; its points are the rest points of the records
+  std::vector<scene::InstantRecord> instants;  ///< at scene::instants_s
+  std::vector<Eigen::Matrix3Xd> normals;       ///< per instant, current unit normals at the rest points
+  Percentiles step;                            ///< whole step, wall clock, over all ticks of the track
+  Percentiles force;                           ///< detection to published force, ticks in contact only
+  double setup_s = 0.0;                        ///< building the model
+  std::size_t memory_bytes = 0;                ///< model and state
+  int ticks = 0;
+  int regions_max = 0;
+  std::uint32_t status = 0;      ///< OR of all StepStatus bits
+  std::uint64_t state_hash = 0;  ///< over every tick's force and final shape; equal on replay
+};
+
+/// What the fast model computes for this scene and what it leaves out.
+[[nodiscard]] scene::Plan plan(const scene::Scene& scene);
+
+/// What of the scene this model cannot do; empty when it can.
+[[nodiscard]] std::vector<scene::Fault> unsupported(const scene::Scene& scene);
+
+/// Status bits in words, "ok" for none.
+[[nodiscard]] std::string status_text(std::uint32_t status);
+
+/// Runs the whole track at fast.rate_hz. Deterministic but for the timings.
+/// @param progress called now and then with the fraction done; may be empty
+[[nodiscard]] Run run(const scene::Scene& scene, const std::function<void(double)>& progress = {});
+
+}  // namespace touchstone::fast

@@ -1,0 +1,53 @@
+// The body's rest surface laid out for the passes over it: one array per component, vertices sorted by patch, single
+// precision (a displacement of millimetres keeps a tenth of a nanometre).
+#pragma once
+
+#include "fast/anchor_points.h"
+#include "scene/surface.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace touchstone::fast {
+
+using Columns3 = std::array<std::vector<float>, 3>;
+using Columns4 = std::array<std::vector<float>, patch_corners_max>;
+
+/// One patch of the rest surface.
+struct Patch {
+  std::int32_t begin = 0, end = 0;  ///< its vertices
+  std::array<int, patch_corners_max> anchor{};
+  /// The rest surface's normal on this patch at each of its anchor points.
+  std::array<scene::Vec3, patch_corners_max> corner_normal;
+  /// A ball around its vertices.
+  scene::Vec3 center_W_m;
+  double radius_m = 0.0;
+};
+
+/// Everything about the rest surface that the passes read, fixed once built.
+struct SurfacePatches {
+  std::vector<Patch> patches;
+  Columns3 rest_W_m;  ///< rest points
+  Columns3 normal;    ///< outward unit normals of the rest shape
+  Columns4 weight;    ///< PatchPlace::weight
+  Columns4 edge;      ///< PatchPlace::edge
+
+  [[nodiscard]] std::size_t vertex_count() const noexcept { return rest_W_m[0].size(); }
+  [[nodiscard]] std::size_t memory_bytes() const noexcept;
+};
+[[nodiscard]] SurfacePatches surface_patches(const scene::Surface& surface, const AnchorPoints& anchors);
+
+/// The deformed surface: what the passes write. Storage is fixed at construction.
+struct SurfaceField {
+  explicit SurfaceField(const SurfacePatches& rest);
+  Columns3 displacement_m;
+  Columns3 normal;  ///< unit length, outward
+
+  /// Back to rest.
+  void reset(const SurfacePatches& rest) noexcept;
+  [[nodiscard]] std::size_t memory_bytes() const noexcept { return 6 * displacement_m[0].size() * sizeof(float); }
+};
+
+}  // namespace touchstone::fast

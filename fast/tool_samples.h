@@ -1,0 +1,40 @@
+// Points of the tool's surface that feel contact, and the bounding-sphere tree that finds them (sections III, IV-C).
+// The paper takes the vertices of the tool's mesh "provided that these vertex points are evenly distributed"; sampling
+// the surface makes that true for any tool.
+#pragma once
+
+#include "scene/shape.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace touchstone::fast {
+
+/// A ball around the samples [begin, end) in tool coordinates. Nodes stand in depth-first order: the first child of
+/// an inner node follows it, and `next` is the node to visit when this one's samples are done with.
+struct SampleBall {
+  scene::Vec3 center_T_m;
+  double radius_m = 0.0;
+  std::int32_t begin = 0, end = 0;
+  std::int32_t next = 0;
+  bool leaf = true;
+};
+
+/// Evenly spread points of the tool's surface, each with outward normal and share of the surface, in the order of the
+/// tree's leaves. Frame T: its origin is the tool's mass centre.
+struct ToolSamples {
+  std::vector<double> x_T_m, y_T_m, z_T_m;
+  std::vector<double> nx_T, ny_T, nz_T;
+  std::vector<double> area_m2;   ///< A_i; sums to the surface
+  double spacing_m = 0.0;        ///< sqrt(surface / count): r_0 of errata E6
+  std::vector<SampleBall> tree;  ///< root first
+
+  [[nodiscard]] int count() const noexcept { return static_cast<int>(x_T_m.size()); }
+  [[nodiscard]] std::size_t memory_bytes() const noexcept;
+};
+
+/// Samples of equal area on a ball-shaped tool.
+/// @param count at least 1
+[[nodiscard]] ToolSamples sample_tool(const scene::Sphere& tool, int count);
+
+}  // namespace touchstone::fast

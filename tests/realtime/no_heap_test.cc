@@ -1,0 +1,122 @@
+// No heap use below step(): not on entering contact, in it, on a jump, on a bad pose, or on leaving.
+#include "realtime/no_heap.h"
+
+#include "fast/step.h"
+#include "unit/fast/press.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <new>
+
+namespace touchstone::fast {
+namespace {
+
+using scene::Formulation;
+
+void run_without_heap(const scene::Scene& scene) {
+  const FastModel model(scene);
+  FastState state(model);
+  const double top_m = model.body->bounds().upper_m.z() + scene.tool.radius_m;
+  int in_contact = 0;
+  const auto tick = [&](const scene::Pose& pose) {
+    const test::NoHeap guard;
+    step(model, pose, state);
+    in_contact += state.in_contact();
+  };
+  for (int i = -20; i < 200; ++i) {
+    scene::Pose pose = test::at(0.0001 * i, 0.002, top_m - 0.00005 * i);
+    pose.orientation = test::tilted();
+    tick(pose);
+  }
+  tick(test::at(0.0, std::nan(""), top_m));
+  tick(test::at(0.0, 0.0, top_m + 0.01));   // out
+  tick(test::at(0.0, 0.0, top_m - 0.045));  // 50 mm in one tick
+  tick(test::at(0.029, 0.029, top_m - 0.002));
+  tick(test::at(0.5, 0.0, 0.0));
+  EXPECT_GT(in_contact, 190);
+}
+
+TEST(NoHeap, BelowAStepOnABox) {
+  for (const Formulation formulation : {Formulation::published, Formulation::corrected}) {
+    run_without_heap(test::ball_on_cube(formulation));
+  }
+}
+
+TEST(NoHeap, BelowAStepOnASphere) {
+  for (const Formulation formulation : {Formulation::published, Formulation::corrected}) {
+    run_without_heap(test::ball_on_sphere(formulation));
+  }
+}
+
+TEST(NoHeap, BelowAStepWithoutLocalFactor) {
+  scene::Scene scene = test::ball_on_cube();
+  scene.fast.C_n = 0.0;
+  run_without_heap(scene);
+}
+
+TEST(NoHeap, BelowAStepWithManySamplesAndTriangles) {
+  scene::Scene scene = test::ball_on_cube();
+  scene.fast.tool_samples = 50000;
+  scene.fast.triangles = 100000;
+  run_without_heap(scene);
+}
+
+// The watch itself.
+TEST(NoHeapDeathTest, SeesEveryWayToTheHeap) {
+  testing::FLAGS_gtest_death_test_style = "fast";
+  void* volatile block = nullptr;
+  EXPECT_DEATH(
+      {
+        const test::NoHeap guard;
+        block = std::malloc(10);
+      },
+      "heap use below step.*malloc");
+  EXPECT_DEATH(
+      {
+        const test::NoHeap guard;
+        block = std::calloc(2, 10);
+      },
+      "heap use below step.*calloc");
+  EXPECT_DEATH(
+      {
+        const test::NoHeap guard;
+        block = std::aligned_alloc(64, 64);
+      },
+      "heap use below step.*aligned_alloc");
+  EXPECT_DEATH(
+      {
+        const test::NoHeap guard;
+        block = ::operator new(10);
+      },
+      "heap use below step.*malloc");
+  block = std::malloc(10);
+  EXPECT_DEATH(
+      {
+        const test::NoHeap guard;
+        block = std::realloc(block, 20);
+      },
+      "heap use below step.*realloc");
+  EXPECT_DEATH(
+      {
+        const test::NoHeap guard;
+        std::free(block);
+      },
+      "heap use below step.*free");
+  std::free(block);
+}
+
+TEST(NoHeapDeathTest, SeesEigenTemporaries) {
+  const Eigen::MatrixXd A = Eigen::MatrixXd::Random(40, 40);
+  Eigen::MatrixXd B = A;
+  EXPECT_DEATH(
+      {
+        const test::NoHeap guard;
+        B = A * B;
+      },
+      "heap use below step");
+}
+
+}  // namespace
+}  // namespace touchstone::fast

@@ -1,0 +1,139 @@
+// What a user sees of every verb that writes results: exit codes, one clear message, nothing half-written.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+using testing::HasSubstr;
+
+struct Answer {
+  int exit_code;
+  std::string output;  ///< stdout and stderr
+};
+
+Answer run(const std::string& command) {
+  Answer answer{-1, ""};
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  std::array<char, 4096> buffer{};
+  while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) answer.output += buffer.data();
+  answer.exit_code = WEXITSTATUS(pclose(pipe));
+  return answer;
+}
+
+std::vector<std::string> verbs() {
+  std::vector<std::string> list;
+  std::istringstream in(TOUCHSTONE_VERBS);
+  for (std::string verb; std::getline(in, verb, ';');) list.push_back(verb);
+  return list;
+}
+
+const std::string scene = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/ball-on-cube-press.toml";
+
+class Verb : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    for (char& c : name) {
+      if (c == '/') c = '-';
+    }
+    dir_ = std::filesystem::path(testing::TempDir()) / ("verb-" + name);
+    std::filesystem::remove_all(dir_);
+    std::filesystem::create_directories(dir_);
+  }
+  void TearDown() override { std::filesystem::remove_all(dir_); }
+
+  /// The shipped scene with one text replaced, in a file of its own.
+  std::string edited(const std::string& from, const std::string& to) {
+    std::ifstream in(scene);
+    std::stringstream text;
+    text << in.rdbuf();
+    std::string content = text.str();
+    const std::size_t at = content.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    content.replace(at, from.size(), to);
+    const std::filesystem::path file = dir_ / "edited.toml";
+    std::ofstream(file) << content;
+    return file.string();
+  }
+
+  void expect_refused(const std::string& file, const std::string& message) {
+    const Answer answer = run(GetParam() + " " + file + " --out " + (dir_ / "out").string());
+    EXPECT_EQ(answer.exit_code, 2) << answer.output;
+    EXPECT_THAT(answer.output, HasSubstr(message));
+    EXPECT_EQ(std::count(answer.output.begin(), answer.output.end(), '\n'), 1) << answer.output;
+    EXPECT_FALSE(std::filesystem::exists(dir_ / "out"));
+  }
+  std::filesystem::path dir_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Verbs, Verb, testing::ValuesIn(verbs()), [](const auto& verb) {
+  const std::string path = verb.param.substr(0, verb.param.find(' '));
+  std::string name = path.substr(path.rfind('/') + 1) + "_" + verb.param.substr(verb.param.find(' ') + 1);
+  for (char& c : name) {
+    if (c == '-') c = '_';
+  }
+  return name;
+});
+
+TEST_P(Verb, RefusesAMisspeltKey) {
+  expect_refused(edited("triangles =", "triangels ="), "did you mean \"fast.triangles\"?");
+}
+TEST_P(Verb, RefusesAValueOutsideItsRange) {
+  expect_refused(edited("poissons_ratio = 0.5", "poissons_ratio = 0.6"), "expected a number in [0, 0.5]");
+}
+TEST_P(Verb, RefusesANaN) { expect_refused(edited("3.0e6", "nan"), "youngs_modulus_pa = nan; expected"); }
+TEST_P(Verb, RefusesAToolThatStartsInside) {
+  expect_refused(edited("0.0705", "0.0650"), "the tool starts 5 mm inside the body");
+}
+TEST_P(Verb, RefusesATrackWhoseTimeRunsBackwards) {
+  expect_refused(edited("time_s = 1.1", "time_s = -1.1"), "time runs backwards");
+}
+TEST_P(Verb, RefusesAnUnreadableTrackFile) {
+  std::string file = edited("title", "track = { file = \"none.csv\" }\ntitle");
+  std::ifstream in(file);
+  std::stringstream text;
+  text << in.rdbuf();
+  std::string content = text.str();
+  content.erase(content.find("[[track]]"), content.rfind("0.0650]") + 7 - content.find("[[track]]"));
+  std::ofstream(file) << content;
+  expect_refused(file, "none.csv: cannot read the track");
+}
+TEST_P(Verb, RefusesAMissingScene) { expect_refused((dir_ / "none.toml").string(), "cannot read the scene"); }
+
+TEST_P(Verb, RefusesAFolderItCannotWriteTo) {
+  std::ofstream(dir_ / "file") << "x";
+  const Answer answer = run(GetParam() + " " + scene + " --out " + (dir_ / "file" / "out").string());
+  EXPECT_EQ(answer.exit_code, 2) << answer.output;
+  EXPECT_THAT(answer.output, HasSubstr("expected a folder that can be written to"));
+  EXPECT_EQ(std::count(answer.output.begin(), answer.output.end(), '\n'), 1) << answer.output;
+}
+
+TEST_P(Verb, HelpHasAnExample) {
+  const Answer answer = run(GetParam() + " --help");
+  EXPECT_EQ(answer.exit_code, 0);
+  EXPECT_THAT(answer.output, HasSubstr("Example:"));
+}
+
+TEST_P(Verb, UnknownOptionIsBadInput) { EXPECT_EQ(run(GetParam() + " " + scene + " --nonsense").exit_code, 2); }
+
+TEST(FastVerb, LeavesTheResultFolderOfTheContract) {
+  const std::filesystem::path out = std::filesystem::path(testing::TempDir()) / "fast-verb-out";
+  std::filesystem::remove_all(out);
+  const Answer answer = run(verbs().front() + " " + scene + " --quiet --out " + out.string());
+  EXPECT_EQ(answer.exit_code, 0) << answer.output;
+  for (const char* name : {"manifest.json", "curve.csv", "summary.json"}) {
+    EXPECT_TRUE(std::filesystem::exists(out / name)) << name;
+  }
+  std::filesystem::remove_all(out);
+}
+
+}  // namespace

@@ -1,0 +1,61 @@
+#include "fast/equivalent_point.h"
+
+#include "fast/step.h"
+#include "unit/fast/press.h"
+
+#include <gtest/gtest.h>
+
+namespace touchstone::fast {
+namespace {
+
+using scene::Vec3;
+
+TEST(EquivalentPoint, OriginIsUnderTheToolOnTheRestSurface) {
+  const FastModel model(test::ball_on_cube());
+  FastState state(model);
+  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {0.004, -0.011}, {0.015, 0.010}}) {
+    step(model, test::pressed(-0.001, x, y), state);
+    step(model, test::pressed(0.003, x, y), state);
+    EXPECT_EQ(state.region.origin.patch, 5);
+    EXPECT_LT((state.region.origin.p0_W_m - Vec3(x, y, 0.060)).norm(), 1e-12);
+    EXPECT_EQ(state.region.origin.normal, Vec3::UnitZ());
+  }
+}
+
+TEST(EquivalentPoint, OriginOnASphereIsTakenOutToTheSurface) {
+  const FastModel model(test::ball_on_sphere());
+  FastState state(model);
+  const Vec3 out = Vec3(0.3, 0.4, 0.8).normalized();
+  for (const double gap_m : {0.001, -0.003}) {
+    step(model, {Vec3(0.0, 0.0, 0.030) + (0.040 + gap_m) * out, test::tilted()}, state);
+  }
+  ASSERT_TRUE(state.in_contact());
+  EXPECT_NEAR(model.body->signed_distance_m(state.region.origin.p0_W_m), 0.0, 1e-15);
+  EXPECT_LT((state.region.origin.p0_W_m - (Vec3(0.0, 0.0, 0.030) + 0.030 * out)).norm(), 2e-4);
+  EXPECT_GT(state.region.origin.normal.dot(out), 0.999);
+}
+
+TEST(EquivalentPoint, DisplacementGivesTheRegionsForce) {
+  const FastModel model(test::ball_on_cube());
+  FastState state(model);
+  step(model, test::pressed(-0.001), state);
+  for (const double depth_m : {0.001, 0.003, 0.006}) {
+    step(model, test::pressed(depth_m), state);
+    const double F = state.region.force.magnitude_n;
+    EXPECT_NEAR(model.law.force_n(state.region.displacement_m), F, 1e-14 * F);
+    EXPECT_LT(state.region.displacement_m, depth_m);
+    EXPECT_GT(state.region.displacement_m, 0.3 * depth_m);
+  }
+}
+
+TEST(EquivalentPoint, DepthsAreHeldWithinTheLimit) {
+  RegionPoints points(3);
+  points.count = 3;
+  points.depth_m = {0.001, 0.002, 0.003};
+  EXPECT_FALSE(limit_depths(0.003, points));
+  EXPECT_TRUE(limit_depths(0.0015, points));
+  EXPECT_EQ(points.depth_m, (std::vector<double>{0.001, 0.0015, 0.0015}));
+}
+
+}  // namespace
+}  // namespace touchstone::fast

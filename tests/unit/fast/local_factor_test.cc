@@ -1,0 +1,93 @@
+#include "fast/local_factor.h"
+
+#include "fast/model.h"
+#include "unit/fast/press.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace touchstone::fast {
+namespace {
+
+using scene::Vec3;
+
+constexpr LocalConstants constants{0.2, 0.002, 0.015};
+const double e = std::numbers::e;
+
+TEST(LocalFactor, PublishedIsAsPrinted) {
+  const RegionSize point{1, 0.0};
+  for (const double r : {0.001, 0.005, 0.014}) {
+    EXPECT_NEAR(local_factor_published(constants, point, r), 1.0 + 0.2 * std::log((r + 0.002) / 0.017), 1e-15);
+  }
+  // (r + C_r) / (r_R + C_r) = 1/e and n = 100.
+  const double r = 0.017 / e - 0.002;
+  EXPECT_NEAR(local_factor_published(constants, {100, 0.0}, r), 0.8 / (1.0 + std::log(100.0)), 1e-15);
+}
+
+TEST(LocalFactor, PublishedSparesContactPointsAndJumpsAtTheRim) {
+  const RegionSize region{100, std::numbers::pi * 0.003 * 0.003};
+  EXPECT_EQ(local_factor_published(constants, region, 0.0029), 1.0);
+  EXPECT_LT(local_factor_published(constants, region, 0.0031), 0.2);
+  EXPECT_NEAR(local_factor_published(constants, region, 0.015), 1.0 / (1.0 + std::log(100.0)), 1e-12);  // errata E16
+}
+
+TEST(LocalFactor, PublishedTurnsNegativeForALargeStrength) {
+  EXPECT_LT(local_factor_published({0.6, 0.002, 0.015}, {1, 0.0}, 1e-6), 0.0);
+}
+
+TEST(LocalFactor, CorrectedMeetsTheSurroundings) {
+  for (const double area_m2 : {0.0, 1e-5, 1e-4}) {
+    const RegionSize region{37, area_m2};
+    EXPECT_NEAR(local_factor_corrected(constants, region, 0.015), 1.0, 1e-12);
+    double before = 0.0;
+    for (int i = 0; i <= 100; ++i) {
+      const double w = local_factor_corrected(constants, region, 0.015 * i / 100.0);
+      EXPECT_GE(w, before);
+      EXPECT_LE(w, 1.0);
+      before = w;
+    }
+  }
+}
+
+TEST(LocalFactor, CorrectedHangsOnTheAreaAndNotOnTheSamples) {
+  const double A_0 = std::numbers::pi * 0.002 * 0.002;
+  EXPECT_EQ(local_factor_corrected(constants, {10, 1e-4}, 0.004),
+            local_factor_corrected(constants, {1000, 1e-4}, 0.004));
+  EXPECT_EQ(local_factor_corrected(constants, {10, 0.5 * A_0}, 0.0), 1.0 + 0.2 * std::log(0.002 / 0.017));
+  EXPECT_NEAR(local_factor_corrected(constants, {10, e * A_0}, 0.0), 0.5 * (1.0 + 0.2 * std::log(0.002 / 0.017)),
+              1e-15);
+}
+
+TEST(LocalFactor, CorrectedIsNeverNegative) {
+  for (double C_n = 0.1; C_n < 2000.0; C_n *= 3.0) {
+    for (const double r : {0.0, 1e-6, 0.001, 0.0149}) {
+      EXPECT_GE(local_factor_corrected({C_n, 0.002, 0.015}, {5, 1e-5}, r), 0.0);
+      EXPECT_GE(local_factor_corrected({C_n, 1e-12, 0.015}, {5, 1e-5}, r), 0.0);
+    }
+  }
+}
+
+TEST(LocalFactor, ActsInsideRAndNowhereElse) {
+  const FastModel model(test::ball_on_cube());
+  SurfaceField field(model.rest);
+  // Near an edge, so that R reaches over to the side face.
+  const Vec3 p0(0.022, 0.0, 0.06);
+  for (auto& column : field.displacement_m) column.assign(column.size(), 1e-3f);
+  const RegionSize region{100, 1e-4};
+  apply_local_factor_corrected(model.rest, constants, region, p0, field);
+  int touched = 0, on_side = 0;
+  for (int v = 0; v < model.surface.vertex_count(); ++v) {
+    const double r = (Vec3(model.surface.points_m.col(v)) - p0).norm();
+    const double w = r < 0.015 ? local_factor_corrected(constants, region, r) : 1.0;
+    for (const auto& column : field.displacement_m) EXPECT_NEAR(column[static_cast<std::size_t>(v)], 1e-3 * w, 1e-8);
+    touched += w < 1.0;
+    on_side += w < 1.0 && v < model.rest.patches[5].begin;
+  }
+  EXPECT_GT(touched, 50);
+  EXPECT_GT(on_side, 5);
+}
+
+}  // namespace
+}  // namespace touchstone::fast

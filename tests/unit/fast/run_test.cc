@@ -1,0 +1,142 @@
+#include "fast/run.h"
+
+#include "fast/step.h"
+#include "unit/fast/press.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace touchstone::fast {
+namespace {
+
+using scene::Vec3;
+
+TEST(Run, RecordsEveryInstantAtItsExactPose) {
+  for (const double rate_hz : {1000.0, 333.0, 7.0}) {
+    scene::Scene scene = test::ball_on_cube();
+    scene.fast.rate_hz = rate_hz;
+    const auto result = run(scene);
+    const std::vector<double> times_s = scene::instants_s(scene);
+    ASSERT_EQ(result.instants.size(), times_s.size());
+    ASSERT_EQ(result.normals.size(), times_s.size());
+    const auto body = scene::body_shape(scene.body);
+    for (std::size_t i = 0; i < times_s.size(); ++i) {
+      const scene::InstantRecord& record = result.instants[i];
+      const scene::Pose pose = scene::pose_at(scene.track, times_s[i]);
+      EXPECT_EQ(record.time_s, times_s[i]);
+      EXPECT_EQ(record.tool.position_m, pose.position_m);
+      EXPECT_EQ(record.depth_m, scene::rest_depth_m(*body, scene.tool, pose));
+      EXPECT_EQ(record.displacement_m.cols(), result.surface.points_m.cols());
+      EXPECT_EQ(result.normals[i].cols(), result.surface.points_m.cols());
+      EXPECT_EQ(record.regions.empty(), record.depth_m < 1e-5);
+      EXPECT_LT((record.support_force_n - record.force_n()).norm(), 1e-12 * record.force_n().norm() + 1e-300);
+    }
+  }
+}
+
+TEST(Run, TicksAtTheScenesRate) {
+  scene::Scene scene = test::ball_on_cube();
+  EXPECT_EQ(run(scene).ticks, 501);
+  scene.fast.rate_hz = 200.0;
+  EXPECT_EQ(run(scene).ticks, 101);
+  scene.fast.rate_hz = 2.0;  // fewer ticks than instants: each instant still has one of its own
+  EXPECT_EQ(run(scene).ticks, 14);
+}
+
+TEST(Run, RecordsWhatAStepAnswers) {
+  const scene::Scene scene = test::ball_on_cube();
+  const auto result = run(scene);
+  const FastModel model(scene);
+  FastState state(model);
+  step(model, scene.track.front().pose, state);
+  step(model, scene.track.back().pose, state);
+  const scene::InstantRecord& last = result.instants.back();
+  ASSERT_EQ(last.regions.size(), 1u);
+  EXPECT_LT((last.force_n() - state.region.force.force_n).norm(), 1e-12);
+  EXPECT_NEAR(last.regions[0].area_m2, state.region.extent.area_m2, 1e-15);
+  EXPECT_NEAR(last.regions[0].depth_m, 0.006, 1e-12);
+  for (int v = 0; v < result.surface.vertex_count(); ++v) {
+    const auto k = static_cast<std::size_t>(v);
+    EXPECT_NEAR(last.displacement_m(2, v), state.field.displacement_m[2][k], 1e-9);
+    EXPECT_NEAR(result.normals.back()(0, v), state.field.normal[0][k], 1e-5);
+  }
+}
+
+TEST(Run, SaysWhatItCost) {
+  int calls = 0;
+  double last = 0.0;
+  const auto result = run(test::ball_on_cube(), [&](double part) {
+    EXPECT_GE(part, last);
+    last = part;
+    ++calls;
+  });
+  EXPECT_EQ(last, 1.0);
+  EXPECT_GT(calls, 50);
+  EXPECT_LE(calls, 110);
+  for (const fast::Percentiles& p : {result.step, result.force}) {
+    EXPECT_GT(p.p50_us, 0.0);
+    EXPECT_LE(p.p50_us, p.p99_us);
+    EXPECT_LE(p.p99_us, p.p999_us);
+    EXPECT_LE(p.p999_us, p.max_us);
+  }
+  EXPECT_GT(result.setup_s, 0.0);
+  // At least the surface's columns: 14 + 6 + 6 floats a rest point.
+  EXPECT_GT(result.memory_bytes, 26u * sizeof(float) * static_cast<std::size_t>(result.surface.vertex_count()));
+  EXPECT_EQ(result.regions_max, 1);
+  EXPECT_EQ(status_text(result.status), "ok");
+}
+
+TEST(Run, TrackWithoutContactHasNoRegions) {
+  scene::Scene scene = test::ball_on_cube();
+  scene.track = {{0.0, test::pressed(-0.01)}, {0.1, test::pressed(-0.001)}};
+  const auto result = run(scene);
+  EXPECT_EQ(result.regions_max, 0);
+  EXPECT_EQ(result.force.max_us, 0.0);
+  for (const auto& record : result.instants) EXPECT_TRUE(record.regions.empty());
+}
+
+TEST(Run, PublishedLeavesAResidualOffTheAxis) {
+  scene::Scene scene = test::ball_on_cube(scene::Formulation::published);
+  for (scene::Waypoint& w : scene.track) w.pose.position_m += Vec3(0.013, 0.005, 0.0);
+  const scene::InstantRecord last = run(scene).instants.back();
+  const double residual = (last.support_force_n - last.force_n()).norm() / last.force_n().norm();
+  EXPECT_GT(residual, 1e-4);  // errata E8; the corrected form is at rounding
+  EXPECT_LT(residual, 1.0);
+}
+
+TEST(StatusText, NamesEveryBit) {
+  EXPECT_EQ(status_text(0), "ok");
+  const std::string all = status_text(0xf);
+  for (const char* part : {"not finite", "half of the body", "saturated", "fast.s_c_m2"}) {
+    EXPECT_NE(all.find(part), std::string::npos) << part;
+  }
+}
+
+TEST(Plan, SaysWhatIsModelledAndWhatIsNot) {
+  const auto line = [](const scene::Plan& plan, const std::string& part) {
+    const auto found = std::find_if(plan.begin(), plan.end(), [&](const auto& l) { return l.part == part; });
+    EXPECT_NE(found, plan.end()) << part;
+    return found == plan.end() ? scene::PlanLine{} : *found;
+  };
+  scene::Scene scene = test::ball_on_cube();
+  scene::Plan with = plan(scene);
+  for (const char* part :
+       {"contact detection", "contact force", "torque", "beam skeleton", "surface", "local factor"}) {
+    EXPECT_TRUE(line(with, part).modelled) << part;
+  }
+  for (const char* part : {"friction", "several regions", "inclusions"})
+    EXPECT_FALSE(line(with, part).modelled) << part;
+  for (const auto& l : with) EXPECT_FALSE(l.reason.empty() || l.cost.empty()) << l.part;
+  EXPECT_NE(line(with, "contact detection").cost.find("600 points"), std::string::npos);
+  scene.fast.C_n = 0.0;
+  EXPECT_FALSE(line(plan(scene), "local factor").modelled);
+}
+
+TEST(Unsupported, IsNothingForBoxAndSphereUnderABall) {
+  EXPECT_TRUE(unsupported(test::ball_on_cube()).empty());
+  EXPECT_TRUE(unsupported(test::ball_on_sphere()).empty());
+}
+
+}  // namespace
+}  // namespace touchstone::fast
