@@ -93,8 +93,9 @@ PatchPlace SphereAnchors::at(int patch, const Vec3& p_m) const noexcept {
   const double equator_m = sphere_.center_m().z() - support_height_m_;
   const double ramp = std::clamp(height_m / equator_m, 0.0, 1.0);
   const double equator = barycentric.x() + barycentric.y();
+  at.weight = {0.0, 0.0, 1.0, 0.0};
   if (ramp > 0.0 && equator > 0.0) {
-    at.weight = {ramp * barycentric.x() / equator, ramp * barycentric.y() / equator, 0.0, 0.0};
+    at.weight = {ramp * barycentric.x() / equator, ramp * barycentric.y() / equator, 1.0 - ramp, 0.0};
     // The patch's edges are its three sides and the support's circle.
     at.edge = {barycentric.x(), barycentric.y(), barycentric.z(), ramp};
   }

@@ -13,7 +13,7 @@ inline constexpr int patch_corners_max = 4;
 
 /// Where a surface point lies in its patch.
 struct PatchPlace {
-  /// Weight of each of the patch's anchor points; they sum to 1 on a patch without held anchors.
+  /// Weight of each of the patch's anchor points; they sum to 1.
   std::array<double, patch_corners_max> weight{};
   /// Distance to each edge of the patch, in units of the patch: 0 on the edge, 1 at the far side. The line where the
   /// support begins is an edge like any other, and all are 0 on held surface.
@@ -33,7 +33,7 @@ class AnchorPoints {
   /// True for an anchor point on held surface: it never moves.
   [[nodiscard]] const std::vector<bool>& held() const noexcept { return held_; }
   /// Per patch of the shape, its anchor points in the order of PatchPlace::weight. A patch with fewer than four
-  /// repeats its first, whose repeated weight is 0.
+  /// repeats its first at the end, whose repeated weight is 0.
   [[nodiscard]] const std::vector<std::array<int, patch_corners_max>>& patches() const noexcept { return patches_; }
   /// A patch's anchor points in the order in which they stand around it.
   [[nodiscard]] virtual std::vector<int> around(int patch) const = 0;

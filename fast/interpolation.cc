@@ -33,8 +33,8 @@ class Hat {
     const float e0 = edge_[0][v] * inverse_[0], e1 = edge_[1][v] * inverse_[1];
     const float e2 = edge_[2][v] * inverse_[2], e3 = edge_[3][v] * inverse_[3];
     const float a = e0 < e1 ? e0 : e1, b = e2 < e3 ? e2 : e3;
-    const float lowest = a < b ? a : b;
-    return lowest < 1.0f ? lowest : 1.0f;
+    // At most 1: away from p0 some edge comes nearer.
+    return a < b ? a : b;
   }
 
  private:
@@ -134,7 +134,7 @@ void interpolate_published(const SurfacePatches& rest, const std::vector<Vec3>& 
     const std::array<Vec3, corners> u = corner_displacements(patch, anchor_displacement_m);
     const bool touched = moves(contact, p);
     Vec3 mean_m = touched ? contact.displacement_m : Vec3(Vec3::Zero());
-    for (const Vec3& u_k : u) mean_m += u_k;
+    for (std::size_t k = 0; k < patch.corners; ++k) mean_m += u[k];
 
     std::array<double, corners> length{}, angle{};
     for (std::size_t k = 0; k < corners; ++k) {

@@ -22,7 +22,7 @@ struct ContactPoint {
 /// enters as one more interpolation point: its q less what the anchor points alone give at p0, times a hat over the
 /// star of p0, which falls linearly along every ray from 1 at p0 to 0 on the edges of the patch. Neighbouring patches
 /// therefore stay joined wherever p0 lies, and what the support holds stays put: a held anchor point has no
-/// displacement, and held surface has no weight and lies on or beyond an edge (PatchPlace).
+/// displacement, and on held surface no other has weight and the hat is zero (PatchPlace).
 using Interpolate = void (*)(const SurfacePatches&, const std::vector<scene::Vec3>& anchor_displacement_m,
                              const ContactPoint&, SurfaceField&) noexcept;
 

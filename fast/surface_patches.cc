@@ -34,6 +34,7 @@ SurfacePatches surface_patches(const scene::Surface& surface, const AnchorPoints
     Patch patch;
     patch.begin = surface.patch_begin[static_cast<std::size_t>(p)];
     patch.end = surface.patch_begin[static_cast<std::size_t>(p) + 1];
+    patch.corners = anchors.around(p).size();
     patch.anchor = anchors.patches()[static_cast<std::size_t>(p)];
     for (std::size_t k = 0; k < patch.anchor.size(); ++k) {
       patch.corner_normal[k] =

@@ -18,6 +18,7 @@ using Columns4 = std::array<std::vector<float>, patch_corners_max>;
 /// One patch of the rest surface.
 struct Patch {
   std::int32_t begin = 0, end = 0;  ///< its vertices
+  std::size_t corners = 0;          ///< its anchor points
   std::array<int, patch_corners_max> anchor{};
   /// The rest surface's normal on this patch at each of its anchor points.
   std::array<scene::Vec3, patch_corners_max> corner_normal;

@@ -32,7 +32,7 @@ Answer run(const std::string& command) {
 std::vector<std::string> verbs() {
   std::vector<std::string> list;
   std::istringstream in(TOUCHSTONE_VERBS);
-  for (std::string verb; std::getline(in, verb, ';');) list.push_back(verb);
+  for (std::string verb; std::getline(in, verb, '|');) list.push_back(verb);
   return list;
 }
 

@@ -96,18 +96,18 @@ TEST(SphereAnchors, OctantsShareTheirSides) {
   }
 }
 
-TEST(SphereAnchors, HeldSurfaceHasNoWeight) {
+TEST(SphereAnchors, HeldSurfaceHangsOnTheHeldPole) {
   const SphereAnchors anchors(sphere, 0.005);
   for (const double z : {0.0, 0.001, 0.0049}) {
     const double across = std::sqrt(0.03 * 0.03 - (0.03 - z) * (0.03 - z));
     const PatchPlace at = anchors.at(4, Vec3(0.6 * across, 0.8 * across, z));
     EXPECT_TRUE(at.held());
-    EXPECT_EQ(at.weight, (std::array<double, 4>{}));
+    EXPECT_EQ(at.weight, (std::array<double, 4>{0.0, 0.0, 1.0, 0.0}));  // all on the held pole
   }
   const double z = 0.0175, across = std::sqrt(0.03 * 0.03 - (0.03 - z) * (0.03 - z));
   const PatchPlace at = anchors.at(4, Vec3(0.6 * across, 0.8 * across, z));
   EXPECT_NEAR(at.weight[0] + at.weight[1], 0.5, 1e-12);  // half way from the support to the equator
-  EXPECT_EQ(at.weight[2], 0.0);
+  EXPECT_NEAR(at.weight[2], 0.5, 1e-12);
 }
 
 }  // namespace

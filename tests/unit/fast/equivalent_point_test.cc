@@ -35,6 +35,15 @@ TEST(EquivalentPoint, OriginOnASphereIsTakenOutToTheSurface) {
   EXPECT_GT(state.region.origin.normal.dot(out), 0.999);
 }
 
+TEST(EquivalentPoint, OriginIsTakenOutAlongTheDirectionOfDeformation) {
+  const scene::Box box(Vec3(0.0, 0.0, 0.03), Vec3(0.06, 0.06, 0.06));
+  RegionExtent extent;
+  extent.center_W_m = Vec3(0.001, 0.002, 0.058);
+  const DeformationOrigin origin =
+      deformation_origin(box, detection_for(box).exit_distance_m, Vec3(0.6, 0.0, -0.8), extent);
+  EXPECT_LT((origin.p0_W_m - Vec3(0.001 - 0.0015, 0.002, 0.060)).norm(), 1e-15);
+}
+
 TEST(EquivalentPoint, DisplacementGivesTheRegionsForce) {
   const FastModel model(test::ball_on_cube());
   FastState state(model);

@@ -168,6 +168,26 @@ TEST(Interpolation, PublishedKeepsLengthsAndAnglesOfItsVectors) {
   }
 }
 
+TEST(Interpolation, PublishedPointsAsTheVectorsDoBesideTheSupport) {
+  // Every free anchor sinks alike: the lengths fall towards the support, the direction stays.
+  Rig s(test::ball_on_sphere());
+  for (std::size_t i = 0; i < 5; ++i) s.anchor_m[i] = Vec3(0.0, 0.0, -1e-3);
+  interpolate_corrected(s.model.rest, s.anchor_m, s.contact, s.field);
+  const Columns3 corrected = s.field.displacement_m;
+  interpolate_published(s.model.rest, s.anchor_m, s.contact, s.field);
+  int beside = 0;
+  for (int v = s.model.rest.patches[4].begin; v < s.model.surface.vertex_count(); ++v) {
+    const auto k = static_cast<std::size_t>(v);
+    const Vec3 vector_m(corrected[0][k], corrected[1][k], corrected[2][k]);
+    EXPECT_NEAR(s.displacement_m(v).norm(), vector_m.norm(), 1e-8);
+    if (vector_m.norm() < 1e-5) continue;
+    ++beside;
+    // The angle is interpolated between points whose normals differ, so the direction is near, not equal.
+    EXPECT_GT(s.displacement_m(v).normalized().dot(vector_m.normalized()), 0.7) << v;
+  }
+  EXPECT_GT(beside, 300);
+}
+
 TEST(Interpolation, PublishedLosesTheAzimuth) {
   // Two corners pulled apart sideways: the vectors cancel half way, the lengths do not (errata E15).
   Rig s(test::ball_on_cube());

@@ -89,5 +89,18 @@ TEST(LocalFactor, ActsInsideRAndNowhereElse) {
   EXPECT_GT(on_side, 5);
 }
 
+TEST(LocalFactor, ReachesRoundToASmallFace) {
+  scene::Scene scene = test::ball_on_cube();
+  scene.body.size_m = Vec3(0.06, 0.01, 0.01);
+  const FastModel model(scene);
+  SurfaceField field(model.rest);
+  for (auto& column : field.displacement_m) column.assign(column.size(), 1e-3f);
+  apply_local_factor_corrected(model.rest, constants, {100, 1e-4}, Vec3(0.02, 0.0, 0.01), field);
+  const Patch& end = model.rest.patches[1];  // x = 30 mm, most of it 10 to 15 mm away
+  int touched = 0;
+  for (int v = end.begin; v < end.end; ++v) touched += field.displacement_m[0][static_cast<std::size_t>(v)] < 1e-3f;
+  EXPECT_GT(touched, (end.end - end.begin) / 2);
+}
+
 }  // namespace
 }  // namespace touchstone::fast

@@ -1,0 +1,51 @@
+#include "compare/compare.h"
+
+#include "compare/figures.h"
+#include "compare/report.h"
+#include "compare/verdict.h"
+#include "compare/vtk_out.h"
+
+#include <limits>
+
+namespace touchstone::compare {
+
+std::vector<scene::Column> curve_columns(const fast::Run& run, const reference::Result& result, const Errors& errors) {
+  std::vector<scene::Column> columns = scene::track_columns(result.instants);
+  for (scene::Column& c : scene::record_columns(run.instants, "fast_")) columns.push_back(std::move(c));
+  for (scene::Column& c : scene::record_columns(result.instants, "reference_")) columns.push_back(std::move(c));
+  const auto add = [&](const char* name, const auto& get) {
+    scene::Column column{name, {}};
+    for (const InstantErrors& e : errors.instants) column.values.push_back(get(e));
+    columns.push_back(std::move(column));
+  };
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  add("fast_force_n", [](const InstantErrors& e) { return e.force_fast_n; });
+  add("reference_force_n", [](const InstantErrors& e) { return e.force_reference_n; });
+  add("error_force_n", [](const InstantErrors& e) { return e.force_error_n; });
+  add("error_force_rel", [&](const InstantErrors& e) { return e.force_error_rel.value_or(none); });
+  add("error_shape_rel_l2", [&](const InstantErrors& e) { return e.shape_rel_l2.value.value_or(none); });
+  add("reference_shape_uncertainty_rel_l2",
+      [&](const InstantErrors& e) { return e.shape_rel_l2.uncertainty.value_or(none); });
+  add("error_shape_max_m", [](const InstantErrors& e) { return e.shape_max_m; });
+  add("error_hausdorff_m", [](const InstantErrors& e) { return e.hausdorff_m; });
+  add("contact_area_iou", [&](const InstantErrors& e) { return e.contact_area_iou.value_or(none); });
+  add("fast_volume_change_rel", [](const InstantErrors& e) { return e.volume_change_fast_rel; });
+  for (scene::Column& c : reference_quality_columns(result, "reference_")) columns.push_back(std::move(c));
+  return columns;
+}
+
+Comparison write_comparison(const std::filesystem::path& folder, const scene::Scene& scene, const fast::Run& run,
+                            const reference::Result& result, const scene::Manifest& manifest) {
+  const Errors errors = compute_errors(scene, run, result);
+  const Plans plans{fast::plan(scene), reference::plan(scene)};
+  Comparison comparison{make_figures(errors, run, result), ""};
+  for (const std::string& paragraph : verdict(scene, run, result, errors)) comparison.text += paragraph + "\n";
+  scene::write_csv(folder / "curve.csv", curve_columns(run, result, errors));
+  write_surfaces(folder, run, result, errors);
+  scene::write_summary(folder / "summary.json", comparison.figures);
+  scene::write_manifest(folder / "manifest.json", manifest);
+  write_report(folder / "report.html", {scene, run, result, errors, comparison.figures, plans, manifest});
+  return comparison;
+}
+
+}  // namespace touchstone::compare

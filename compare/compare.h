@@ -1,0 +1,34 @@
+// From both sides' answers to a result folder: curve.csv, surface.pvd, summary.json, manifest.json, report.html.
+#pragma once
+
+#include "compare/errors.h"
+#include "scene/plan.h"
+#include "scene/results.h"
+
+#include <filesystem>
+#include <string>
+
+namespace touchstone::compare {
+
+/// What each side models of the scene and leaves out.
+struct Plans {
+  scene::Plan fast, reference;
+};
+
+/// Columns of curve.csv: time, tool pose and depth; both sides' regions (fast_..., reference_...); the reference's
+/// uncertainty; errors per instant. A column that has no meaning at an instant holds nan there.
+[[nodiscard]] std::vector<scene::Column> curve_columns(const fast::Run& run, const reference::Result& result,
+                                                       const Errors& errors);
+
+/// What is left to say on the terminal once the folder is written.
+struct Comparison {
+  scene::Figures figures;  ///< what summary.json holds
+  std::string text;        ///< the verdict, one paragraph per line
+};
+
+/// Compares and writes the whole folder, which must exist.
+/// @throws std::logic_error when the sides do not belong together, std::filesystem::filesystem_error
+Comparison write_comparison(const std::filesystem::path& folder, const scene::Scene& scene, const fast::Run& run,
+                            const reference::Result& result, const scene::Manifest& manifest);
+
+}  // namespace touchstone::compare

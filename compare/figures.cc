@@ -1,0 +1,145 @@
+#include "compare/figures.h"
+
+#include "compare/text.h"
+#include "fast/results.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace touchstone::compare {
+namespace {
+
+struct Meaning {
+  std::string_view key, text;
+  bool count = false;  ///< a number of things; other figures without a unit are ratios
+};
+
+constexpr Meaning meanings[] = {
+    {"force.nrmse", "Root mean square of the force error over all instants, relative to the reference's peak force."},
+    {"force.peak_rel", "Error of the largest force of the track; negative: the fast model is too weak."},
+    {"force.rel_above_10pct_depth",
+     "Root mean square of the relative force error where the depth is above 10 % of its largest."},
+    {"force.peak_fast_n", "Largest force on the tool, fast model."},
+    {"force.peak_reference_n", "Largest force on the tool, reference."},
+    {"shape.rel_l2",
+     "Displacement error over displacement, root mean square over the whole surface by area and over all instants."},
+    {"shape.max_over_depth", "Largest displacement error of any point, relative to the depth at that instant."},
+    {"shape.inside_r_rel_l2", "As shape.rel_l2, for points nearer to the contact than the local radius fast.r_R_m."},
+    {"shape.outside_r_rel_l2", "As shape.rel_l2, for points farther away than that."},
+    {"shape.hausdorff_m",
+     "Largest distance between the two deformed surfaces, whichever points lie there; from each surface's vertices."},
+    {"shape.volume_change_rel",
+     "Volume the fast model's body gains or loses; an incompressible body keeps its volume."},
+    {"contact.penetration_rel",
+     "How far the fast model's surface is left inside the tool, relative to the depth; it should be pushed out."},
+    {"contact.area_iou",
+     "Area that is at or inside the tool on both sides, over that on either, summed over the track; 100 % is equal."},
+    {"reference.force_uncertainty_rel", "Largest half width of the reference's force band, relative to its force."},
+    {"reference.shape_uncertainty_rel", "The reference's own shape uncertainty in the norm of shape.rel_l2."},
+    {"reference.residual_penetration_rel", "How far contact nodes still reach into the tool, relative to the depth."},
+    {"reference.penetration_between_nodes_rel", "The same between the nodes, where contact is not enforced."},
+    {"reference.equilibrium_rel", "Contact force and support reaction should cancel: what is left, relative."},
+    {"reference.volume_change_rel", "Volume change of the reference's body, on its own mesh."},
+    {"reference.surface_volume_change_rel",
+     "The same on the fast model's triangles: the share of shape.volume_change_rel that is due to flat triangles."},
+    {"reference.dofs", "Displacement unknowns of the finest level.", true},
+    {"reference.wall_s", "Time the reference took, all levels."},
+    {"reference.model", "What the reference solved."},
+    {"fast.step_us.p50", "One whole step of the fast model, median."},
+    {"fast.step_us.p99", "99 % of the steps are shorter."},
+    {"fast.step_us.p999", "99.9 % of the steps are shorter."},
+    {"fast.step_us.max", "Longest step."},
+    {"fast.force_us.p50", "From contact detection to the published force, median over steps in contact."},
+    {"fast.force_us.p99", "99 % of those are shorter."},
+    {"fast.setup_s", "Building the fast model, once."},
+    {"fast.memory_bytes", "Memory of the fast model and its state."},
+    {"fast.triangles", "Triangles of the body's surface.", true},
+    {"fast.regions_max", "Most contact regions at one time.", true},
+    {"fast.status", "Warnings of the fast model over the whole track."},
+};
+
+/// Null for a key that is not ours.
+const Meaning* find_meaning(std::string_view key) {
+  if (key.ends_with(uncertainty_suffix)) {
+    key.remove_suffix(uncertainty_suffix.size());
+  }
+  const auto found =
+      std::find_if(std::begin(meanings), std::end(meanings), [&](const Meaning& m) { return m.key == key; });
+  return found == std::end(meanings) ? nullptr : found;
+}
+
+class Collector {
+ public:
+  explicit Collector(std::string absent) : absent_(std::move(absent)) {}
+
+  void number(std::string key, double value, std::string unit = "") {
+    figures_.push_back({std::move(key), value, "", std::move(unit)});
+  }
+  void number_or_why(std::string key, const std::optional<double>& value, const std::string& why) {
+    if (value) return number(std::move(key), *value);
+    text(std::move(key), why);
+  }
+  void number_or_absent(std::string key, const std::optional<double>& value) {
+    number_or_why(std::move(key), value, absent_);
+  }
+  void measure(const std::string& key, const Measure& measure, const std::string& unit = "") {
+    if (!measure.value) {
+      text(key, absent_);
+      text(key + std::string(uncertainty_suffix), absent_);
+      return;
+    }
+    number(key, *measure.value, unit);
+    if (measure.uncertainty) return number(key + std::string(uncertainty_suffix), *measure.uncertainty, unit);
+    text(key + std::string(uncertainty_suffix), "unknown");
+  }
+  void add(scene::Figure figure) { figures_.push_back(std::move(figure)); }
+  void text(std::string key, std::string value) { figures_.push_back({std::move(key), 0.0, std::move(value), ""}); }
+  [[nodiscard]] scene::Figures take() { return std::move(figures_); }
+
+ private:
+  std::string absent_;  ///< why a figure that needs contact has no number
+  scene::Figures figures_;
+};
+
+}  // namespace
+
+scene::Figures make_figures(const Errors& errors, const fast::Run& run, const reference::Result& result) {
+  Collector out(errors.force_peak_reference_n == 0.0 ? "undefined: the reference is never in contact"
+                                                     : "undefined: nothing to relate it to");
+  out.measure("force.nrmse", errors.force_nrmse);
+  out.measure("force.peak_rel", errors.force_peak_rel);
+  out.measure("force.rel_above_10pct_depth", errors.force_rel_deep);
+  out.number("force.peak_fast_n", errors.force_peak_fast_n, "N");
+  out.number("force.peak_reference_n", errors.force_peak_reference_n, "N");
+  out.measure("shape.rel_l2", errors.shape_rel_l2);
+  out.measure("shape.max_over_depth", errors.shape_max_over_depth);
+  out.measure("shape.inside_r_rel_l2", errors.shape_inside_r_rel_l2);
+  out.measure("shape.outside_r_rel_l2", errors.shape_outside_r_rel_l2);
+  out.measure("shape.hausdorff_m", errors.shape_hausdorff_m, "m");
+  out.number("shape.volume_change_rel", errors.volume_change_fast_rel);
+  out.number_or_absent("contact.penetration_rel", errors.penetration_fast_rel);
+  out.number_or_why("contact.area_iou", errors.contact_area_iou, "undefined: neither side is ever in contact");
+
+  for (scene::Figure& figure : reference_figures(result, errors.reference)) {
+    const bool is_force = figure.key == "reference.force_uncertainty_rel";
+    out.add(std::move(figure));
+    if (is_force) out.number_or_why("reference.shape_uncertainty_rel", errors.shape_rel_l2.uncertainty, "unknown");
+  }
+  out.number("reference.surface_volume_change_rel", errors.volume_change_reference_surface_rel);
+  for (scene::Figure& figure : fast::figures(run)) out.add(std::move(figure));
+  return out.take();
+}
+
+std::string_view figure_meaning(std::string_view key) {
+  const Meaning* meaning = find_meaning(key);
+  return meaning == nullptr ? std::string_view() : meaning->text;
+}
+
+std::string figure_text(const scene::Figure& figure) {
+  if (!figure.text.empty()) return figure.text;
+  const Meaning* meaning = find_meaning(figure.key);
+  if (meaning != nullptr && meaning->count) return number_text(figure.number);
+  return quantity_text(figure.number, figure.unit);
+}
+
+}  // namespace touchstone::compare

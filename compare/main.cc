@@ -1,0 +1,43 @@
+// touchstone: one scene in, one result folder out.
+#include "compare/verbs.h"
+#include "fast/command_line.h"
+#include "scene/fields.h"
+
+#include <iostream>
+
+using namespace touchstone;
+
+int main(int argc, char** argv) {
+  CLI::App app("How wrong a fast contact model is, against a finite-strain reference with error bars.", "touchstone");
+  app.add_flag_callback(
+      "--scene-reference",
+      [] {
+        std::cout << scene::scene_reference_markdown();
+        throw CLI::Success();
+      },
+      "print every key of a scene file as a Markdown table");
+
+  fast::VerbOptions options;
+  std::filesystem::path store = "out/reference-store";
+  int exit_code = fast::done;
+  const auto add = [&](const char* name, const char* what, auto verb) {
+    return fast::add_verb(
+        app, name, what, options, [&, verb] { return verb(options, store); }, exit_code);
+  };
+  const auto add_with_folder = [&](const char* name, const char* what, auto verb) {
+    CLI::App* command = add(name, what, verb);
+    command->add_option("--out", options.out, std::string("result folder (default out/<scene>-") + name + ")");
+    return command;
+  };
+  const auto add_store = [&](CLI::App* command) {
+    command->add_option("--store", store, "content-addressed reference results, shared by all runs")
+        ->capture_default_str();
+  };
+  add("plan", "what each side will model for a scene, what it leaves out and why", compare::plan);
+  add_with_folder("fast", "the real-time pipeline over the scene's track in virtual time", compare::run_fast);
+  add_store(add_with_folder("reference", "the offline solve; answers from the store, resumes where it was interrupted",
+                            compare::run_reference));
+  add_store(
+      add_with_folder("compare", "both sides, then force and shape errors: tables, VTK, report", compare::run_compare));
+  return fast::run_command_line(app, argc, argv, exit_code);
+}

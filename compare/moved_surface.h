@@ -1,0 +1,22 @@
+// Measures of a rest surface moved by one displacement per rest point.
+#pragma once
+
+#include "scene/scene.h"
+#include "scene/surface.h"
+
+namespace touchstone::compare {
+
+/// Volume enclosed by the triangles after the move [m^3]: a sixth of the sum of a . (b x c), by the divergence
+/// theorem. The surface must be closed; vertices doubled at an edge must move alike.
+[[nodiscard]] double enclosed_volume_m3(const scene::Surface& surface, const Eigen::Matrix3Xd& displacement_m);
+
+/// Largest distance from a vertex of one moved surface to the triangles of the other, both ways [m]. Exact for
+/// the vertices; the inside of a triangle may be farther by the sag of one triangle. NaN when a place is not finite.
+[[nodiscard]] double hausdorff_m(const scene::Surface& surface, const Eigen::Matrix3Xd& displacement_a_m,
+                                 const Eigen::Matrix3Xd& displacement_b_m);
+
+/// Signed distance of every moved rest point from the tool's surface [m], negative inside the tool.
+[[nodiscard]] Eigen::VectorXd tool_gaps_m(const scene::Surface& surface, const Eigen::Matrix3Xd& displacement_m,
+                                          const scene::Shape& tool, const scene::Pose& pose);
+
+}  // namespace touchstone::compare

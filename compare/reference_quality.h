@@ -1,0 +1,39 @@
+// How far one reference result can be trusted, in a few figures.
+#pragma once
+
+#include "reference/solver.h"
+#include "scene/results.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchstone::compare {
+
+/// Figures "where the contact is deep" use the instants whose depth exceeds this share of the largest depth.
+inline constexpr double deep_share = 0.1;
+
+/// Below this depth a tool only grazes: round-off of the track decides whether it touches at all.
+inline constexpr double grazing_depth_m = 1e-9;
+
+/// Per instant: in contact, and deeper than deep_share of the deepest.
+[[nodiscard]] std::vector<bool> deep_instants(const std::vector<scene::InstantRecord>& instants);
+
+/// The largest over the deep instants, absent where there is none.
+struct ReferenceQuality {
+  std::optional<double> force_uncertainty_rel;     ///< band / |F|
+  std::optional<double> residual_penetration_rel;  ///< into the tool at contact nodes, / depth
+  std::optional<double> between_nodes_rel;         ///< into the tool between contact nodes, / depth
+  std::optional<double> equilibrium_rel;           ///< |contact + support| / |contact|
+  double volume_change_rel = 0.0;                  ///< of the body, of the largest magnitude over all instants, signed
+};
+[[nodiscard]] ReferenceQuality reference_quality(const reference::Result& result);
+
+/// The reference.* keys of summary.json that need no other side.
+[[nodiscard]] scene::Figures reference_figures(const reference::Result& result, const ReferenceQuality& quality);
+
+/// The same per instant, as columns of curve.csv: uncertainty, penetration, equilibrium, volume.
+[[nodiscard]] std::vector<scene::Column> reference_quality_columns(const reference::Result& result,
+                                                                   const std::string& prefix);
+
+}  // namespace touchstone::compare

@@ -1,0 +1,27 @@
+// The page a reader opens first: one self-contained HTML file, no script, nothing fetched.
+#pragma once
+
+#include "compare/compare.h"
+
+#include <filesystem>
+
+namespace touchstone::compare {
+
+/// All a report is made of; refers to what the caller holds.
+struct ReportContent {
+  const scene::Scene& scene;
+  const fast::Run& run;
+  const reference::Result& result;
+  const Errors& errors;
+  const scene::Figures& figures;
+  const Plans& plans;
+  const scene::Manifest& manifest;
+};
+
+/// The page as well-formed XHTML, so that tools can read it too.
+[[nodiscard]] std::string report_html(const ReportContent& content);
+
+/// @throws std::filesystem::filesystem_error
+void write_report(const std::filesystem::path& path, const ReportContent& content);
+
+}  // namespace touchstone::compare

@@ -1,0 +1,315 @@
+#include "compare/svg_plot.h"
+
+#include "compare/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace touchstone::compare {
+namespace {
+
+constexpr int margin_left = 64, margin_right = 16, margin_top = 40, margin_bottom = 46;
+constexpr int legend_row = 18;
+
+/// Values to pixels along one axis.
+class Axis {
+ public:
+  Axis(double low, double high, bool log, double from_px, double to_px)
+      : low_(low), high_(high), log_(log), from_px_(from_px), to_px_(to_px) {}
+
+  [[nodiscard]] bool can_show(double value) const { return std::isfinite(value) && (!log_ || value > 0.0); }
+  [[nodiscard]] double px(double value) const {
+    const double share = log_ ? std::log(value / low_) / std::log(high_ / low_) : (value - low_) / (high_ - low_);
+    // Far outside is as good as just outside, and keeps the numbers short.
+    return from_px_ + std::clamp(share, -2.0, 3.0) * (to_px_ - from_px_);
+  }
+  [[nodiscard]] double low() const { return low_; }
+  [[nodiscard]] double high() const { return high_; }
+  [[nodiscard]] bool log() const { return log_; }
+  [[nodiscard]] double from_px() const { return from_px_; }
+  [[nodiscard]] double to_px() const { return to_px_; }
+
+  [[nodiscard]] std::vector<double> ticks() const {
+    if (!log_) {
+      const int wanted = static_cast<int>(std::abs(to_px_ - from_px_)) / 36;
+      return nice_ticks(low_, high_, std::clamp(wanted, 3, 10));
+    }
+    const int first = static_cast<int>(std::ceil(std::log10(low_) - 1e-9));
+    const int last = static_cast<int>(std::floor(std::log10(high_) + 1e-9));
+    const int every = 1 + (last - first) / 8;
+    std::vector<double> out;
+    for (int decade = first - 1; decade <= last; ++decade) {
+      if (every > 1 && (decade - first) % every != 0) continue;
+      for (const double factor : {1.0, 2.0, 5.0}) {
+        if (factor > 1.0 && last - first > 1) continue;
+        const double tick = factor * std::pow(10.0, decade);
+        if (tick >= low_ * (1 - 1e-9) && tick <= high_ * (1 + 1e-9)) out.push_back(tick);
+      }
+    }
+    return out;
+  }
+
+ private:
+  double low_, high_;
+  bool log_;
+  double from_px_, to_px_;
+};
+
+/// Smallest and largest of what an axis must show.
+struct Extent {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  void include(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  [[nodiscard]] bool empty() const { return low > high; }
+
+  /// Widened to show whole: to zero where that is near, by a little elsewhere.
+  [[nodiscard]] std::pair<double, double> padded(bool log) const {
+    if (log) return low == high ? std::pair(low / 2.0, high * 2.0) : std::pair(low / 1.25, high * 1.25);
+    double from = low, to = high;
+    if (from > 0.0 && from < 0.5 * to) from = 0.0;
+    if (to < 0.0 && to > 0.5 * from) to = 0.0;
+    const double span = to > from ? to - from : std::max(1e-12, std::abs(to));
+    if (from != 0.0) from -= 0.04 * span;
+    if (to != 0.0) to += 0.06 * span;
+    if (from == to) to = from + span;
+    return {from, to};
+  }
+};
+
+std::string stroke(Look look) {
+  switch (look) {
+    case Look::reference:
+      return fmt::format("stroke=\"{}\" stroke-width=\"2\"", colour(look));
+    case Look::fast:
+      return fmt::format("stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"6 3\"", colour(look));
+    case Look::plain:
+      return fmt::format("stroke=\"{}\" stroke-width=\"2\"", colour(look));
+    case Look::outline:
+      return fmt::format("stroke=\"{}\" stroke-width=\"1.2\" stroke-dasharray=\"2 3\"", colour(look));
+  }
+  return "";
+}
+
+std::string text_at(double x, double y, const std::string& anchor, const std::string& text,
+                    const std::string& extra = "") {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"currentColor\"{}>{}</text>\n", x, y,
+                     anchor, extra, escape_xml(text));
+}
+
+std::string grid_line(double x1, double y1, double x2, double y2, double opacity) {
+  return fmt::format(
+      "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"currentColor\" stroke-opacity=\"{}\"/>\n",
+      x1, y1, x2, y2, opacity);
+}
+
+std::string axes(const Plot& plot, const Axis& x, const Axis& y) {
+  std::string out;
+  for (const double tick : x.ticks()) {
+    out += grid_line(x.px(tick), y.from_px(), x.px(tick), y.to_px(), 0.13);
+    out += text_at(x.px(tick), y.from_px() + 17, "middle", number_text(tick));
+  }
+  for (const double tick : y.ticks()) {
+    out += grid_line(x.from_px(), y.px(tick), x.to_px(), y.px(tick), 0.13);
+    out += text_at(x.from_px() - 7, y.px(tick) + 4, "end", number_text(tick));
+  }
+  out += grid_line(x.from_px(), y.from_px(), x.to_px(), y.from_px(), 0.6);
+  out += grid_line(x.from_px(), y.from_px(), x.from_px(), y.to_px(), 0.6);
+  out += text_at(0.5 * (x.from_px() + x.to_px()), y.from_px() + 37, "middle", plot.x_label);
+  const double middle_px = 0.5 * (y.from_px() + y.to_px());
+  out += text_at(15, middle_px, "middle", plot.y_label, fmt::format(" transform=\"rotate(-90 15 {:.1f})\"", middle_px));
+  return out;
+}
+
+std::string band_area(const Band& band, const Axis& x, const Axis& y) {
+  std::string there, back;
+  for (std::size_t i = 0; i < band.x.size(); ++i) {
+    if (!x.can_show(band.x[i]) || !y.can_show(band.high[i]) || !std::isfinite(band.low[i])) continue;
+    const double low = y.log() ? std::max(band.low[i], y.low()) : band.low[i];
+    there += fmt::format("{:.1f},{:.1f} ", x.px(band.x[i]), y.px(band.high[i]));
+    back = fmt::format("{:.1f},{:.1f} ", x.px(band.x[i]), y.px(low)) + back;
+  }
+  if (there.empty()) return "";
+  return fmt::format("<polygon points=\"{}{}\" fill=\"{}\" fill-opacity=\"0.3\" stroke=\"none\"/>\n", there, back,
+                     colour(band.look));
+}
+
+std::string curve_line(const Curve& curve, const Axis& x, const Axis& y) {
+  std::string path;
+  bool pen_down = false;
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    const bool shown = x.can_show(curve.x[i]) && y.can_show(curve.y[i]);
+    if (shown) path += fmt::format("{}{:.1f} {:.1f}", pen_down ? "L" : "M", x.px(curve.x[i]), y.px(curve.y[i]));
+    pen_down = shown;
+  }
+  if (path.empty()) return "";
+  return fmt::format("<path d=\"{}\" fill=\"none\" {} stroke-linejoin=\"round\"/>\n", path, stroke(curve.look));
+}
+
+/// Round for the reference and square for the fast model, so that grey print tells them apart.
+std::string marker(Look look, double x_px, double y_px, const std::string& title_element) {
+  if (look == Look::fast) {
+    return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"6\" height=\"6\" fill=\"{}\">{}</rect>", x_px - 3,
+                       y_px - 3, colour(look), title_element);
+  }
+  return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\">{}</circle>", x_px, y_px, colour(look),
+                     title_element);
+}
+
+std::string curve_markers(const Curve& curve, const Plot& plot, const Axis& x, const Axis& y) {
+  std::string out;
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    if (!x.can_show(curve.x[i]) || !y.can_show(curve.y[i])) continue;
+    const double px = x.px(curve.x[i]), py = y.px(curve.y[i]);
+    const std::string tip =
+        escape_xml(fmt::format("{}{}{}: {}; {}: {}", curve.name, curve.name.empty() ? "" : " | ", plot.x_label,
+                               number_text(curve.x[i], 4), plot.y_label, number_text(curve.y[i], 4)));
+    out += marker(curve.look, px, py, "<title>" + tip + "</title>") + "\n";
+  }
+  return out;
+}
+
+struct LegendEntry {
+  std::string name, swatch;  ///< swatch: SVG drawn 26 wide about (0, 0)
+  double width_px = 0.0;
+};
+
+std::vector<LegendEntry> legend_entries(const Plot& plot) {
+  std::vector<LegendEntry> entries;
+  const auto add = [&](const std::string& name, std::string swatch) {
+    // No font to ask: 6.6 px a letter is what a 12 px sans serif needs on average.
+    if (!name.empty())
+      entries.push_back({name, std::move(swatch), 33.0 + 18.0 + 6.6 * static_cast<double>(name.size())});
+  };
+  for (const Curve& curve : plot.curves) {
+    std::string swatch = fmt::format("<line x1=\"0\" y1=\"0\" x2=\"26\" y2=\"0\" {}/>", stroke(curve.look));
+    if (curve.markers) swatch += marker(curve.look, 13.0, 0.0, "");
+    add(curve.name, std::move(swatch));
+  }
+  for (const Band& band : plot.bands) {
+    add(band.name, fmt::format("<rect x=\"0\" y=\"-5\" width=\"26\" height=\"10\" fill=\"{}\" fill-opacity=\"0.3\"/>",
+                               colour(band.look)));
+  }
+  return entries;
+}
+
+/// Names above the axes, as many to a row as fit.
+struct Legend {
+  std::string svg;
+  int rows = 0;
+};
+
+Legend legend(const Plot& plot, double left_px, double right_px, double top_px) {
+  Legend out;
+  double x = right_px, y = top_px - legend_row;
+  for (const LegendEntry& entry : legend_entries(plot)) {
+    if (x + entry.width_px > right_px + 18.0) {
+      x = left_px;
+      y += legend_row;
+      ++out.rows;
+    }
+    out.svg += fmt::format("<g transform=\"translate({:.1f} {:.1f})\">{}</g>\n", x, y - 4, entry.swatch);
+    out.svg += text_at(x + 33, y, "start", entry.name);
+    x += entry.width_px;
+  }
+  return out;
+}
+
+/// Widens the axis that has room so that a unit is as long on both.
+void give_same_scale(std::pair<double, double>& x, std::pair<double, double>& y, double width_px, double height_px) {
+  const double per_px = std::max((x.second - x.first) / width_px, (y.second - y.first) / height_px);
+  const auto widen = [per_px](std::pair<double, double>& range, double px) {
+    const double more = 0.5 * (per_px * px - (range.second - range.first));
+    range = {range.first - more, range.second + more};
+  };
+  widen(x, width_px);
+  widen(y, height_px);
+}
+
+}  // namespace
+
+std::string colour(Look look) {
+  switch (look) {
+    case Look::reference:
+      return "#1f77b4";
+    case Look::fast:
+      return "#e4600a";
+    case Look::plain:
+      return "#6a51a3";
+    case Look::outline:
+      return "#8a8a8a";
+  }
+  return "";
+}
+
+std::vector<double> nice_ticks(double low, double high, int wanted) {
+  const double raw = (high - low) / wanted;
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  double step = 10.0 * power;
+  for (const double factor : {5.0, 2.0, 1.0}) {
+    if (factor * power >= raw * (1.0 - 1e-9)) step = factor * power;
+  }
+  std::vector<double> ticks;
+  const double slack = 1e-9 * (high - low);
+  for (double n = std::ceil((low - slack) / step); n * step <= high + slack; ++n) ticks.push_back(n * step);
+  return ticks;
+}
+
+std::string to_svg(const Plot& plot, int width_px, int height_px) {
+  std::string out = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
+      "font-family=\"system-ui, sans-serif\" font-size=\"12\" role=\"img\">\n<title>{2}</title>\n",
+      width_px, height_px, escape_xml(plot.title));
+  out += text_at(0.5 * width_px, 20, "middle", plot.title, " font-size=\"14\" font-weight=\"600\"");
+
+  Extent x_extent, y_extent;
+  const auto can_show = [](double value, bool log) { return std::isfinite(value) && (!log || value > 0.0); };
+  const auto include = [&](const std::vector<double>& x, const std::vector<double>& y) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (!can_show(x[i], plot.x_log) || !can_show(y[i], plot.y_log)) continue;
+      x_extent.include(x[i]);
+      y_extent.include(y[i]);
+    }
+  };
+  for (const Curve& curve : plot.curves) include(curve.x, curve.y);
+  for (const Band& band : plot.bands) {
+    include(band.x, band.high);
+    // The lower edge of a band may come close to zero: on a logarithmic axis it would take over the range.
+    if (!plot.y_log) include(band.x, band.low);
+  }
+  if (x_extent.empty() || y_extent.empty()) {
+    return out + text_at(0.5 * width_px, 0.5 * height_px, "middle", "nothing to show") + "</svg>\n";
+  }
+  std::pair<double, double> x_range = plot.x_range.value_or(x_extent.padded(plot.x_log));
+  std::pair<double, double> y_range = plot.y_range.value_or(y_extent.padded(plot.y_log));
+  const Legend names = legend(plot, margin_left, width_px - margin_right, margin_top + 2);
+  const int top_px = margin_top + legend_row * names.rows;
+  const double right_px = width_px - margin_right, bottom_px = height_px - margin_bottom;
+  if (plot.same_scale) give_same_scale(x_range, y_range, right_px - margin_left, bottom_px - top_px);
+  const Axis x(x_range.first, x_range.second, plot.x_log, margin_left, right_px);
+  const Axis y(y_range.first, y_range.second, plot.y_log, bottom_px, top_px);
+
+  out += axes(plot, x, y);
+  out += names.svg;
+  // A nested viewport cuts what lies outside the axes; a marker on the edge stays whole.
+  const double edge = 4.0;
+  out += fmt::format(
+      "<svg x=\"{0:.1f}\" y=\"{1:.1f}\" width=\"{2:.1f}\" height=\"{3:.1f}\" viewBox=\"{0:.1f} {1:.1f} {2:.1f} "
+      "{3:.1f}\" "
+      "overflow=\"hidden\">\n",
+      margin_left - edge, top_px - edge, right_px - margin_left + 2 * edge, bottom_px - top_px + 2 * edge);
+  for (const Band& band : plot.bands) out += band_area(band, x, y);
+  for (const Curve& curve : plot.curves) out += curve_line(curve, x, y);
+  for (const Curve& curve : plot.curves) {
+    if (curve.markers) out += curve_markers(curve, plot, x, y);
+  }
+  return out + "</svg>\n</svg>\n";
+}
+
+}  // namespace touchstone::compare

@@ -1,0 +1,49 @@
+// Line plots as SVG text, for a page that must open anywhere: no library, no display, no script.
+// Text and axes take the page's text colour; every marker says its numbers when pointed at.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace touchstone::compare {
+
+/// Who a curve belongs to; fixes colour and dash so that a side looks the same in every figure and in grey print.
+enum class Look { reference, fast, plain, outline };
+
+/// One curve; a point that is not finite, or not positive on a logarithmic axis, interrupts it.
+struct Curve {
+  std::string name;  ///< in the legend; empty: not listed
+  Look look = Look::plain;
+  std::vector<double> x, y;
+  bool markers = true;
+};
+
+/// Area between two curves over x.
+struct Band {
+  std::string name;
+  Look look = Look::reference;
+  std::vector<double> x, low, high;
+};
+
+struct Plot {
+  std::string title;
+  std::string x_label, y_label;  ///< with unit
+  bool x_log = false, y_log = false;
+  bool same_scale = false;                                    ///< x and y to one scale, for drawings
+  std::optional<std::pair<double, double>> x_range, y_range;  ///< otherwise what the curves need
+  std::vector<Band> bands;
+  std::vector<Curve> curves;
+};
+
+/// @returns one <svg> element, well-formed XML; without any point to draw it says "nothing to show"
+[[nodiscard]] std::string to_svg(const Plot& plot, int width_px = 560, int height_px = 360);
+
+/// Colour of a look, "#rrggbb".
+[[nodiscard]] std::string colour(Look look);
+
+/// Evenly spaced round numbers within a range, about `wanted` of them.
+[[nodiscard]] std::vector<double> nice_ticks(double low, double high, int wanted);
+
+}  // namespace touchstone::compare

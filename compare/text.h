@@ -1,0 +1,27 @@
+// Numbers and words as the report prints them; a no-break space stands between number and unit.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace touchstone::compare {
+
+/// Three significant digits: "0.34", "170", "21 600", "3 × 10⁸"; "not finite" for NaN and infinity.
+[[nodiscard]] std::string number_text(double value, int digits = 3);
+
+/// A ratio as a percentage, "99.6 %".
+[[nodiscard]] std::string percent_text(double ratio);
+
+/// A value in its unit, scaled to what is read easily: (0.005, "m") gives "5 mm". Known to scale: m, m2, s, us,
+/// byte; a ratio has the unit "" and is given as a percentage. With a unit, less than 1e-15 is rounding and given as 0.
+[[nodiscard]] std::string quantity_text(double value, std::string_view unit);
+
+/// The same, or a word for an absent value.
+[[nodiscard]] std::string quantity_text(const std::optional<double>& value, std::string_view unit,
+                                        std::string_view absent);
+
+/// For text and attributes of HTML, SVG and XML.
+[[nodiscard]] std::string escape_xml(std::string_view text);
+
+}  // namespace touchstone::compare

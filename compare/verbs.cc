@@ -1,0 +1,107 @@
+#include "compare/verbs.h"
+
+#include "compare/compare.h"
+#include "compare/reference_run.h"
+#include "fast/results.h"
+#include "reference/solver.h"
+#include "scene/results.h"
+#include "scene/scene_io.h"
+
+#include <chrono>
+#include <ctime>
+#include <iostream>
+
+namespace touchstone::compare {
+namespace {
+
+/// Wall and CPU time since construction.
+class Stopwatch {
+ public:
+  [[nodiscard]] scene::StageTime read(const std::string& stage) const {
+    return {stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count(),
+            static_cast<double>(std::clock() - cpu_) / CLOCKS_PER_SEC};
+  }
+
+ private:
+  std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
+  std::clock_t cpu_ = std::clock();
+};
+
+void refuse(std::vector<scene::Fault> faults) {
+  if (!faults.empty()) throw scene::InputError(std::move(faults));
+}
+
+/// Runs a solve; its two ways of giving no answer become exit codes with one message.
+template <class Solve>
+int with_reference_exits(Solve solve) {
+  try {
+    return solve();
+  } catch (const reference::Interrupted& stopped) {
+    std::cerr << "\n" << stopped.what() << '\n';
+    return fast::interrupted;
+  } catch (const reference::NotConverged& failure) {
+    std::cerr << failure.what() << '\n';
+    return fast::not_converged;
+  }
+}
+
+}  // namespace
+
+int plan(const fast::VerbOptions& options, const std::filesystem::path&) {
+  const scene::Scene scene = options.load();
+  std::cout << scene::resolved_toml(scene) << '\n'
+            << fast::plan_text("The fast model computes", fast::plan(scene)) << '\n'
+            << fast::plan_text("The reference solves", reference::plan(scene));
+  refuse(reference::unsupported(scene));
+  return fast::done;
+}
+
+int run_fast(const fast::VerbOptions& options, const std::filesystem::path&) {
+  const scene::Scene scene = options.load();
+  const std::filesystem::path folder = options.folder(scene, "fast");
+  scene::prepare_result_folder(folder);
+  const fast::Run run =
+      fast::run_into_folder(scene, folder, scene::make_manifest(scene, "touchstone fast"), options.quiet);
+  std::cout << fast::summary_text(run) << "Results: " << folder.string() << '\n';
+  return fast::done;
+}
+
+int run_reference(const fast::VerbOptions& options, const std::filesystem::path& store) {
+  const scene::Scene scene = options.load();
+  refuse(reference::unsupported(scene));
+  const std::filesystem::path folder = options.folder(scene, "reference");
+  scene::prepare_result_folder(folder);
+  return with_reference_exits([&] {
+    const Stopwatch watch;
+    const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
+    const reference::Result result = solve_with_progress(scene, surface.points_m, store, options.quiet);
+    scene::Manifest manifest = scene::make_manifest(scene, "touchstone reference");
+    manifest.times.push_back(watch.read("reference"));
+    write_reference(folder, result, manifest);
+    std::cout << reference_text(result) << "Results: " << folder.string() << '\n';
+    return fast::done;
+  });
+}
+
+int run_compare(const fast::VerbOptions& options, const std::filesystem::path& store) {
+  const scene::Scene scene = options.load();
+  refuse(reference::unsupported(scene));
+  const std::filesystem::path folder = options.folder(scene, "compare");
+  scene::prepare_result_folder(folder);
+  return with_reference_exits([&] {
+    scene::Manifest manifest = scene::make_manifest(scene, "touchstone compare");
+    const Stopwatch fast_watch;
+    const fast::Run run = fast::run(scene);
+    manifest.times.push_back(fast_watch.read("fast"));
+    const Stopwatch reference_watch;
+    const reference::Result result = solve_with_progress(scene, run.surface.points_m, store, options.quiet);
+    manifest.times.push_back(reference_watch.read("reference"));
+    manifest.entries.emplace_back("linear_solver", result.linear_solver);
+    manifest.entries.emplace_back("reference_key", result.key);
+    const Comparison comparison = write_comparison(folder, scene, run, result, manifest);
+    std::cout << comparison.text << "Report: " << (folder / "report.html").string() << '\n';
+    return fast::done;
+  });
+}
+
+}  // namespace touchstone::compare

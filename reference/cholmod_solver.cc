@@ -1,0 +1,139 @@
+#include "reference/cholmod_solver.h"
+
+#include <cholmod.h>
+#include <dlfcn.h>
+#include <umfpack.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace touchstone::reference {
+namespace {
+
+// The BLAS is chosen when the process starts, so its name and thread count are asked from whatever is loaded.
+template <class Function>
+Function* loaded_function(const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
+}
+
+}  // namespace
+
+struct CholmodSolver::State {
+  cholmod_common common;
+  cholmod_factor* factor = nullptr;
+  int threads = 1;
+
+  /// A view of our arrays; CHOLMOD does not write to them.
+  static cholmod_sparse view(const SymmetricMatrix& matrix) {
+    cholmod_sparse sparse{};
+    sparse.nrow = sparse.ncol = static_cast<std::size_t>(matrix.size());
+    sparse.nzmax = matrix.row.size();
+    sparse.p = const_cast<std::int64_t*>(matrix.column_begin.data());
+    sparse.i = const_cast<std::int64_t*>(matrix.row.data());
+    sparse.x = const_cast<double*>(matrix.value.data());
+    sparse.stype = -1;
+    sparse.itype = CHOLMOD_LONG;
+    sparse.xtype = CHOLMOD_REAL;
+    sparse.dtype = CHOLMOD_DOUBLE;
+    sparse.sorted = sparse.packed = 1;
+    return sparse;
+  }
+};
+static_assert(sizeof(SuiteSparse_long) == sizeof(std::int64_t));
+
+CholmodSolver::CholmodSolver(int threads) : state_(std::make_unique<State>()) {
+  cholmod_l_start(&state_->common);
+  state_->common.supernodal = CHOLMOD_SUPERNODAL;
+  state_->common.print = 0;
+  // Two candidates, the one with the sparser factor wins.
+  state_->common.nmethods = 2;
+  state_->common.method[0].ordering = CHOLMOD_METIS;
+  state_->common.method[1].ordering = CHOLMOD_AMD;
+  state_->threads = threads;
+  if (auto* set_threads = loaded_function<void(int)>("openblas_set_num_threads")) set_threads(threads);
+}
+
+CholmodSolver::~CholmodSolver() {
+  cholmod_l_free_factor(&state_->factor, &state_->common);
+  cholmod_l_finish(&state_->common);
+}
+
+void CholmodSolver::analyse(const SymmetricMatrix& matrix) {
+  cholmod_l_free_factor(&state_->factor, &state_->common);
+  cholmod_sparse sparse = State::view(matrix);
+  state_->factor = cholmod_l_analyze(&sparse, &state_->common);
+  if (!state_->factor) throw std::runtime_error("CHOLMOD could not analyse the matrix: out of memory");
+}
+
+bool CholmodSolver::factorise(const SymmetricMatrix& matrix) {
+  cholmod_sparse sparse = State::view(matrix);
+  cholmod_l_factorize(&sparse, state_->factor, &state_->common);
+  if (state_->common.status < CHOLMOD_OK) throw std::runtime_error("CHOLMOD could not factorise: out of memory");
+  return state_->common.status == CHOLMOD_OK && state_->factor->minor == state_->factor->n;
+}
+
+void CholmodSolver::solve(std::vector<double>& x) {
+  cholmod_dense right{};
+  right.nrow = right.nzmax = right.d = x.size();
+  right.ncol = 1;
+  right.x = x.data();
+  right.xtype = CHOLMOD_REAL;
+  right.dtype = CHOLMOD_DOUBLE;
+  cholmod_dense* solution = cholmod_l_solve(CHOLMOD_A, state_->factor, &right, &state_->common);
+  if (!solution) throw std::runtime_error("CHOLMOD could not solve: out of memory");
+  const double* values = static_cast<const double*>(solution->x);
+  std::copy(values, values + x.size(), x.begin());
+  cholmod_l_free_dense(&solution, &state_->common);
+}
+
+bool CholmodSolver::solve_indefinite(const SymmetricMatrix& matrix, std::vector<double>& x) {
+  const std::int64_t n = matrix.size();
+  // Both triangles by columns. Walking the columns in order keeps the rows sorted.
+  std::vector<SuiteSparse_long> begin(n + 1, 0);
+  for (std::int64_t j = 0; j < n; ++j) {
+    for (std::int64_t k = matrix.column_begin[j]; k < matrix.column_begin[j + 1]; ++k) {
+      ++begin[j + 1];
+      if (matrix.row[k] != j) ++begin[matrix.row[k] + 1];
+    }
+  }
+  for (std::int64_t j = 0; j < n; ++j) begin[j + 1] += begin[j];
+  std::vector<SuiteSparse_long> next(begin.begin(), begin.end() - 1), row(begin[n]);
+  std::vector<double> value(begin[n]);
+  for (std::int64_t j = 0; j < n; ++j) {
+    for (std::int64_t k = matrix.column_begin[j]; k < matrix.column_begin[j + 1]; ++k) {
+      const std::int64_t i = matrix.row[k];
+      row[next[j]] = i;
+      value[next[j]++] = matrix.value[k];
+      if (i == j) continue;
+      row[next[i]] = j;
+      value[next[i]++] = matrix.value[k];
+    }
+  }
+  void *symbolic = nullptr, *numeric = nullptr;
+  bool solved = umfpack_dl_symbolic(n, n, begin.data(), row.data(), value.data(), &symbolic, nullptr, nullptr) ==
+                    UMFPACK_OK &&
+                umfpack_dl_numeric(begin.data(), row.data(), value.data(), symbolic, &numeric, nullptr, nullptr) ==
+                    UMFPACK_OK;
+  if (solved) {
+    const std::vector<double> right = x;
+    solved = umfpack_dl_solve(UMFPACK_A, begin.data(), row.data(), value.data(), x.data(), right.data(), numeric,
+                              nullptr, nullptr) == UMFPACK_OK;
+  }
+  umfpack_dl_free_numeric(&numeric);
+  umfpack_dl_free_symbolic(&symbolic);
+  return solved;
+}
+
+std::string CholmodSolver::description() const {
+  std::string text = "CHOLMOD " + std::to_string(CHOLMOD_MAIN_VERSION) + "." + std::to_string(CHOLMOD_SUB_VERSION) +
+                     "." + std::to_string(CHOLMOD_SUBSUB_VERSION) + " on ";
+  if (auto* config = loaded_function<char*()>("openblas_get_config")) {
+    text += config();
+    text += ", " + std::to_string(state_->threads) + (state_->threads == 1 ? " thread" : " threads");
+  } else {
+    text += "a BLAS that is not OpenBLAS";
+  }
+  return text;
+}
+
+}  // namespace touchstone::reference

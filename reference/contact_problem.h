@@ -1,0 +1,179 @@
+// One elastic body on one mesh against the rigid ball, frictionless: assembly, active set, Newton.
+//
+// Unknowns are nodal displacements u and per-cell pressures p. Equilibrium with contact forces lambda_n >= 0 on the
+// surface nodes n,
+//   F_int(u, p) = sum_n lambda_n grad g_n,   g_n >= 0,   lambda_n g_n = 0,
+// is solved by the primal-dual active set method: in every iteration a touching node's displacement along grad g_n is
+// eliminated exactly (n . du = -g), and lambda_n is read from the internal force. A node stays touching while
+// lambda_n / w_n - c g_n > 0 (w_n its area, c = E / R) and starts to touch when g_n < 0. At the end the gap of every
+// touching node is zero to round-off and no other node penetrates.
+// Source: M. Hintermueller, K. Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865-888; for contact S. Hueeber,
+// B. I. Wohlmuth, Comput. Methods Appl. Mech. Eng. 194 (2005) 3147-3166.
+#pragma once
+
+#include "reference/cholmod_solver.h"
+#include "reference/element.h"
+#include "reference/mesh.h"
+#include "scene/frames.h"
+#include "scene/scene.h"
+#include "reference/tool_gap.h"
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchstone::reference {
+
+/// Everything a load step needs to go on from.
+template <int dim>
+struct State {
+  Eigen::Matrix<double, dim, Eigen::Dynamic> u_m;       ///< one column per node, hanging ones included
+  Eigen::Matrix<double, dim + 1, Eigen::Dynamic> p_pa;  ///< one column per cell: coefficients of 1, (X - Xc) / h
+  std::vector<char> touching;                           ///< per node
+};
+
+/// How a Newton solve went.
+struct NewtonReport {
+  bool converged = false;
+  int iterations = 0;
+  double residual_rel = 0.0;  ///< out-of-balance force over the sum of contact and support forces
+  int indefinite = 0;         ///< iterations whose tangent needed the curvature term dropped or UMFPACK
+  std::string trouble;        ///< in words, when not converged
+};
+
+/// What a solved state says, of the whole body: mirror images are counted.
+struct Observation {
+  scene::Vec3 force_n = scene::Vec3::Zero();          ///< on the tool, sum of the contact pressures
+  scene::Vec3 torque_nm = scene::Vec3::Zero();        ///< on the tool, about its centre
+  scene::Vec3 support_force_n = scene::Vec3::Zero();  ///< of the support on the body
+  double area_m2 = 0.0;                      ///< of contact, on the deformed surface
+  double contact_radius_m = 0.0;             ///< bodies of revolution only: of the contact's edge
+  double node_penetration_m = 0.0;           ///< largest over the nodes where contact is enforced
+  double between_nodes_penetration_m = 0.0;  ///< largest over face quadrature points and hanging nodes
+  double equilibrium_rel = 0.0;              ///< |contact + support| / |contact|
+  double volume_change_rel = 0.0;
+};
+
+/// The discrete problem. Not thread-safe; uses `threads` threads inside.
+template <int dim>
+class ContactProblem {
+ public:
+  /// Called after every Newton iteration; may throw to stop.
+  using Watch = std::function<void(int iteration, double residual_rel)>;
+
+  /// @param mirror_x, mirror_y  dim = 3: the mesh is one half of the body on that side
+  ContactProblem(Mesh<dim> mesh, const scene::Material& material, scene::Kinematics kinematics, bool mirror_x,
+                 bool mirror_y, int threads = 2);
+
+  /// Prescribes one displacement component from the next solve on; the support and symmetry planes are there already.
+  /// New places are fixed only before the first solve.
+  void prescribe(int node, int direction, double displacement_m);
+
+  /// The tool's place for the next solve; without a tool nothing touches.
+  void set_tool(const BallTool<dim>& tool) { tool_ = tool; }
+
+  [[nodiscard]] State<dim> rest() const;
+
+  /// Newton from the given state, which is left unfinished when it does not converge. Only stable balances count as
+  /// converged: the last tangent was positive definite.
+  NewtonReport solve(State<dim>& state, const Watch& watch = {});
+
+  [[nodiscard]] Observation observe(const State<dim>& state) const;
+
+  /// Internal nodal forces of a state, hanging nodes' passed on to their masters [N]: the support's force where
+  /// displacement is prescribed, zero elsewhere but for contact.
+  [[nodiscard]] Eigen::Matrix<double, dim, Eigen::Dynamic> internal_forces(const State<dim>& state) const;
+
+  /// True when some point of the free surface is inside the tool at rest.
+  [[nodiscard]] bool tool_reaches_rest_surface() const;
+
+  [[nodiscard]] const Mesh<dim>& mesh() const noexcept { return mesh_; }
+  [[nodiscard]] int unknowns() const noexcept { return unknowns_; }
+  [[nodiscard]] std::string linear_solver() const { return solver_.description(); }
+
+  /// Newton stops when the out-of-balance force is below this share of the acting forces.
+  static constexpr double force_tolerance = 1e-8;
+  static constexpr int largest_iterations = 25;
+
+ private:
+  using Nodal = Eigen::Matrix<double, dim, Eigen::Dynamic>;
+  using Point = Eigen::Matrix<double, dim, 1>;
+  /// du(node, direction) = offset + sum of weight * du(unknown).
+  struct Expansion {
+    double offset_m = 0.0;
+    std::vector<std::pair<int, double>> terms;
+    void clear() {
+      offset_m = 0.0;
+      terms.clear();
+    }
+  };
+  /// One thread's share of a global matrix and right-hand side.
+  struct Lane {
+    std::vector<double> value;
+    std::vector<double> right;
+  };
+  struct Forces {
+    Nodal nodal_n;
+    double volume_error_rel = 0.0;  // largest over cells of |integral psi (J - 1 - p / kappa)| / volume
+    bool admissible = true;         // no cell turned inside out
+  };
+
+  void number_unknowns();
+  void build_pattern();
+  [[nodiscard]] Forces forces(const State<dim>& state) const;
+  [[nodiscard]] Gap<dim> gap(const State<dim>& state, int node) const;
+  void expand(int node, int direction, double weight, Expansion& out) const;
+  /// Adds a symmetric matrix and force on (node, direction) places, all constraints resolved.
+  void scatter(const std::vector<std::pair<int, int>>& places, const double* K, const double* f, Lane& lane) const;
+  /// The same for a cell without hanging, touching or moving prescribed nodes, which is most of them.
+  void scatter_plain(const std::array<int, Mesh<dim>::nodes_per_cell>& cell, const CellResult<dim>& result,
+                     Lane& lane) const;
+  /// Adds a symmetric matrix given by columns, of which the lower triangle is read; unknowns ascending.
+  void add_sorted(const int* unknowns, int count, const double* K, Lane& lane) const;
+  void assemble(const State<dim>& state);
+  void add_curvature();
+  /// Next active set; returns the largest |gap| over touching nodes [m].
+  double update_touching(State<dim>& state, int iteration, bool& changed) const;
+  /// Out-of-balance force and sum of the acting forces [N].
+  [[nodiscard]] std::array<double, 2> residual(const State<dim>& state, const Nodal& forces_n) const;
+
+  Mesh<dim> mesh_;
+  scene::Material material_;
+  scene::Kinematics kinematics_;
+  bool mirror_x_, mirror_y_;
+  int threads_;
+  Element<dim> element_;
+  std::optional<BallTool<dim>> tool_;
+
+  // Per node.
+  std::vector<int> hanging_;         // index into mesh_.hanging or -1
+  Nodal surface_normal_;             // outward at rest, zero away from the free surface
+  std::vector<double> area_m2_;      // share of the free surface; zero: never touches
+  std::vector<int> axis_partner_;    // dim = 2: a node on the axis follows this one in touching; else -1
+  std::vector<int> contact_nodes_;
+  double largest_extent_m_ = 0.0;
+
+  // Per node and direction.
+  std::vector<char> prescribed_;
+  Nodal prescribed_m_;
+  std::vector<int> unknown_;  // number or -1
+  int unknowns_ = 0;
+
+  CholmodSolver solver_;
+  SymmetricMatrix matrix_;
+  std::vector<Lane> lanes_;
+
+  // Of the current Newton iteration.
+  Nodal step_offset_m_;                 // what prescribed components still have to move
+  std::vector<int> eliminated_;         // per node: direction expressed by the others, or -1
+  std::vector<Gap<dim>> gaps_;          // per node
+  std::vector<double> lambda_n_;        // per node
+  std::vector<CellResult<dim>> scratch_;
+  std::vector<typename CellResult<dim>::Coupling> pressure_gain_;  // per cell
+  Eigen::Matrix<double, dim + 1, Eigen::Dynamic> pressure_offset_pa_;
+};
+
+}  // namespace touchstone::reference

@@ -1,0 +1,238 @@
+#include "reference/mesh.h"
+
+#include <deal.II/base/geometry_info.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_tools.h>
+#include <deal.II/fe/mapping_q.h>
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/manifold_lib.h>
+#include <deal.II/grid/tria.h>
+#include <deal.II/lac/affine_constraints.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace touchstone::reference {
+namespace {
+
+constexpr dealii::types::boundary_id id_of(Boundary boundary) {
+  return static_cast<dealii::types::boundary_id>(boundary);
+}
+
+template <int dim>
+Eigen::Matrix<double, dim, 1> to_eigen(const dealii::Point<dim>& p) {
+  Eigen::Matrix<double, dim, 1> x;
+  for (int d = 0; d < dim; ++d) x[d] = p[d];
+  return x;
+}
+
+template <int dim>
+double distance_to(const FineDisc<dim>& disc, const Eigen::Matrix<double, dim, 1>& x) {
+  const Eigen::Matrix<double, dim, 1> from = x - disc.center_m;
+  const double above = from.dot(disc.normal);
+  const double beyond = std::max(0.0, (from - above * disc.normal).norm() - disc.radius_m);
+  return std::hypot(above, beyond);
+}
+
+/// Distance from a cell to a disc: from the nearest point of the cell's bounding box.
+template <int dim, class Cell>
+double distance_to(const FineDisc<dim>& disc, const Cell& cell) {
+  Eigen::Matrix<double, dim, 1> low = to_eigen<dim>(cell->vertex(0)), high = low;
+  for (const unsigned int v : cell->vertex_indices()) {
+    low = low.cwiseMin(to_eigen<dim>(cell->vertex(v)));
+    high = high.cwiseMax(to_eigen<dim>(cell->vertex(v)));
+  }
+  // The box point nearest to the disc's centre is not nearest to the disc, but one projection towards it is.
+  Eigen::Matrix<double, dim, 1> near = disc.center_m.cwiseMax(low).cwiseMin(high);
+  const Eigen::Matrix<double, dim, 1> from = near - disc.center_m;
+  const Eigen::Matrix<double, dim, 1> flat = from - from.dot(disc.normal) * disc.normal;
+  const double length = flat.norm();
+  if (length > disc.radius_m) {
+    const Eigen::Matrix<double, dim, 1> edge = disc.center_m + flat * (disc.radius_m / length);
+    near = edge.cwiseMax(low).cwiseMin(high);
+  }
+  return distance_to(disc, near);
+}
+
+template <int dim>
+void refine(dealii::Triangulation<dim>& grid, const Grading<dim>& grading) {
+  // A cell a hair above the wished size is small enough.
+  constexpr double slack = 1.0 + 1e-6;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto& cell : grid.active_cell_iterators()) {
+      double edge = 0.0;
+      for (unsigned int line = 0; line < dealii::GeometryInfo<dim>::lines_per_cell; ++line) {
+        edge = std::max(edge, cell->line(line)->diameter());
+      }
+      double wished = grading.largest_m;
+      for (const FineDisc<dim>& disc : grading.discs) {
+        wished = std::min(wished, std::max(disc.size_m, grading.growth * distance_to(disc, cell)));
+      }
+      if (edge > slack * wished) {
+        cell->set_refine_flag();
+        changed = true;
+      }
+    }
+    if (changed) grid.execute_coarsening_and_refinement();
+  }
+}
+
+/// Cells along an edge of the coarsest grid: the largest dyadic multiple of `size` that still resolves the body.
+std::vector<unsigned int> coarse_cells(const std::vector<double>& lengths, double size, double largest) {
+  double edge = size;
+  while (2.0 * edge <= largest) edge *= 2.0;
+  std::vector<unsigned int> cells;
+  for (const double length : lengths) cells.push_back(std::max(1u, static_cast<unsigned int>(std::ceil(length / edge - 1e-6))));
+  return cells;
+}
+
+template <int dim>
+double smallest_size(const Grading<dim>& grading) {
+  double size = grading.largest_m;
+  for (const FineDisc<dim>& disc : grading.discs) size = std::min(size, disc.size_m);
+  return size;
+}
+
+/// Plain arrays from a finished grid: one quadratic scalar degree of freedom is one node.
+template <int dim>
+Mesh<dim> to_arrays(const dealii::Triangulation<dim>& grid) {
+  using namespace dealii;
+  using Out = Mesh<dim>;
+  const FE_Q<dim> element(2);
+  DoFHandler<dim> nodes(grid);
+  nodes.distribute_dofs(element);
+  const std::vector<unsigned int> to_lexicographic = FETools::hierarchic_to_lexicographic_numbering<dim>(2);
+  const MappingQ<dim> mapping(2);
+
+  Out mesh;
+  mesh.points_m.resize(dim, nodes.n_dofs());
+  std::vector<types::global_dof_index> indices(Out::nodes_per_cell);
+  for (const auto& cell : nodes.active_cell_iterators()) {
+    cell->get_dof_indices(indices);
+    std::array<int, Out::nodes_per_cell> ordered;
+    for (int a = 0; a < Out::nodes_per_cell; ++a) {
+      ordered[to_lexicographic[a]] = static_cast<int>(indices[a]);
+      mesh.points_m.col(indices[a]) =
+          to_eigen<dim>(mapping.transform_unit_to_real_cell(cell, element.unit_support_point(a)));
+    }
+    mesh.cells.push_back(ordered);
+    for (const unsigned int f : cell->face_indices()) {
+      if (!cell->face(f)->at_boundary()) continue;
+      typename Out::Face face{{}, static_cast<Boundary>(cell->face(f)->boundary_id())};
+      const int axis = static_cast<int>(f) / 2, layer = f % 2 == 0 ? 0 : 2;
+      int next = 0;
+      for (int a = 0; a < Out::nodes_per_cell; ++a) {
+        const int place[3] = {a % 3, a / 3 % 3, a / 9};
+        if (place[axis] == layer) face.nodes[next++] = ordered[a];
+      }
+      mesh.faces.push_back(face);
+    }
+  }
+
+  AffineConstraints<double> constraints;
+  DoFTools::make_hanging_node_constraints(nodes, constraints);
+  constraints.close();
+  for (const auto& line : constraints.get_lines()) {
+    typename Out::Hanging hanging{static_cast<int>(line.index), {}};
+    mesh.points_m.col(hanging.node).setZero();
+    for (const auto& [master, weight] : line.entries) hanging.masters.emplace_back(static_cast<int>(master), weight);
+    mesh.hanging.push_back(std::move(hanging));
+  }
+  for (const auto& hanging : mesh.hanging) {
+    for (const auto& [master, weight] : hanging.masters) {
+      mesh.points_m.col(hanging.node) += weight * mesh.points_m.col(master);
+    }
+  }
+  return mesh;
+}
+
+}  // namespace
+
+Mesh<3> block_mesh(const BlockSpec& spec) {
+  dealii::Triangulation<3> grid;
+  const Eigen::Vector3d size = spec.upper_m - spec.lower_m;
+  const dealii::Point<3> lower(spec.lower_m.x(), spec.lower_m.y(), spec.lower_m.z());
+  const dealii::Point<3> upper(spec.upper_m.x(), spec.upper_m.y(), spec.upper_m.z());
+  dealii::GridGenerator::subdivided_hyper_rectangle(
+      grid, coarse_cells({size.x(), size.y(), size.z()}, smallest_size(spec.grading), spec.grading.largest_m), lower,
+      upper, true);
+  for (const auto& cell : grid.active_cell_iterators()) {
+    for (const unsigned int f : cell->face_indices()) {
+      if (!cell->face(f)->at_boundary()) continue;
+      Boundary boundary = Boundary::free;
+      if (f == 0 && spec.symmetric_x) boundary = Boundary::plane_x;
+      if (f == 2 && spec.symmetric_y) boundary = Boundary::plane_y;
+      if (f == 4) boundary = Boundary::held;
+      cell->face(f)->set_all_boundary_ids(id_of(boundary));
+    }
+  }
+  refine(grid, spec.grading);
+  return to_arrays(grid);
+}
+
+Mesh<2> cylinder_mesh(const CylinderSpec& spec) {
+  dealii::Triangulation<2> grid;
+  dealii::GridGenerator::subdivided_hyper_rectangle(
+      grid, coarse_cells({spec.radius_m, spec.height_m}, smallest_size(spec.grading), spec.grading.largest_m),
+      dealii::Point<2>(0.0, 0.0), dealii::Point<2>(spec.radius_m, spec.height_m), true);
+  for (const auto& cell : grid.active_cell_iterators()) {
+    for (const unsigned int f : cell->face_indices()) {
+      if (!cell->face(f)->at_boundary()) continue;
+      cell->face(f)->set_boundary_id(
+          id_of(f == 0 ? Boundary::plane_x : (f == 2 ? Boundary::held : Boundary::free)));
+    }
+  }
+  refine(grid, spec.grading);
+  return to_arrays(grid);
+}
+
+Mesh<2> ball_mesh(const BallSpec& spec) {
+  const double R = spec.radius_m;
+  // Polar angle from the top. Outer vertices: top, half-way, the support's edge, bottom; inner ones half as far out.
+  const double support = std::acos(std::clamp((spec.support_height_m - R) / R, -1.0, 1.0));
+  const double polar[4] = {0.0, 0.5 * support, support, std::numbers::pi};
+  const dealii::Point<2> center(0.0, R);
+  std::vector<dealii::Point<2>> vertices;
+  for (const double share : {1.0, 0.5}) {
+    for (const double angle : polar) {
+      vertices.emplace_back(share * R * std::sin(angle), R + share * R * std::cos(angle));
+    }
+    vertices[vertices.size() - 4][0] = vertices.back()[0] = 0.0;  // exactly on the axis
+  }
+  // Right-handed in (r, z).
+  const auto cell = [](unsigned int v00, unsigned int v10, unsigned int v01, unsigned int v11) {
+    dealii::CellData<2> data;
+    data.vertices = {v00, v10, v01, v11};
+    return data;
+  };
+  std::vector<dealii::CellData<2>> cells{cell(7, 6, 4, 5), cell(4, 5, 0, 1), cell(6, 2, 5, 1),
+                                               cell(3, 2, 7, 6)};
+  // Refinement relies on both cells at an edge running it the same way.
+  dealii::GridTools::consistently_order_cells(cells);
+  dealii::Triangulation<2> grid;
+  grid.create_triangulation(vertices, cells, dealii::SubCellData());
+  for (const auto& active : grid.active_cell_iterators()) {
+    for (const unsigned int f : active->face_indices()) {
+      const auto face = active->face(f);
+      if (!face->at_boundary()) continue;
+      const dealii::Point<2> middle = face->center();
+      if (std::abs(middle[0]) < 1e-12 * R) {
+        face->set_boundary_id(id_of(Boundary::plane_x));
+        continue;
+      }
+      const double angle = std::atan2(middle[0], middle[1] - R);
+      face->set_boundary_id(id_of(angle > support ? Boundary::held : Boundary::free));
+      face->set_manifold_id(1);
+    }
+  }
+  grid.set_manifold(1, dealii::SphericalManifold<2>(center));
+  refine(grid, spec.grading);
+  return to_arrays(grid);
+}
+
+}  // namespace touchstone::reference

@@ -1,0 +1,432 @@
+#include "reference/solver.h"
+
+#include "reference/contact_problem.h"
+#include "reference/load_path.h"
+#include "reference/model_choice.h"
+#include "reference/sampling.h"
+#include "reference/store.h"
+#include "reference/uncertainty.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iomanip>
+#include <iterator>
+#include <numeric>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+namespace touchstone::reference {
+namespace {
+
+using scene::Scene;
+using Clock = std::chrono::steady_clock;
+
+/// Raised with every change of method that moves a result; results of other versions are then not found.
+constexpr const char* method_version = "touchstone reference 1: Q2-P1disc u-p, primal-dual active set";
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+std::string identity_text(const Scene& scene) {
+  std::ostringstream text;
+  text << std::setprecision(17) << method_version << '\n';
+  if (scene.body.shape == scene::BodyShape::box) {
+    text << "body box " << scene.body.size_m.transpose() << '\n';
+  } else {
+    text << "body sphere " << scene.body.radius_m << " held below " << scene.body.support_height_m << '\n';
+  }
+  text << "E " << scene.body.material.youngs_modulus_pa << " nu " << scene.body.material.poissons_ratio << '\n'
+       << "tool sphere " << scene.tool.radius_m << '\n'
+       << "kinematics " << (scene.reference.kinematics == scene::Kinematics::finite ? "finite" : "small") << " levels "
+       << scene.reference.levels << " element "
+       << (scene.reference.element_size_m ? std::to_string(*scene.reference.element_size_m * 1e9) + " nm" : "automatic")
+       << '\n';
+  for (const double time_s : scene::instants_s(scene)) {
+    text << "instant " << time_s << " tool at " << scene::pose_at(scene.track, time_s).position_m.transpose() << '\n';
+  }
+  return text.str();
+}
+
+/// What is kept of one solved instant besides its state.
+struct Step {
+  Observation seen;
+  int unknowns = 0;
+  int newton_iterations = 0;
+  int halvings = 0;
+  int indefinite = 0;
+  double wall_s = 0.0;
+  std::string linear_solver;
+};
+
+template <int dim>
+Record to_record(const Solved<dim>& solved, const Step& step) {
+  Record record;
+  record.put(solved.time_s);
+  record.put(solved.touching ? 1 : 0);
+  record.put(static_cast<int>(solved.state.u_m.cols()));
+  record.put(static_cast<int>(solved.state.p_pa.cols()));
+  record.put(solved.state.u_m.data(), static_cast<std::size_t>(solved.state.u_m.size()));
+  record.put(solved.state.p_pa.data(), static_cast<std::size_t>(solved.state.p_pa.size()));
+  record.put(solved.state.touching.data(), solved.state.touching.size());
+  record.put(step.seen.force_n.data(), 3);
+  record.put(step.seen.torque_nm.data(), 3);
+  record.put(step.seen.support_force_n.data(), 3);
+  for (const double value : {step.seen.area_m2, step.seen.contact_radius_m, step.seen.node_penetration_m,
+                             step.seen.between_nodes_penetration_m, step.seen.equilibrium_rel,
+                             step.seen.volume_change_rel, step.wall_s}) {
+    record.put(value);
+  }
+  for (const int value : {step.unknowns, step.newton_iterations, step.halvings, step.indefinite}) record.put(value);
+  record.put(std::string_view(step.linear_solver));
+  return record;
+}
+
+/// @returns nothing when the record does not belong to this mesh
+template <int dim>
+std::optional<std::pair<Solved<dim>, Step>> from_record(Record record, const Mesh<dim>& mesh) {
+  try {
+    std::pair<Solved<dim>, Step> result;
+    auto& [solved, step] = result;
+    solved.time_s = record.take_double();
+    solved.touching = record.take_int() != 0;
+    if (record.take_int() != mesh.node_count() || record.take_int() != mesh.cell_count()) return std::nullopt;
+    solved.state.u_m.resize(dim, mesh.node_count());
+    solved.state.p_pa.resize(dim + 1, mesh.cell_count());
+    solved.state.touching.resize(mesh.node_count());
+    record.take(solved.state.u_m.data(), static_cast<std::size_t>(solved.state.u_m.size()));
+    record.take(solved.state.p_pa.data(), static_cast<std::size_t>(solved.state.p_pa.size()));
+    record.take(solved.state.touching.data(), solved.state.touching.size());
+    record.take(step.seen.force_n.data(), 3);
+    record.take(step.seen.torque_nm.data(), 3);
+    record.take(step.seen.support_force_n.data(), 3);
+    for (double* value : {&step.seen.area_m2, &step.seen.contact_radius_m, &step.seen.node_penetration_m,
+                          &step.seen.between_nodes_penetration_m, &step.seen.equilibrium_rel,
+                          &step.seen.volume_change_rel, &step.wall_s}) {
+      *value = record.take_double();
+    }
+    for (int* value : {&step.unknowns, &step.newton_iterations, &step.halvings, &step.indefinite}) {
+      *value = record.take_int();
+    }
+    step.linear_solver = record.take_text();
+    if (!record.at_end()) return std::nullopt;
+    return result;
+  } catch (const std::out_of_range&) {
+    return std::nullopt;
+  }
+}
+
+/// Time left from the cost of the steps solved in this run. A step's cost is taken to grow like unknowns^1.7, between
+/// assembly (1) and the factorisation in three dimensions (2).
+class Estimate {
+ public:
+  explicit Estimate(double work) : work_left_(work) {}
+  static double work_of(double unknowns) { return std::pow(unknowns, 1.7); }
+  void solved(double work, double seconds) {
+    work_left_ -= work;
+    work_done_ += work;
+    seconds_ += seconds;
+  }
+  void found(double work) { work_left_ -= work; }
+  /// @param seconds_in_step  already spent on the step under way
+  [[nodiscard]] double seconds_left(double seconds_in_step) const {
+    if (work_done_ <= 0.0) return -1.0;
+    return std::max(0.0, work_left_ * seconds_ / work_done_ - seconds_in_step);
+  }
+
+ private:
+  double work_left_, work_done_ = 0.0, seconds_ = 0.0;
+};
+
+template <int dim>
+std::optional<BallTool<dim>> tool_at(const Scene& scene, const scene::Shape& body, double time_s) {
+  const scene::Pose pose = scene::pose_at(scene.track, time_s);
+  if (scene::rest_depth_m(body, scene.tool, pose) <= 0.0) return std::nullopt;
+  if constexpr (dim == 3) {
+    return BallTool<3>{scene.tool.radius_m, pose.position_m};
+  } else {
+    return BallTool<2>{scene.tool.radius_m, {0.0, pose.position_m.z()}};
+  }
+}
+
+template <int dim>
+Mesh<dim> level_mesh(const Scene& scene, const ModelChoice& choice, int level) {
+  if constexpr (dim == 3) {
+    return box_level(scene, choice, level);
+  } else {
+    return ball_level(scene, level);
+  }
+}
+
+/// One scene being answered. Levels and instants count from zero here, from one in everything shown.
+template <int dim>
+class Run {
+ public:
+  Run(const Scene& scene, const ModelChoice& choice, const Eigen::Matrix3Xd& rest_points_m, const Options& options)
+      : scene_(scene),
+        choice_(choice),
+        options_(options),
+        body_(scene::body_shape(scene.body)),
+        times_s_(scene::instants_s(scene)),
+        levels_(scene.reference.levels) {
+    double work = 0.0;
+    for (int level = 0; level < levels_; ++level) {
+      meshes_.push_back(level_mesh<dim>(scene, choice, level));
+      samplers_.emplace_back(meshes_.back(), rest_points_m, choice.mirror_x, choice.mirror_y);
+      for (const double time_s : times_s_) work += work_at(level, time_s);
+    }
+    estimate_.emplace(work);
+  }
+
+  Result answer() {
+    const std::string identity = identity_text(scene_);
+    Store store(options_.store, identity, [&] {
+      show({.instants = count(), .note = "another run is solving this scene; waiting for it"});
+      check_stop();
+    });
+    Result result;
+    result.model = choice_.name(scene_.reference.kinematics);
+    result.key = Store::key(identity);
+    result.from_store = true;
+
+    std::vector<std::vector<double>> forces_n;
+    std::vector<std::vector<Eigen::Matrix3Xd>> displacements_m;
+    for (int level = 0; level < levels_; ++level) {
+      std::vector<Step> steps;
+      std::vector<Eigen::Matrix3Xd> shapes;
+      solve_level(level, store, steps, shapes, result.from_store);
+      LevelRecord record;
+      record.element_size_m = element_size_m(scene_, level);
+      for (const Step& step : steps) {
+        record.unknowns = std::max(record.unknowns, step.unknowns);
+        record.newton_iterations += step.newton_iterations;
+        record.steps_cut += step.halvings;
+        record.wall_s += step.wall_s;
+        record.force_n.push_back(step.seen.force_n.norm());
+        if (!step.linear_solver.empty()) result.linear_solver = step.linear_solver;
+      }
+      forces_n.push_back(record.force_n);
+      result.levels.push_back(std::move(record));
+      displacements_m.push_back(std::move(shapes));
+      if (level + 1 == levels_) finish(steps, displacements_m.back(), result);
+    }
+    result.force_uncertainty_n = force_band(forces_n);
+    result.displacement_uncertainty_m = displacement_band(displacements_m);
+    if (result.from_store) show({.level = levels_, .instant = count(), .instants = count(), .note = "from the store"});
+    return result;
+  }
+
+ private:
+  [[nodiscard]] int count() const { return static_cast<int>(times_s_.size()); }
+
+  [[nodiscard]] double depth_m(double time_s) const {
+    return scene::rest_depth_m(*body_, scene_.tool, scene::pose_at(scene_.track, time_s));
+  }
+
+  [[nodiscard]] double work_at(int level, double time_s) const {
+    return depth_m(time_s) > 0.0 ? Estimate::work_of(dim * meshes_[level].node_count()) : 0.0;
+  }
+
+  void check_stop() const {
+    if (options_.stop && options_.stop->load()) {
+      throw Interrupted("interrupted; every finished load step is in the store and the next run goes on from there");
+    }
+  }
+
+  void show(Progress progress) const {
+    progress.levels = levels_;
+    if (options_.progress) options_.progress(progress);
+  }
+
+  /// Reads what the store has and solves the rest, in track order.
+  void solve_level(int level, const Store& store, std::vector<Step>& steps, std::vector<Eigen::Matrix3Xd>& shapes,
+                   bool& all_stored) {
+    const Mesh<dim>& mesh = meshes_[level];
+    std::optional<ContactProblem<dim>> problem;  // only when something has to be solved
+    std::optional<Solved<dim>> before, current;
+    for (int instant = 0; instant < count(); ++instant) {
+      const double time_s = times_s_[instant];
+      check_stop();
+      std::optional<std::pair<Solved<dim>, Step>> found;
+      if (std::optional<Record> record = store.read(level, instant)) found = from_record<dim>(std::move(*record), mesh);
+      if (found) {
+        estimate_->found(work_at(level, time_s));
+      } else {
+        std::string note;
+        if (instant > 0 && !problem && all_stored) note = "resumed at instant " + std::to_string(instant + 1);
+        all_stored = false;
+        if (!problem) {
+          problem.emplace(mesh, scene_.body.material, scene_.reference.kinematics, choice_.mirror_x, choice_.mirror_y);
+        }
+        if (!note.empty()) show({.level = level + 1, .instant = instant + 1, .instants = count(), .note = note});
+        found = solve_instant(*problem, level, instant, before, current);
+        store.write(level, instant, to_record(found->first, found->second));
+        estimate_->solved(work_at(level, time_s), found->second.wall_s);
+        show({.level = level + 1,
+              .instant = instant + 1,
+              .instants = count(),
+              .depth_m = depth_m(time_s),
+              .newton = found->second.newton_iterations,
+              .unknowns = found->second.unknowns,
+              .seconds_left = estimate_->seconds_left(0.0),
+              .step_finished = true});
+      }
+      shapes.push_back(samplers_[level].displacement_m(found->first.state.u_m));
+      steps.push_back(std::move(found->second));
+      before = std::move(current);
+      current = std::move(found->first);
+    }
+  }
+
+  std::pair<Solved<dim>, Step> solve_instant(ContactProblem<dim>& problem, int level, int instant,
+                                             const std::optional<Solved<dim>>& before,
+                                             const std::optional<Solved<dim>>& current) {
+    const double time_s = times_s_[instant];
+    const Clock::time_point begin = Clock::now();
+    std::pair<Solved<dim>, Step> result{{time_s, problem.rest(), false}, {}};
+    auto& [solved, step] = result;
+    step.unknowns = problem.unknowns();
+    Progress progress{.level = level + 1,
+                      .instant = instant + 1,
+                      .instants = count(),
+                      .depth_m = depth_m(time_s),
+                      .unknowns = problem.unknowns()};
+    LoadPath<dim> path(problem, [&](double t) { return tool_at<dim>(scene_, *body_, t); });
+    // A track that starts in contact is entered from rest, a moment before its first instant.
+    const double lead_s = times_s_.size() > 1 ? times_s_[1] - times_s_[0] : 1.0;
+    const Solved<dim> from = current ? *current : Solved<dim>{time_s - lead_s, problem.rest(), false};
+    const AdvanceReport report = path.advance(
+        before ? &*before : nullptr, from, time_s, solved,
+        [&](int iteration, double residual_rel) {
+          progress.newton = iteration;
+          progress.residual_rel = residual_rel;
+          progress.seconds_left = estimate_->seconds_left(seconds_since(begin));
+          show(progress);
+          check_stop();
+        },
+        [&](double failed_s) {
+          std::ostringstream note;
+          note << "load step halved at t = " << failed_s << " s";
+          Progress halved = progress;
+          halved.note = note.str();
+          show(halved);
+        });
+    if (!report.converged) throw NotConverged(not_converged_text(level, instant, report));
+    if (solved.touching) {
+      step.seen = problem.observe(solved.state);
+      step.linear_solver = problem.linear_solver();
+    }
+    step.newton_iterations = report.newton_iterations;
+    step.halvings = report.halvings;
+    step.indefinite = report.indefinite;
+    step.wall_s = seconds_since(begin);
+    return result;
+  }
+
+  [[nodiscard]] std::string not_converged_text(int level, int instant, const AdvanceReport& report) const {
+    std::ostringstream text;
+    text << "instant " << instant + 1 << " of " << count() << " (t = " << times_s_[instant] << " s, depth "
+         << depth_m(times_s_[instant]) << " m) did not converge on level " << level + 1 << ": " << report.last.trouble
+         << ", residual " << report.last.residual_rel << " of the acting forces (asked: "
+         << ContactProblem<dim>::force_tolerance << "), stuck at t = " << report.stuck_time_s << " s after "
+         << report.halvings << " halvings. Finished steps are kept. Try a smaller reference.element_size_m (now "
+         << element_size_m(scene_, 0) << " m on the coarsest level), more instants, or less depth.";
+    return text.str();
+  }
+
+  /// The finest level's records.
+  void finish(const std::vector<Step>& steps, const std::vector<Eigen::Matrix3Xd>& shapes, Result& result) const {
+    int indefinite = 0;
+    for (int instant = 0; instant < count(); ++instant) {
+      const Observation& seen = steps[instant].seen;
+      scene::InstantRecord record;
+      record.time_s = times_s_[instant];
+      record.tool = scene::pose_at(scene_.track, record.time_s);
+      record.depth_m = depth_m(record.time_s);
+      record.support_force_n = seen.support_force_n;
+      record.displacement_m = shapes[instant];
+      if (record.depth_m > 0.0) record.regions.push_back({record.depth_m, seen.force_n, seen.torque_nm, seen.area_m2});
+      result.instants.push_back(std::move(record));
+      result.residual_penetration_m.push_back(seen.node_penetration_m);
+      result.between_nodes_penetration_m.push_back(seen.between_nodes_penetration_m);
+      result.equilibrium_rel.push_back(seen.equilibrium_rel);
+      result.volume_change_rel.push_back(seen.volume_change_rel);
+      indefinite += steps[instant].indefinite;
+    }
+    if (indefinite > 0) {
+      result.linear_solver += "; " + std::to_string(indefinite) +
+                              " tangents were not positive definite and went without the tool's curvature or to UMFPACK";
+    }
+  }
+
+  const Scene& scene_;
+  ModelChoice choice_;
+  const Options& options_;
+  std::unique_ptr<const scene::Shape> body_;
+  std::vector<double> times_s_;
+  int levels_;
+  std::vector<Mesh<dim>> meshes_;
+  std::vector<SurfaceSampler<dim>> samplers_;
+  std::optional<Estimate> estimate_;
+};
+
+/// Displacement unknowns of a level, without counting the few prescribed ones out.
+std::string expected_unknowns(const Scene& scene, const ModelChoice& choice, int level) {
+  const int nodes = choice.dim == 2 ? static_cast<int>(ball_level(scene, level).node_count())
+                                    : static_cast<int>(box_level(scene, choice, level).node_count());
+  return "at most " + std::to_string(choice.dim * nodes) + " displacement unknowns";
+}
+
+}  // namespace
+
+std::vector<scene::Fault> unsupported(const Scene& scene) { return unsupported_parts(scene); }
+
+std::string content_key(const Scene& scene) { return Store::key(identity_text(scene)); }
+
+scene::Plan plan(const Scene& scene) {
+  const ModelChoice choice = choose_model(scene);
+  const bool box = scene.body.shape == scene::BodyShape::box;
+  const int mirrors = (choice.mirror_x ? 1 : 0) + (choice.mirror_y ? 1 : 0);
+  scene::Plan plan;
+  const auto add = [&](const char* part, bool modelled, const std::string& reason, const std::string& cost = {}) {
+    plan.push_back({part, modelled, reason, cost});
+  };
+  if (!box) {
+    add("axial symmetry", true, "ball on the axis of a ball: one meridian plane is the whole body");
+  } else if (mirrors > 0) {
+    add(mirrors == 2 ? "quarter symmetry" : "half symmetry", true,
+        mirrors == 2 ? "box, tool and track lie on both symmetry planes" : "box, tool and track lie on one symmetry plane",
+        mirrors == 2 ? "a quarter of the unknowns" : "half of the unknowns");
+  } else {
+    add("symmetry", false, "the track leaves both symmetry planes of the box", "the full box is meshed");
+  }
+  const bool finite = scene.reference.kinematics == scene::Kinematics::finite;
+  add("finite strain", finite,
+      finite ? "neo-Hookean, deformed geometry in contact" : "reference.kinematics is \"small\": linear elasticity, gap along the rest normal");
+  std::ostringstream nu;
+  nu << "nu = " << scene.body.material.poissons_ratio << "; "
+     << (scene.body.material.poissons_ratio == 0.5 ? "incompressible, the pressure keeps the volume"
+                                                   : "the same mixed element serves every nu, so nothing locks");
+  add("pressure unknowns", true, nu.str(), "eliminated cell by cell, none in the global matrix");
+  add("friction", false, "the scene has none");
+  add("several contact regions", false, "a ball on a convex body touches it once");
+  add("inclusions", false, "the body is of one material");
+  add("uncertainty", scene.reference.levels >= 3,
+      scene.reference.levels >= 3 ? "from " + std::to_string(scene.reference.levels) + " refinement levels"
+                                  : "fewer than three levels: unknown, reported as infinite");
+  for (int level = 0; level < scene.reference.levels; ++level) {
+    std::ostringstream size;
+    size << "cells of " << element_size_m(scene, level) << " m at the deepest contact's rim";
+    add(("level " + std::to_string(level + 1)).c_str(), true, size.str(), expected_unknowns(scene, choice, level));
+  }
+  return plan;
+}
+
+Result solve(const Scene& scene, const Eigen::Matrix3Xd& rest_points_m, const Options& options) {
+  if (std::vector<scene::Fault> faults = unsupported(scene); !faults.empty()) throw scene::InputError(std::move(faults));
+  const ModelChoice choice = choose_model(scene);
+  if (choice.dim == 2) return Run<2>(scene, choice, rest_points_m, options).answer();
+  return Run<3>(scene, choice, rest_points_m, options).answer();
+}
+
+}  // namespace touchstone::reference

@@ -1,0 +1,90 @@
+// The offline reference: finite-strain contact of a rigid tool with an elastic body, with an
+// uncertainty on every number. This header is free of deal.II; see the .cc files for the method.
+#pragma once
+
+#include "scene/error.h"
+#include "scene/plan.h"
+#include "scene/record.h"
+#include "scene/scene.h"
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace touchstone::reference {
+
+/// One line of progress: a Newton iteration or a finished load step.
+struct Progress {
+  int level = 0, levels = 0;      ///< 1-based refinement level
+  int instant = 0, instants = 0;  ///< 1-based track instant being solved
+  double depth_m = 0.0;
+  int newton = 0;             ///< iteration within the load step
+  double residual_rel = 0.0;  ///< Newton residual over its scale
+  int unknowns = 0;
+  double seconds_left = 0.0;   ///< estimate for all levels; negative while unknown
+  bool step_finished = false;  ///< true once per finished load step, after it is on disk
+  std::string note{};                ///< "load step halved", "resumed at instant 7", "from the store"; usually empty
+};
+
+struct Options {
+  std::filesystem::path store;                    ///< folder of content-addressed results; made when missing
+  std::function<void(const Progress&)> progress;  ///< may be empty
+  const std::atomic<bool>* stop = nullptr;        ///< when it becomes true: throw Interrupted, losing no finished step
+};
+
+/// What one mesh of the refinement sequence gave.
+struct LevelRecord {
+  double element_size_m = 0.0;  ///< under the tool
+  int unknowns = 0;             ///< displacement unknowns
+  int newton_iterations = 0;    ///< all load steps
+  int steps_cut = 0;            ///< load steps halved on the way
+  double wall_s = 0.0;          ///< when it was solved, also if it now comes from the store
+  std::vector<double> force_n;  ///< magnitude of the contact force per instant
+};
+
+/// Answer for one scene; `instants` is the finest level's.
+struct Result {
+  std::string model;          ///< "quarter 3D u-p finite strain"
+  std::string key;            ///< content address in the store
+  std::string linear_solver;  ///< with the BLAS it ran on
+  std::vector<scene::InstantRecord> instants;
+  std::vector<double> force_uncertainty_n;                  ///< per instant, conservative half width
+  std::vector<Eigen::VectorXd> displacement_uncertainty_m;  ///< per instant, per rest point
+  std::vector<double> residual_penetration_m;               ///< per instant, largest over contact nodes
+  std::vector<double> between_nodes_penetration_m;          ///< per instant, largest over face quadrature points
+  std::vector<double> equilibrium_rel;                      ///< per instant, |contact + support| / |contact|
+  std::vector<double> volume_change_rel;                    ///< per instant, of the body
+  std::vector<LevelRecord> levels;
+  bool from_store = false;  ///< nothing had to be solved
+};
+
+/// A load step that could not converge even after cutting; names the instant, the residual, what to try.
+class NotConverged : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Options::stop was raised; every finished step is in the store.
+class Interrupted : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What this solver will model for the scene. Cheap: nothing is solved.
+[[nodiscard]] scene::Plan plan(const scene::Scene& scene);
+
+/// What of the scene this solver cannot do; empty when it can. solve() throws InputError with these.
+[[nodiscard]] std::vector<scene::Fault> unsupported(const scene::Scene& scene);
+
+/// Content address of the scene's reference result: everything that changes the answer, nothing else.
+[[nodiscard]] std::string content_key(const scene::Scene& scene);
+
+/// Solves, resumes or reads back.
+/// @param rest_points_m  points of the rest surface at which displacement is wanted, 3 x n, world frame
+/// @throws InputError, NotConverged, Interrupted, std::filesystem::filesystem_error
+[[nodiscard]] Result solve(const scene::Scene& scene, const Eigen::Matrix3Xd& rest_points_m, const Options& options);
+
+}  // namespace touchstone::reference

@@ -1,0 +1,79 @@
+// Results on disk, addressed by content: one folder per scene answer, one checked file per finished load step.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace touchstone::reference {
+
+/// Bytes of one load step, appended and taken in the same order.
+class Record {
+ public:
+  Record() = default;
+  explicit Record(std::string bytes) : bytes_(std::move(bytes)) {}
+
+  void put(double value) { append(&value, sizeof value); }
+  void put(int value) { append(&value, sizeof value); }
+  void put(std::string_view text);
+  /// Any contiguous range of plain numbers; its length is not stored.
+  template <class Number>
+  void put(const Number* values, std::size_t count) {
+    append(values, count * sizeof(Number));
+  }
+
+  /// @throws std::out_of_range when the record ends too early, for all of these
+  [[nodiscard]] double take_double();
+  [[nodiscard]] int take_int();
+  [[nodiscard]] std::string take_text();
+  template <class Number>
+  void take(Number* values, std::size_t count) {
+    extract(values, count * sizeof(Number));
+  }
+  [[nodiscard]] bool at_end() const noexcept { return place_ == bytes_.size(); }
+  [[nodiscard]] const std::string& bytes() const noexcept { return bytes_; }
+
+ private:
+  void append(const void* data, std::size_t size);
+  void extract(void* data, std::size_t size);
+  std::string bytes_;
+  std::size_t place_ = 0;
+};
+
+/// The folder of one answer. Holding an object of this class holds the folder's lock: a second process waits.
+class Store {
+ public:
+  /// @param identity  everything that changes the answer, as text; the folder is named by its hash
+  /// @param waiting   called about five times a second while another process holds the lock; may throw to give up
+  /// @throws std::filesystem::filesystem_error
+  template <class Waiting>
+  Store(const std::filesystem::path& root, const std::string& identity, const Waiting& waiting)
+      : Store(root, identity) {
+    while (!try_lock()) waiting();
+  }
+  ~Store();
+  Store(const Store&) = delete;
+  Store& operator=(const Store&) = delete;
+
+  /// Folder name for an identity: XXH3, 128 bits, hexadecimal.
+  [[nodiscard]] static std::string key(const std::string& identity);
+
+  /// Writes a finished step so that it is either whole or absent, whatever happens: to a temporary file, to the disk,
+  /// then under its name. @throws std::filesystem::filesystem_error
+  void write(int level, int instant, const Record& record) const;
+
+  /// The step, or nothing when it is missing, torn or altered; a damaged file is removed.
+  [[nodiscard]] std::optional<Record> read(int level, int instant) const;
+
+  [[nodiscard]] std::filesystem::path step_file(int level, int instant) const;
+
+ private:
+  Store(const std::filesystem::path& root, const std::string& identity);
+  [[nodiscard]] bool try_lock();
+  std::filesystem::path folder_;
+  int lock_ = -1;
+};
+
+}  // namespace touchstone::reference

@@ -1,0 +1,66 @@
+#include "compare/picture.h"
+
+#include "synthetic.h"
+#include "xml.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <regex>
+
+namespace touchstone::compare {
+namespace {
+
+TEST(Picture, IsWellFormedAndSmallAtTheDefaultSize) {
+  const testing::Sides sides = testing::pressed(3);
+  for (const std::string& svg : {half_cut_svg(sides.scene, sides.run, sides.result, 2),
+                                 section_svg(sides.scene, sides.run, sides.result, 2, 0.0),
+                                 section_svg(sides.scene, sides.run, sides.result, 2, 0.014)}) {
+    EXPECT_TRUE(testing::is_well_formed(svg));
+    EXPECT_FALSE(testing::shows_not_a_number(svg));
+    EXPECT_LT(svg.size(), 1'500'000u);
+  }
+}
+
+TEST(Picture, ShowsBothSidesAndTheErrorOnOneBodyEach) {
+  const testing::Sides sides = testing::pressed(3, 600);
+  const std::string svg = half_cut_svg(sides.scene, sides.run, sides.result, 2);
+  for (const char* title : {">Reference<", ">Fast model<", ">Error, on the reference's shape<"}) {
+    EXPECT_NE(svg.find(title), std::string::npos) << title;
+  }
+  std::size_t cuts = 0;
+  for (std::size_t at = svg.find("#e9e6df"); at != std::string::npos; at = svg.find("#e9e6df", at + 1)) ++cuts;
+  EXPECT_EQ(cuts, 3u);
+}
+
+TEST(Picture, AndItsScaleSurviveAFastModelGoneWild) {
+  testing::Sides sides = testing::pressed(3, 600);
+  sides.run.instants[2].displacement_m *= 0.5;
+  const std::string before = half_cut_svg(sides.scene, sides.run, sides.result, 2);
+  EXPECT_EQ(before.find("last colour also stands for more"), std::string::npos);
+  sides.run.instants[2].displacement_m *= 50.0;
+  // Broken places on the cut and off it.
+  Eigen::Index on_cut = 0;
+  sides.run.surface.points_m.row(1).cwiseAbs().minCoeff(&on_cut);
+  sides.run.instants[2].displacement_m(0, on_cut) = std::numeric_limits<double>::quiet_NaN();
+  sides.run.instants[2].displacement_m(0, 7) = std::numeric_limits<double>::quiet_NaN();
+  const std::string svg = half_cut_svg(sides.scene, sides.run, sides.result, 2);
+  EXPECT_TRUE(testing::is_well_formed(svg));
+  EXPECT_FALSE(testing::shows_not_a_number(svg));
+  EXPECT_NE(svg.find("last colour also stands for more"), std::string::npos);
+  // The reference's panel is what it was: its own displacement sets the scale.
+  const std::size_t panel = svg.find("<g stroke-width"), end = svg.find("</g>", panel);
+  EXPECT_EQ(svg.substr(panel, end - panel), before.substr(panel, end - panel));
+  EXPECT_FALSE(testing::shows_not_a_number(section_svg(sides.scene, sides.run, sides.result, 2, 0.0)));
+}
+
+TEST(Picture, OfABodyAtRest) {
+  const testing::Sides sides = testing::pressed(3, 600);
+  const std::string svg = half_cut_svg(sides.scene, sides.run, sides.result, 0);
+  EXPECT_TRUE(testing::is_well_formed(svg));
+  EXPECT_FALSE(testing::shows_not_a_number(svg));
+  EXPECT_FALSE(std::regex_search(svg, std::regex("fill=\"#(?![0-9a-f]{6}\")"))) << "not a colour";
+}
+
+}  // namespace
+}  // namespace touchstone::compare

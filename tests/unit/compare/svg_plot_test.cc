@@ -1,0 +1,123 @@
+#include "compare/svg_plot.h"
+
+#include "xml.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <regex>
+
+namespace touchstone::compare {
+namespace {
+
+const double nan_value = std::numeric_limits<double>::quiet_NaN();
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+/// Centres of the round markers, in drawing order.
+std::vector<std::pair<double, double>> circles(const std::string& svg) {
+  static const std::regex pattern("<circle cx=\"([-0-9.]+)\" cy=\"([-0-9.]+)\" r=\"3\" fill=\"[^\"]*\"><title>");
+  std::vector<std::pair<double, double>> found;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), pattern), end; it != end; ++it) {
+    found.emplace_back(std::stod((*it)[1]), std::stod((*it)[2]));
+  }
+  return found;
+}
+
+Plot line(std::vector<double> x, std::vector<double> y) {
+  Plot plot;
+  plot.title = "a < b & \"c\"";
+  plot.x_label = "depth [mm]";
+  plot.y_label = "force [N]";
+  plot.curves.push_back({"one", Look::reference, std::move(x), std::move(y)});
+  return plot;
+}
+
+TEST(SvgPlot, TicksAreRoundAndInside) {
+  EXPECT_EQ(nice_ticks(0.0, 5.0, 5), (std::vector<double>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(nice_ticks(0.0, 170.0, 6), (std::vector<double>{0, 50, 100, 150}));
+  for (const double tick : nice_ticks(-3.3, 8.1, 7)) {
+    EXPECT_GE(tick, -3.3);
+    EXPECT_LE(tick, 8.1);
+  }
+}
+
+TEST(SvgPlot, IsWellFormedWithTitleUnitsLegendAndTips) {
+  Plot plot = line({0, 1, 2}, {0, 10, 40});
+  plot.bands.push_back({"band", Look::reference, {0, 1, 2}, {0, 9, 38}, {0, 11, 42}});
+  const std::string svg = to_svg(plot);
+  EXPECT_TRUE(testing::is_well_formed(svg));
+  EXPECT_NE(svg.find("a &lt; b &amp; &quot;c&quot;"), std::string::npos);
+  EXPECT_NE(svg.find("depth [mm]"), std::string::npos);
+  EXPECT_NE(svg.find("force [N]"), std::string::npos);
+  EXPECT_NE(svg.find(">one</text>"), std::string::npos);
+  EXPECT_NE(svg.find(">band</text>"), std::string::npos);
+  EXPECT_NE(svg.find("<title>one | depth [mm]: 2; force [N]: 40</title>"), std::string::npos);
+  EXPECT_EQ(count(svg, "<polygon"), 1u);
+}
+
+TEST(SvgPlot, PlacesPointsInProportion) {
+  const auto at = circles(to_svg(line({0, 1, 4}, {0, 5, 20})));
+  ASSERT_EQ(at.size(), 3u);
+  EXPECT_NEAR((at[1].first - at[0].first) * 4, at[2].first - at[0].first, 0.5);
+  EXPECT_NEAR((at[1].second - at[0].second) * 4, at[2].second - at[0].second, 0.5);
+  EXPECT_GT(at[2].first, at[0].first);
+  EXPECT_LT(at[2].second, at[0].second);
+}
+
+TEST(SvgPlot, MakesAPowerLawStraightOnLogarithmicAxes) {
+  Plot plot = line({0, 1, 10, 100}, {0, 2, 200, 20000});
+  plot.x_log = plot.y_log = true;
+  const auto at = circles(to_svg(plot));
+  ASSERT_EQ(at.size(), 3u);  // the point at zero cannot be shown
+  EXPECT_NEAR(at[2].first - at[1].first, at[1].first - at[0].first, 0.2);
+  EXPECT_NEAR(at[2].second - at[1].second, at[1].second - at[0].second, 0.2);
+}
+
+TEST(SvgPlot, InterruptsALineAtWhatIsNotFinite) {
+  const std::string svg = to_svg(line({0, 1, 2, 3, 4}, {1, 2, nan_value, 3, std::numeric_limits<double>::infinity()}));
+  EXPECT_FALSE(testing::shows_not_a_number(svg));
+  EXPECT_EQ(circles(svg).size(), 3u);
+  std::smatch path;
+  ASSERT_TRUE(std::regex_search(svg, path, std::regex("<path d=\"([^\"]*)\"")));
+  EXPECT_EQ(count(path[1], "M"), 2u);
+}
+
+TEST(SvgPlot, RangeIsThatOfThePointsShown) {
+  // A point without a y must not stretch x.
+  const auto with = circles(to_svg(line({1, 2, 1000}, {1, 2, nan_value})));
+  const auto without = circles(to_svg(line({1, 2}, {1, 2})));
+  EXPECT_EQ(with, without);
+}
+
+TEST(SvgPlot, SaysWhenThereIsNothingToShow) {
+  for (const Plot& plot : {Plot{}, line({}, {}), line({1, 2}, {nan_value, nan_value})}) {
+    const std::string svg = to_svg(plot);
+    EXPECT_TRUE(testing::is_well_formed(svg));
+    EXPECT_NE(svg.find("nothing to show"), std::string::npos);
+  }
+}
+
+TEST(SvgPlot, SurvivesConstantAndSinglePoints) {
+  for (const Plot& plot : {line({1}, {1}), line({0}, {0}), line({1, 2}, {5, 5}), line({1, 1}, {0, 0})}) {
+    const std::string svg = to_svg(plot);
+    EXPECT_TRUE(testing::is_well_formed(svg));
+    EXPECT_FALSE(testing::shows_not_a_number(svg));
+  }
+}
+
+TEST(SvgPlot, DrawsToOneScaleWhenAsked) {
+  Plot plot = line({0, 1, 0}, {0, 0, 1});
+  plot.same_scale = true;
+  const auto at = circles(to_svg(plot, 700, 300));
+  ASSERT_EQ(at.size(), 3u);
+  EXPECT_NEAR(at[1].first - at[0].first, at[0].second - at[2].second, 0.2);
+}
+
+}  // namespace
+}  // namespace touchstone::compare

@@ -1,0 +1,49 @@
+#include "compare/text.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+namespace touchstone::compare {
+namespace {
+
+const std::string no_break = "\u00a0";
+
+TEST(Text, NumbersHaveThreeDigits) {
+  EXPECT_EQ(number_text(0.0), "0");
+  EXPECT_EQ(number_text(0.33994), "0.34");
+  EXPECT_EQ(number_text(169.7), "170");
+  EXPECT_EQ(number_text(9.999), "10");
+  EXPECT_EQ(number_text(3952.0), "3952");
+  EXPECT_EQ(number_text(275200.0), "275\u2009200");
+  EXPECT_EQ(number_text(3.0e8), "3 × 10⁸");
+  EXPECT_EQ(number_text(-1.4e-6), "−1.4 × 10⁻⁶");
+  EXPECT_EQ(number_text(-77.82), "−77.8");
+  EXPECT_EQ(number_text(169.74, 5), "169.74");
+}
+
+TEST(Text, WhatIsNotFiniteIsSaid) {
+  EXPECT_EQ(number_text(std::numeric_limits<double>::quiet_NaN()), "not finite");
+  EXPECT_EQ(percent_text(std::numeric_limits<double>::infinity()), "not finite");
+  EXPECT_EQ(quantity_text(std::numeric_limits<double>::quiet_NaN(), "m"), "not finite");
+}
+
+TEST(Text, QuantitiesAreScaledToAHandyUnit) {
+  EXPECT_EQ(quantity_text(0.005, "m"), "5" + no_break + "mm");
+  EXPECT_EQ(quantity_text(0.0005, "m"), "0.5" + no_break + "mm");
+  EXPECT_EQ(quantity_text(5.01e-5, "m"), "50.1" + no_break + "µm");
+  EXPECT_EQ(quantity_text(319.2, "s"), "5.32" + no_break + "min");
+  EXPECT_EQ(quantity_text(11.24, "us"), "11.2" + no_break + "µs");
+  EXPECT_EQ(quantity_text(3.4e6, "byte"), "3.4" + no_break + "MB");
+  EXPECT_EQ(quantity_text(37.7, "N"), "37.7" + no_break + "N");
+  EXPECT_EQ(quantity_text(5.2e-18, "m"), "0" + no_break + "mm");
+  EXPECT_EQ(quantity_text(0.0, "N"), "0" + no_break + "N");
+  EXPECT_EQ(quantity_text(0.9964, ""), "99.6" + no_break + "%");
+  EXPECT_EQ(quantity_text(std::nullopt, "m", "none"), "none");
+}
+
+TEST(Text, IsEscapedForMarkup) { EXPECT_EQ(escape_xml("a<b>&\"c\"\x01"), "a&lt;b&gt;&amp;&quot;c&quot;"); }
+
+}  // namespace
+}  // namespace touchstone::compare

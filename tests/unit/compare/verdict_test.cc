@@ -1,0 +1,143 @@
+#include "compare/verdict.h"
+
+#include "synthetic.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace touchstone::compare {
+namespace {
+
+using testing::set_force;
+
+/// All paragraphs in one line, ordinary spaces.
+std::string told(const testing::Sides& sides) {
+  std::string text;
+  for (const std::string& paragraph :
+       verdict(sides.scene, sides.run, sides.result, compute_errors(sides.scene, sides.run, sides.result))) {
+    text += paragraph + "\n";
+  }
+  for (std::size_t at = text.find("\u00a0"); at != std::string::npos; at = text.find("\u00a0"))
+    text.replace(at, 2, " ");
+  return text;
+}
+
+bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(Verdict, HertzIsFourThirdsOfTheContactModulus) {
+  scene::Scene scene = testing::ball_on_cube(2, 8);
+  EXPECT_NEAR(hertz_force_n(scene, 0.001), 4.0 / 3.0 * 4.0e6 * 0.1 * std::pow(0.001, 1.5), 1e-9);
+  scene.body.shape = scene::BodyShape::sphere;
+  scene.body.radius_m = 0.030;
+  EXPECT_NEAR(hertz_force_n(scene, 0.001), 4.0 / 3.0 * 4.0e6 * std::sqrt(0.0075) * std::pow(0.001, 1.5), 1e-9);
+}
+
+TEST(Verdict, SaysHowWrongTheForceIsAndWhy) {
+  const std::string text = told(testing::pressed(23, 200));
+  EXPECT_TRUE(says(text,
+                   "The fast model's force at the deepest instant (5 mm deep) is 77.8 % too low: 37.7 N against the "
+                   "reference's 170 N ± 3.4 N."))
+      << text;
+  EXPECT_TRUE(says(text, "contact constants do not describe its material")) << text;
+  EXPECT_TRUE(says(text, "gives 37.7 N at D = 5 mm")) << text;
+  EXPECT_TRUE(says(text, "gives about 189 N")) << text;
+  EXPECT_TRUE(says(text, "the paper's Table I for rubber")) << text;
+  EXPECT_TRUE(says(text, "no single factor would put it right")) << text;
+  EXPECT_TRUE(says(text, "5.32 min for 23 instants on 3 meshes")) << text;
+}
+
+TEST(Verdict, GivesNoReasonTheNumbersDoNotGive) {
+  testing::Sides sides = testing::pressed(5, 200);
+  // Constants that fit the material, and a force off by a constant factor.
+  sides.scene.contact.k1_n_per_m = hertz_force_n(sides.scene, 0.005) / 0.005;
+  sides.scene.contact.k3_n_per_m3 = 0.0;
+  for (std::size_t t = 0; t < 5; ++t) {
+    if (!sides.result.instants[t].regions.empty()) {
+      set_force(sides.run.instants[t], 0.8 * sides.result.instants[t].force_n());
+    }
+  }
+  const std::string text = told(sides);
+  EXPECT_TRUE(says(text, "20 % too low")) << text;
+  EXPECT_FALSE(says(text, "Reason")) << text;
+  EXPECT_FALSE(says(text, "Table I")) << text;
+  EXPECT_FALSE(says(text, "single factor")) << text;
+}
+
+TEST(Verdict, OtherConstantsAreNotCalledThePapers) {
+  testing::Sides sides = testing::pressed(5, 200);
+  sides.scene.contact.k1_n_per_m = 41.0;
+  const std::string text = told(sides);
+  EXPECT_TRUE(says(text, "Reason")) << text;
+  EXPECT_FALSE(says(text, "Table I")) << text;
+}
+
+TEST(Verdict, CallsAnErrorWithinTheBandNotDistinguishable) {
+  testing::Sides sides = testing::pressed(5, 200);
+  for (std::size_t t = 0; t < 5; ++t) {
+    sides.run.instants[t] = sides.result.instants[t];
+    if (!sides.run.instants[t].regions.empty()) sides.run.instants[t].regions[0].force_n *= 1.01;
+    sides.run.instants[t].displacement_m *= 1.005;
+  }
+  const std::string text = told(sides);
+  EXPECT_TRUE(says(text, "is not distinguishable from the reference's")) << text;
+  EXPECT_TRUE(says(text, "The deformed shapes are not distinguishable")) << text;
+  EXPECT_FALSE(says(text, "too high")) << text;
+  EXPECT_FALSE(says(text, "Reason")) << text;
+}
+
+TEST(Verdict, DoesNotTakeAnUnknownBandForAnExcuse) {
+  testing::Sides sides = testing::pressed(5, 200);
+  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::infinity());
+  for (Eigen::VectorXd& u : sides.result.displacement_uncertainty_m) {
+    u.setConstant(std::numeric_limits<double>::infinity());
+  }
+  const std::string text = told(sides);
+  EXPECT_FALSE(says(text, "not distinguishable")) << text;
+  EXPECT_TRUE(says(text, "170 N (uncertainty unknown)")) << text;
+  EXPECT_TRUE(says(text, "the reference does not know its own uncertainty")) << text;
+}
+
+TEST(Verdict, SaysTooHighAndHowManyTimes) {
+  testing::Sides sides = testing::pressed(5, 200);
+  set_force(sides.run.instants[4], 1.25 * sides.result.instants[4].force_n());
+  EXPECT_TRUE(says(told(sides), "25 % too high")) << told(sides);
+  set_force(sides.run.instants[4], 3.0 * sides.result.instants[4].force_n());
+  EXPECT_TRUE(says(told(sides), "is 3 times the reference's")) << told(sides);
+}
+
+TEST(Verdict, NoticesAForceInTheWrongDirection) {
+  testing::Sides sides = testing::pressed(5, 200);
+  const double size_n = sides.result.instants[4].force_n().norm();
+  set_force(sides.run.instants[4], 1.05 * size_n * scene::Vec3(1.0, 0.0, 1.0).normalized());
+  EXPECT_TRUE(says(told(sides), "Mostly its direction is wrong")) << told(sides);
+}
+
+TEST(Verdict, NoticesASurfaceLeftInsideTheTool) {
+  testing::Sides sides = testing::pressed(5, 200);
+  for (std::size_t t = 0; t < 5; ++t) sides.run.instants[t].displacement_m = sides.result.instants[t].displacement_m;
+  EXPECT_FALSE(says(told(sides), "left inside")) << told(sides);
+  for (std::size_t t = 0; t < 5; ++t) sides.run.instants[t].displacement_m.setZero();
+  EXPECT_TRUE(says(told(sides), "is left inside it by up to 100 % of the depth")) << told(sides);
+}
+
+TEST(Verdict, SaysWhenTheForceIsLessThanTheLawAtTheDepth) {
+  testing::Sides sides = testing::pressed(5, 200);
+  EXPECT_FALSE(says(told(sides), "mean depth")) << told(sides);
+  set_force(sides.run.instants[4], scene::Vec3(0.0, 0.0, 17.5));
+  EXPECT_TRUE(says(told(sides), "Its force is 17.5 N, less than the law's at D")) << told(sides);
+}
+
+TEST(Verdict, WithoutContactSaysSo) {
+  testing::Sides sides = testing::small();
+  for (std::size_t t = 0; t < 2; ++t) {
+    sides.run.instants[t].depth_m = sides.result.instants[t].depth_m = 0.0;
+  }
+  EXPECT_TRUE(says(told(sides), "never touches the body")) << told(sides);
+  set_force(sides.run.instants[1], scene::Vec3(0.0, 0.0, 2.0));
+  EXPECT_TRUE(says(told(sides), "Yet the fast model reports a force of up to 2 N")) << told(sides);
+}
+
+}  // namespace
+}  // namespace touchstone::compare

@@ -1,0 +1,81 @@
+// Closed forms that the solvers are held against, each with its range and source. SI units; the tool is rigid.
+#pragma once
+
+#include <cmath>
+
+namespace touchstone::verification {
+
+/// E / (1 - nu^2): modulus of contact with a rigid tool [Pa].
+inline double contact_modulus_pa(double youngs_modulus_pa, double poissons_ratio) {
+  return youngs_modulus_pa / (1.0 - poissons_ratio * poissons_ratio);
+}
+
+/// Force of a contact and the radius of its edge.
+struct Indentation {
+  double force_n = 0.0;
+  double contact_radius_m = 0.0;
+};
+
+/// Hertz: paraboloid of end radius R on a half space, F = 4/3 E* sqrt(R) d^(3/2), a = sqrt(R d). A ball for a << R.
+/// K. L. Johnson, Contact Mechanics (1985), 4.22-4.24.
+inline Indentation hertz(double E_star_pa, double R_m, double d_m) {
+  return {4.0 / 3.0 * E_star_pa * std::sqrt(R_m) * std::pow(d_m, 1.5), std::sqrt(R_m * d_m)};
+}
+
+/// Largest pressure of Hertz's contact, 3 F / (2 pi a^2) [Pa].
+inline double hertz_peak_pressure_pa(const Indentation& contact) {
+  return 1.5 * contact.force_n / (M_PI * contact.contact_radius_m * contact.contact_radius_m);
+}
+
+/// Sneddon: the ball itself on a half space in small strain, d = (a/2) ln((R+a)/(R-a)),
+/// F = E* [ (a^2 + R^2)/2 ln((R+a)/(R-a)) - a R ]. I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47-57.
+/// @param a_m  contact radius, below R
+inline double sneddon_depth_m(double R_m, double a_m) { return a_m * std::atanh(a_m / R_m); }
+inline double sneddon_force_n(double E_star_pa, double R_m, double a_m) {
+  return E_star_pa * ((a_m * a_m + R_m * R_m) * std::atanh(a_m / R_m) - a_m * R_m);
+}
+/// The same by depth, a found by Newton's method.
+inline Indentation sneddon(double E_star_pa, double R_m, double d_m) {
+  double a_m = std::sqrt(R_m * d_m / (1.0 + d_m / R_m));  // below the root, inside the domain
+  for (int k = 0; k < 50; ++k) {
+    const double slope = std::atanh(a_m / R_m) + a_m * R_m / (R_m * R_m - a_m * a_m);
+    double next_m = a_m - (sneddon_depth_m(R_m, a_m) - d_m) / slope;
+    if (next_m >= R_m) next_m = 0.5 * (a_m + R_m);
+    if (std::abs(next_m - a_m) <= 1e-15 * R_m) break;
+    a_m = next_m;
+  }
+  return {sneddon_force_n(E_star_pa, R_m, a_m), a_m};
+}
+
+/// Incompressible neo-Hookean bar: force over rest area at stretch lam, P = mu (lam - lam^-2); negative in compression.
+/// Laterally free, P = lam sigma_1 / lam with sigma_1 - sigma_2 = mu (lam^2 - 1/lam) and sigma_2 = 0.
+inline double neo_hookean_bar_pa(double mu_pa, double lam) { return mu_pa * (lam - 1.0 / (lam * lam)); }
+
+/// Inflation of a thick incompressible neo-Hookean sphere, inner radius A, outer B, outside free: inner pressure at inner
+/// stretch la, p = 2 mu [1/lb - 1/la + (lb^-4 - la^-4) / 4], lb^3 = 1 + (la^3 - 1)(A/B)^3.
+/// A. E. Green, W. Zerna, Theoretical Elasticity (1968), 3.10; from dp/dlam = 2 mu (lam^-2 + lam^-5) between la and lb.
+inline double thick_sphere_pressure_pa(double mu_pa, double A_m, double B_m, double la) {
+  const double lb = std::cbrt(1.0 + (la * la * la - 1.0) * std::pow(A_m / B_m, 3));
+  return 2.0 * mu_pa * (1.0 / lb - 1.0 / la + 0.25 * (std::pow(lb, -4) - std::pow(la, -4)));
+}
+
+/// Where the incompressible sphere's material radius R goes, r^3 = R^3 + (la^3 - 1) A^3.
+inline double thick_sphere_radius_m(double A_m, double la, double R_m) {
+  return std::cbrt(R_m * R_m * R_m + (la * la * la - 1.0) * A_m * A_m * A_m);
+}
+
+/// Tip deflection of a cantilever of length l under a tip force F, stiffness E2 I2 on la < x < lb and E1 I1 elsewhere,
+/// x from the fixed end: F [ (l^3/3 - k) / (E1 I1) + k / (E2 I2) ], k = ((l - la)^3 - (l - lb)^3) / 3, because the
+/// bending moment F (l - x) works once more along the same line (unit load). S. Timoshenko, Strength of Materials I.
+inline double cantilever_tip_m(double F_n, double l_m, double E1I1_nm2, double E2I2_nm2 = 1.0, double la_m = 0.0,
+                               double lb_m = 0.0) {
+  const double k = (std::pow(l_m - la_m, 3) - std::pow(l_m - lb_m, 3)) / 3.0;
+  return F_n * ((l_m * l_m * l_m / 3.0 - k) / E1I1_nm2 + k / E2I2_nm2);
+}
+
+/// Order p of an error that behaves like h^p, from two meshes whose cell sizes differ by `ratio`.
+inline double observed_order(double coarse_error, double fine_error, double ratio = 2.0) {
+  return std::log(coarse_error / fine_error) / std::log(ratio);
+}
+
+}  // namespace touchstone::verification
