@@ -25,8 +25,8 @@ struct RegionSize {
 [[nodiscard]] double local_factor_published(const LocalConstants&, const RegionSize&, double r_m) noexcept;
 
 /// Errata E16: n is replaced by max(1, A / A_0) with A_0 = pi C_r^2, a contact no larger than the core being a point;
-/// the area's part fades to 1 at r_R, where the rest is 1 already; never negative. It acts on every point of R, so
-/// that no edge appears at the rim of the contact.
+/// the area's part fades to 1 at r_R, where the rest is 1 already; never negative. Contact points keep their
+/// displacement, and the factor sets in over one core radius outside their rim, so that no edge appears there.
 [[nodiscard]] double local_factor_corrected(const LocalConstants&, const RegionSize&, double r_m) noexcept;
 
 /// Multiplies the displacement of every vertex with r < r_R, r its rest distance from p0.

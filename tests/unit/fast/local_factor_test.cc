@@ -37,14 +37,17 @@ TEST(LocalFactor, PublishedTurnsNegativeForALargeStrength) {
   EXPECT_LT(local_factor_published({0.6, 0.002, 0.015}, {1, 0.0}, 1e-6), 0.0);
 }
 
-TEST(LocalFactor, CorrectedMeetsTheSurroundings) {
-  for (const double area_m2 : {0.0, 1e-5, 1e-4}) {
-    const RegionSize region{37, area_m2};
+TEST(LocalFactor, CorrectedSparesContactPointsAndHasNoEdge) {
+  for (const double rim : {0.0, 0.003, 0.006}) {
+    const RegionSize region{37, std::numbers::pi * rim * rim};
+    EXPECT_NEAR(local_factor_corrected(constants, region, rim), 1.0, 1e-12);
+    EXPECT_NEAR(local_factor_corrected(constants, region, 0.5 * rim), 1.0, 1e-12);
     EXPECT_NEAR(local_factor_corrected(constants, region, 0.015), 1.0, 1e-12);
-    double before = 0.0;
-    for (int i = 0; i <= 100; ++i) {
-      const double w = local_factor_corrected(constants, region, 0.015 * i / 100.0);
-      EXPECT_GE(w, before);
+    EXPECT_LT(local_factor_corrected(constants, region, rim + 0.002), 0.9);
+    double before = 1.0;
+    for (int i = 0; i <= 1000; ++i) {
+      const double w = local_factor_corrected(constants, region, 0.015 * i / 1000.0);
+      EXPECT_NEAR(w, before, 0.01);
       EXPECT_LE(w, 1.0);
       before = w;
     }
@@ -53,11 +56,14 @@ TEST(LocalFactor, CorrectedMeetsTheSurroundings) {
 
 TEST(LocalFactor, CorrectedHangsOnTheAreaAndNotOnTheSamples) {
   const double A_0 = std::numbers::pi * 0.002 * 0.002;
-  EXPECT_EQ(local_factor_corrected(constants, {10, 1e-4}, 0.004),
-            local_factor_corrected(constants, {1000, 1e-4}, 0.004));
-  EXPECT_EQ(local_factor_corrected(constants, {10, 0.5 * A_0}, 0.0), 1.0 + 0.2 * std::log(0.002 / 0.017));
-  EXPECT_NEAR(local_factor_corrected(constants, {10, e * A_0}, 0.0), 0.5 * (1.0 + 0.2 * std::log(0.002 / 0.017)),
+  EXPECT_EQ(local_factor_corrected(constants, {10, 1e-4}, 0.009),
+            local_factor_corrected(constants, {1000, 1e-4}, 0.009));
+  // Both radii are more than a core outside the rim.
+  const double small = 0.004, large = 0.006, t = large / 0.015, fade = t * t * (3.0 - 2.0 * t);
+  EXPECT_NEAR(local_factor_corrected(constants, {10, 0.5 * A_0}, small), 1.0 + 0.2 * std::log((small + 0.002) / 0.017),
               1e-15);
+  EXPECT_NEAR(local_factor_corrected(constants, {10, e * A_0}, large),
+              (0.5 + 0.5 * fade) * (1.0 + 0.2 * std::log((large + 0.002) / 0.017)), 1e-15);
 }
 
 TEST(LocalFactor, CorrectedIsNeverNegative) {
