@@ -88,7 +88,7 @@ Plot force_plot(const Errors& errors, const std::string& title, const std::strin
   plot.y_label = "force on the tool [N]";
   Band band{"reference's uncertainty", Look::reference, x, {}, {}};
   for (const InstantErrors& e : errors.instants) {
-    band.low.push_back(e.force_reference_n - e.force_uncertainty_n);
+    band.low.push_back(std::max(0.0, e.force_reference_n - e.force_uncertainty_n));
     band.high.push_back(e.force_reference_n + e.force_uncertainty_n);
   }
   plot.bands.push_back(std::move(band));

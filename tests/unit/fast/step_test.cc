@@ -4,9 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 #include <limits>
+#include <numeric>
 
 namespace touchstone::fast {
 namespace {
@@ -114,7 +113,7 @@ TEST(Step, NoLocalFactorWithoutStrength) {
               0.2 * without.state.region.displacement_m);
   EXPECT_EQ(with.top_displacement_m(), without.top_displacement_m());
   const auto sum = [](const std::vector<float>& column) { return std::accumulate(column.begin(), column.end(), 0.0); };
-  EXPECT_GT(sum(with.state.field.displacement_m[2]), 0.98 * sum(without.state.field.displacement_m[2]));
+  EXPECT_GT(sum(with.state.field.displacement_m[2]), 0.99 * sum(without.state.field.displacement_m[2]));
 }
 
 TEST(Step, FormulationsDiffer) {
