@@ -2,6 +2,7 @@
 
 #include "compare/figures.h"
 #include "compare/report.h"
+#include "compare/text.h"
 #include "compare/verdict.h"
 #include "compare/vtk_out.h"
 
@@ -39,7 +40,8 @@ Comparison write_comparison(const std::filesystem::path& folder, const scene::Sc
   const Errors errors = compute_errors(scene, run, result);
   const Plans plans{fast::plan(scene), reference::plan(scene)};
   Comparison comparison{make_figures(errors, run, result), ""};
-  for (const std::string& paragraph : verdict(scene, run, result, errors)) comparison.text += paragraph + "\n";
+  for (const std::string& paragraph : verdict(scene, run, result, errors))
+    comparison.text += wrapped(paragraph) + "\n\n";
   scene::write_csv(folder / "curve.csv", curve_columns(run, result, errors));
   write_surfaces(folder, run, result, errors);
   scene::write_summary(folder / "summary.json", comparison.figures);

@@ -23,7 +23,7 @@ struct Plans {
 /// What is left to say on the terminal once the folder is written.
 struct Comparison {
   scene::Figures figures;  ///< what summary.json holds
-  std::string text;        ///< the verdict, one paragraph per line
+  std::string text;        ///< the verdict, paragraphs wrapped for a terminal
 };
 
 /// Compares and writes the whole folder, which must exist.

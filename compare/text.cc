@@ -11,7 +11,6 @@ namespace touchstone::compare {
 namespace {
 
 /// Keeps a number and its unit on one line.
-const std::string no_break = "\u00a0";
 
 const std::string minus = "−";
 
@@ -79,15 +78,17 @@ std::string number_text(double value, int digits) {
 
 std::string percent_text(double ratio) {
   if (!std::isfinite(ratio)) return "not finite";
-  return number_text(100.0 * ratio) + no_break + "%";
+  return fmt::format("{}{}%", number_text(100.0 * ratio), no_break);
 }
 
 std::string quantity_text(double value, std::string_view unit) {
   if (!std::isfinite(value)) return "not finite";
   if (unit.empty()) return percent_text(value);
-  if (std::abs(value) < rounding) return "0" + no_break + std::string(unit == "m" ? "mm" : unit == "us" ? "µs" : unit);
+  if (std::abs(value) < rounding) {
+    return fmt::format("0{}{}", no_break, unit == "m" ? "mm" : unit == "us" ? "µs" : unit);
+  }
   const std::span<const Scale> known = scales(unit);
-  if (known.empty()) return number_text(value) + no_break + std::string(unit);
+  if (known.empty()) return fmt::format("{}{}{}", number_text(value), no_break, unit);
   const Scale* best = &known.back();
   for (const Scale& scale : known) {
     if (std::abs(value) >= scale.from * scale.factor) {
@@ -95,11 +96,36 @@ std::string quantity_text(double value, std::string_view unit) {
       break;
     }
   }
-  return number_text(value / best->factor) + no_break + std::string(best->name);
+  return fmt::format("{}{}{}", number_text(value / best->factor), no_break, best->name);
 }
 
 std::string quantity_text(const std::optional<double>& value, std::string_view unit, std::string_view absent) {
   return value ? quantity_text(*value, unit) : std::string(absent);
+}
+
+std::string wrapped(std::string_view text, std::size_t width) {
+  // Bytes that continue a UTF-8 character take no place.
+  const auto places = [](std::string_view word) {
+    return static_cast<std::size_t>(std::count_if(word.begin(), word.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+  };
+  std::string out;
+  std::size_t column = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::string_view word = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const std::size_t length = places(word);
+    if (column > 0 && column + 1 + length > width) {
+      out += '\n';
+      column = 0;
+    } else if (column > 0) {
+      out += ' ';
+      ++column;
+    }
+    out += word;
+    column += length;
+  }
+  return out;
 }
 
 std::string escape_xml(std::string_view text) {

@@ -7,6 +7,9 @@
 
 namespace touchstone::compare {
 
+/// Between a number and its unit, so that no line ends there.
+inline constexpr std::string_view no_break = "\u00a0";
+
 /// Three significant digits: "0.34", "170", "21 600", "3 × 10⁸"; "not finite" for NaN and infinity.
 [[nodiscard]] std::string number_text(double value, int digits = 3);
 
@@ -20,6 +23,9 @@ namespace touchstone::compare {
 /// The same, or a word for an absent value.
 [[nodiscard]] std::string quantity_text(const std::optional<double>& value, std::string_view unit,
                                         std::string_view absent);
+
+/// Broken into lines of at most `width` characters at spaces.
+[[nodiscard]] std::string wrapped(std::string_view text, std::size_t width = 100);
 
 /// For text and attributes of HTML, SVG and XML.
 [[nodiscard]] std::string escape_xml(std::string_view text);

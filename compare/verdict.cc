@@ -24,9 +24,11 @@ constexpr double large_penetration_share = 0.1;
 
 std::string newtons(double force_n) { return quantity_text(force_n, "N"); }
 
+/// "169.6 N ± 0.2 N": the value to the digit its uncertainty leaves.
 std::string with_band(double force_n, double band_n) {
   if (!std::isfinite(band_n)) return newtons(force_n) + " (uncertainty unknown)";
-  return fmt::format("{} ± {}", newtons(force_n), quantity_text(band_n, "N"));
+  const int decimals = band_n > 0.0 ? std::clamp(-static_cast<int>(std::floor(std::log10(band_n))), 0, 6) : 3;
+  return fmt::format("{:.{}f}{}N ± {:.{}f}{}N", force_n, decimals, no_break, band_n, decimals, no_break);
 }
 
 /// "78 % too low", "2.5 times too high".

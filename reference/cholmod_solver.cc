@@ -110,10 +110,9 @@ bool CholmodSolver::solve_indefinite(const SymmetricMatrix& matrix, std::vector<
     }
   }
   void *symbolic = nullptr, *numeric = nullptr;
-  bool solved = umfpack_dl_symbolic(n, n, begin.data(), row.data(), value.data(), &symbolic, nullptr, nullptr) ==
-                    UMFPACK_OK &&
-                umfpack_dl_numeric(begin.data(), row.data(), value.data(), symbolic, &numeric, nullptr, nullptr) ==
-                    UMFPACK_OK;
+  bool solved =
+      umfpack_dl_symbolic(n, n, begin.data(), row.data(), value.data(), &symbolic, nullptr, nullptr) == UMFPACK_OK &&
+      umfpack_dl_numeric(begin.data(), row.data(), value.data(), symbolic, &numeric, nullptr, nullptr) == UMFPACK_OK;
   if (solved) {
     const std::vector<double> right = x;
     solved = umfpack_dl_solve(UMFPACK_A, begin.data(), row.data(), value.data(), x.data(), right.data(), numeric,

@@ -424,9 +424,8 @@ double ContactProblem<dim>::update_touching(State<dim>& state, int iteration, bo
   std::vector<char> next(state.touching.size(), 0);
   for (const int node : contact_nodes_) {
     const double g_m = gaps_[node].value_m;
-    const bool touches = state.touching[node]
-                             ? lambda_n_[node] / area_m2_[node] - c_pa_per_m * g_m > -tolerated_pull_pa
-                             : g_m < 0.0;
+    const bool touches =
+        state.touching[node] ? lambda_n_[node] / area_m2_[node] - c_pa_per_m * g_m > -tolerated_pull_pa : g_m < 0.0;
     next[node] = touches ? 1 : 0;
   }
   if constexpr (dim == 2) {
@@ -510,7 +509,8 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     if (watch) watch(iteration, report.residual_rel);
     if (!changed && report.residual_rel < force_tolerance && open_m < gap_tolerance * length_m &&
         current.volume_error_rel < volume_tolerance && still_to_move_m <= place_tolerance * largest_extent_m_) {
-      // A balance whose tangent is indefinite is one the body would leave: a large step can end there, small ones do not.
+      // A balance whose tangent is indefinite is one the body would leave: a large step can end there, small ones do
+      // not.
       report.converged = last_definite;
       if (!last_definite) report.trouble = "the balance found is not stable";
       return report;
@@ -683,8 +683,8 @@ Observation ContactProblem<dim>::observe(const State<dim>& state) const {
 
   // Contact area. The edge is placed between nodes with the field that any frictionless contact has at its edge:
   // pressure A sqrt(s) inside and opening (4 A / 3 E*) s^(3/2) outside, s the distance from the edge (the half-plane
-  // solution; K. L. Johnson, Contact Mechanics (1985), 5.1). A is Hertz's, (2 E* / pi R) sqrt(2 a); only the ratio of the
-  // two sides matters. The nodal field s, positive inside, is then cut linearly on the deformed surface.
+  // solution; K. L. Johnson, Contact Mechanics (1985), 5.1). A is Hertz's, (2 E* / pi R) sqrt(2 a); only the ratio of
+  // the two sides matters. The nodal field s, positive inside, is then cut linearly on the deformed surface.
   const double E_star_pa = material_.contact_modulus_pa();
   const double a_m = std::sqrt(images * touching_area_m2 / std::numbers::pi);
   const double A = 2.0 * E_star_pa / (std::numbers::pi * tool_->radius_m) * std::sqrt(2.0 * a_m);
@@ -724,9 +724,11 @@ Observation ContactProblem<dim>::observe(const State<dim>& state) const {
         seen.contact_radius_m = std::max({seen.contact_radius_m, x0[0], x1[0]});
       }
     } else {
-      // Four quarters of two triangles each; of each the part with s > 0.
+      // Four quarters, each cut along either diagonal and averaged, which keeps mirror images equal; of each triangle
+      // the part with s > 0.
       for (const int corner : {0, 1, 3, 4}) {
-        const std::array<std::array<int, 3>, 2> triangles{{{corner, corner + 1, corner + 4}, {corner, corner + 4, corner + 3}}};
+        const int c00 = corner, c10 = corner + 1, c01 = corner + 3, c11 = corner + 4;
+        const int triangles[4][3] = {{c00, c10, c11}, {c00, c11, c01}, {c00, c10, c01}, {c10, c11, c01}};
         for (const auto& triangle : triangles) {
           std::vector<Point> polygon;
           for (int k = 0; k < 3; ++k) {
@@ -737,8 +739,8 @@ Observation ContactProblem<dim>::observe(const State<dim>& state) const {
             }
           }
           for (std::size_t k = 2; k < polygon.size(); ++k) {
-            seen.area_m2 +=
-                0.5 * images * Eigen::Vector3d(polygon[k - 1] - polygon[0]).cross(Eigen::Vector3d(polygon[k] - polygon[0])).norm();
+            const Eigen::Vector3d side1 = polygon[k - 1] - polygon[0], side2 = polygon[k] - polygon[0];
+            seen.area_m2 += 0.5 * images * 0.5 * side1.cross(side2).norm();
           }
         }
       }
@@ -758,8 +760,7 @@ Observation ContactProblem<dim>::observe(const State<dim>& state) const {
   }
   for (const auto& hanging : mesh_.hanging) {
     if (surface_normal_.col(hanging.node).isZero(0.0)) continue;
-    seen.between_nodes_penetration_m =
-        std::max(seen.between_nodes_penetration_m, -gap(state, hanging.node).value_m);
+    seen.between_nodes_penetration_m = std::max(seen.between_nodes_penetration_m, -gap(state, hanging.node).value_m);
   }
   return seen;
 }

@@ -14,9 +14,9 @@
 #include "reference/cholmod_solver.h"
 #include "reference/element.h"
 #include "reference/mesh.h"
+#include "reference/tool_gap.h"
 #include "scene/frames.h"
 #include "scene/scene.h"
-#include "reference/tool_gap.h"
 
 #include <Eigen/Core>
 
@@ -49,11 +49,11 @@ struct Observation {
   scene::Vec3 force_n = scene::Vec3::Zero();          ///< on the tool, sum of the contact pressures
   scene::Vec3 torque_nm = scene::Vec3::Zero();        ///< on the tool, about its centre
   scene::Vec3 support_force_n = scene::Vec3::Zero();  ///< of the support on the body
-  double area_m2 = 0.0;                      ///< of contact, on the deformed surface
-  double contact_radius_m = 0.0;             ///< bodies of revolution only: of the contact's edge
-  double node_penetration_m = 0.0;           ///< largest over the nodes where contact is enforced
-  double between_nodes_penetration_m = 0.0;  ///< largest over face quadrature points and hanging nodes
-  double equilibrium_rel = 0.0;              ///< |contact + support| / |contact|
+  double area_m2 = 0.0;                               ///< of contact, on the deformed surface
+  double contact_radius_m = 0.0;                      ///< bodies of revolution only: of the contact's edge
+  double node_penetration_m = 0.0;                    ///< largest over the nodes where contact is enforced
+  double between_nodes_penetration_m = 0.0;           ///< largest over face quadrature points and hanging nodes
+  double equilibrium_rel = 0.0;                       ///< |contact + support| / |contact|
   double volume_change_rel = 0.0;
 };
 
@@ -149,10 +149,10 @@ class ContactProblem {
   std::optional<BallTool<dim>> tool_;
 
   // Per node.
-  std::vector<int> hanging_;         // index into mesh_.hanging or -1
-  Nodal surface_normal_;             // outward at rest, zero away from the free surface
-  std::vector<double> area_m2_;      // share of the free surface; zero: never touches
-  std::vector<int> axis_partner_;    // dim = 2: a node on the axis follows this one in touching; else -1
+  std::vector<int> hanging_;       // index into mesh_.hanging or -1
+  Nodal surface_normal_;           // outward at rest, zero away from the free surface
+  std::vector<double> area_m2_;    // share of the free surface; zero: never touches
+  std::vector<int> axis_partner_;  // dim = 2: a node on the axis follows this one in touching; else -1
   std::vector<int> contact_nodes_;
   double largest_extent_m_ = 0.0;
 
@@ -167,10 +167,10 @@ class ContactProblem {
   std::vector<Lane> lanes_;
 
   // Of the current Newton iteration.
-  Nodal step_offset_m_;                 // what prescribed components still have to move
-  std::vector<int> eliminated_;         // per node: direction expressed by the others, or -1
-  std::vector<Gap<dim>> gaps_;          // per node
-  std::vector<double> lambda_n_;        // per node
+  Nodal step_offset_m_;           // what prescribed components still have to move
+  std::vector<int> eliminated_;   // per node: direction expressed by the others, or -1
+  std::vector<Gap<dim>> gaps_;    // per node
+  std::vector<double> lambda_n_;  // per node
   std::vector<CellResult<dim>> scratch_;
   std::vector<typename CellResult<dim>::Coupling> pressure_gain_;  // per cell
   Eigen::Matrix<double, dim + 1, Eigen::Dynamic> pressure_offset_pa_;

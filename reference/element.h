@@ -34,8 +34,8 @@ struct GaussRule {
 /// Numbers of the material in the form the element uses.
 struct MixedMaterial {
   double mu_pa = 0.0;
-  double inverse_kappa_per_pa = 0.0;           ///< zero when incompressible
-  double inverse_kappa_tangent_per_pa = 0.0;   ///< in the Jacobian only: at least 1e-4 / mu, so that it has an inverse
+  double inverse_kappa_per_pa = 0.0;          ///< zero when incompressible
+  double inverse_kappa_tangent_per_pa = 0.0;  ///< in the Jacobian only: at least 1e-4 / mu, so that it has an inverse
   scene::Kinematics kinematics = scene::Kinematics::finite;
   MixedMaterial(const scene::Material& material, scene::Kinematics kinematics);
 };
@@ -51,15 +51,15 @@ struct CellResult {
   using Coupling = Eigen::Matrix<double, pressures, unknowns, Eigen::RowMajor>;
   using Pressure = Eigen::Matrix<double, pressures, 1>;
 
-  Vector force_n;             ///< internal force at the given displacement and pressure
-  Pressure volume_m3;         ///< integral of psi_m (J - 1 - p / kappa): zero at the solution
+  Vector force_n;      ///< internal force at the given displacement and pressure
+  Pressure volume_m3;  ///< integral of psi_m (J - 1 - p / kappa): zero at the solution
   double rest_volume_m3 = 0.0;
   double volume_change_m3 = 0.0;
   double smallest_J = 1.0;
   // Only when the tangent was asked for:
-  Matrix stiffness;           ///< condensed
-  Vector condensed_force_n;   ///< force plus what the pressure's own residual adds
-  Coupling pressure_gain;     ///< the pressure follows a displacement change by dp = offset + gain du
+  Matrix stiffness;          ///< condensed
+  Vector condensed_force_n;  ///< force plus what the pressure's own residual adds
+  Coupling pressure_gain;    ///< the pressure follows a displacement change by dp = offset + gain du
   Pressure pressure_offset_pa;
 };
 
@@ -76,7 +76,8 @@ class Element {
   /// @param X_m nodal rest places; @param u_m nodal displacements
   /// @param p_pa pressure coefficients of 1, (X - Xc) / h
   /// @returns false, with the result unfinished, when some point has J <= smallest_allowed_J (finite strain only)
-  bool evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& p_pa, bool with_tangent, CellResult<dim>& out) const;
+  bool evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& p_pa, bool with_tangent,
+                CellResult<dim>& out) const;
 
   /// Newton may pass through strongly distorted states, not through these.
   static constexpr double smallest_allowed_J = 0.02;

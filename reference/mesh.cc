@@ -87,7 +87,8 @@ std::vector<unsigned int> coarse_cells(const std::vector<double>& lengths, doubl
   double edge = size;
   while (2.0 * edge <= largest) edge *= 2.0;
   std::vector<unsigned int> cells;
-  for (const double length : lengths) cells.push_back(std::max(1u, static_cast<unsigned int>(std::ceil(length / edge - 1e-6))));
+  for (const double length : lengths)
+    cells.push_back(std::max(1u, static_cast<unsigned int>(std::ceil(length / edge - 1e-6))));
   return cells;
 }
 
@@ -183,8 +184,7 @@ Mesh<2> cylinder_mesh(const CylinderSpec& spec) {
   for (const auto& cell : grid.active_cell_iterators()) {
     for (const unsigned int f : cell->face_indices()) {
       if (!cell->face(f)->at_boundary()) continue;
-      cell->face(f)->set_boundary_id(
-          id_of(f == 0 ? Boundary::plane_x : (f == 2 ? Boundary::held : Boundary::free)));
+      cell->face(f)->set_boundary_id(id_of(f == 0 ? Boundary::plane_x : (f == 2 ? Boundary::held : Boundary::free)));
     }
   }
   refine(grid, spec.grading);
@@ -210,8 +210,7 @@ Mesh<2> ball_mesh(const BallSpec& spec) {
     data.vertices = {v00, v10, v01, v11};
     return data;
   };
-  std::vector<dealii::CellData<2>> cells{cell(7, 6, 4, 5), cell(4, 5, 0, 1), cell(6, 2, 5, 1),
-                                               cell(3, 2, 7, 6)};
+  std::vector<dealii::CellData<2>> cells{cell(7, 6, 4, 5), cell(4, 5, 0, 1), cell(6, 2, 5, 1), cell(3, 2, 7, 6)};
   // Refinement relies on both cells at an edge running it the same way.
   dealii::GridTools::consistently_order_cells(cells);
   dealii::Triangulation<2> grid;

@@ -82,7 +82,8 @@ std::vector<scene::Fault> unsupported_parts(const Scene& scene) {
   const auto body = scene::body_shape(scene.body);
   if (scene.body.shape == BodyShape::sphere) {
     if (!choice.mirror_x || !choice.mirror_y) {
-      add("track: the reference solves a sphere body only as a body of revolution; keep the tool on the z axis (x = y = 0)");
+      add("track: the reference solves a sphere body only as a body of revolution; keep the tool on the z axis (x = y "
+          "= 0)");
     }
     const double share = scene.body.support_height_m / scene.body.radius_m;
     if (share < BallSpec::smallest_support_share || share > BallSpec::largest_support_share) {
@@ -118,8 +119,8 @@ double expected_contact_radius_m(const Scene& scene, double depth_m) {
 
 double element_size_m(const Scene& scene, int level) {
   const double cells_per_radius = scene.body.shape == BodyShape::box ? 1.5 : 4.0;
-  const double coarsest_m = scene.reference.element_size_m.value_or(
-      expected_contact_radius_m(scene, deepest_m(scene)) / cells_per_radius);
+  const double coarsest_m =
+      scene.reference.element_size_m.value_or(expected_contact_radius_m(scene, deepest_m(scene)) / cells_per_radius);
   return coarsest_m / std::exp2(level);
 }
 
@@ -145,7 +146,9 @@ Mesh<2> ball_level(const Scene& scene, int level) {
   spec.grading.growth = 0.5 * far_share(level);
   spec.grading.largest_m = 0.25 * R_m * far_share(level);
   for (const ExpectedContact& contact : expected_contacts(scene)) {
-    spec.grading.discs.push_back({{0.0, contact.center_m.z()}, {0.0, 1.0}, contact.radius_m,
+    spec.grading.discs.push_back({{0.0, contact.center_m.z()},
+                                  {0.0, 1.0},
+                                  contact.radius_m,
                                   element_size_m(scene, level) * size_share(scene, contact.radius_m)});
   }
   const double support_radius_m = std::sqrt(std::max(0.0, support_m * (2.0 * R_m - support_m)));

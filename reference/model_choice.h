@@ -13,8 +13,8 @@ namespace touchstone::reference {
 
 /// The smallest model that answers the whole scene.
 struct ModelChoice {
-  int dim = 3;                            ///< 2: body of revolution in its meridian plane
-  bool mirror_x = false, mirror_y = false;  ///< dim = 3: solved on x >= 0, on y >= 0 only
+  int dim = 3;                                                         ///< 2: body of revolution in its meridian plane
+  bool mirror_x = false, mirror_y = false;                             ///< dim = 3: solved on x >= 0, on y >= 0 only
   [[nodiscard]] std::string name(scene::Kinematics kinematics) const;  ///< "quarter 3D u-p finite strain"
 };
 

@@ -22,9 +22,9 @@ struct PointLaw {
   double mu_bar_pa = 0.0;
   double S_pa = 0.0;
   double V_pa = 0.0;
-  double J = 1.0;              ///< 1 in small strain, where the volume ratio stays out of the tangent
-  double J_minus_1 = 0.0;      ///< volume change
-  Eigen::Matrix3d F_inverse;   ///< identity in small strain
+  double J = 1.0;             ///< 1 in small strain, where the volume ratio stays out of the tangent
+  double J_minus_1 = 0.0;     ///< volume change
+  Eigen::Matrix3d F_inverse;  ///< identity in small strain
 };
 
 /// det(1 + H) - 1 without cancellation.

@@ -14,8 +14,8 @@ namespace {
 
 /// Nearest place on a quadratic face, in its unit coordinates, by Gauss-Newton kept inside the face.
 template <int dim>
-Eigen::Matrix<double, dim - 1, 1> nearest_on_face(
-    const Eigen::Matrix<double, dim, Mesh<dim>::nodes_per_face>& X_m, const Eigen::Matrix<double, dim, 1>& point_m) {
+Eigen::Matrix<double, dim - 1, 1> nearest_on_face(const Eigen::Matrix<double, dim, Mesh<dim>::nodes_per_face>& X_m,
+                                                  const Eigen::Matrix<double, dim, 1>& point_m) {
   using Unit = Eigen::Matrix<double, dim - 1, 1>;
   Unit xi = Unit::Constant(0.5);
   for (int iteration = 0; iteration < 20; ++iteration) {

@@ -72,9 +72,9 @@ Record to_record(const Solved<dim>& solved, const Step& step) {
   record.put(step.seen.force_n.data(), 3);
   record.put(step.seen.torque_nm.data(), 3);
   record.put(step.seen.support_force_n.data(), 3);
-  for (const double value : {step.seen.area_m2, step.seen.contact_radius_m, step.seen.node_penetration_m,
-                             step.seen.between_nodes_penetration_m, step.seen.equilibrium_rel,
-                             step.seen.volume_change_rel, step.wall_s}) {
+  for (const double value :
+       {step.seen.area_m2, step.seen.contact_radius_m, step.seen.node_penetration_m,
+        step.seen.between_nodes_penetration_m, step.seen.equilibrium_rel, step.seen.volume_change_rel, step.wall_s}) {
     record.put(value);
   }
   for (const int value : {step.unknowns, step.newton_iterations, step.halvings, step.indefinite}) record.put(value);
@@ -327,9 +327,10 @@ class Run {
     std::ostringstream text;
     text << "instant " << instant + 1 << " of " << count() << " (t = " << times_s_[instant] << " s, depth "
          << depth_m(times_s_[instant]) << " m) did not converge on level " << level + 1 << ": " << report.last.trouble
-         << ", residual " << report.last.residual_rel << " of the acting forces (asked: "
-         << ContactProblem<dim>::force_tolerance << "), stuck at t = " << report.stuck_time_s << " s after "
-         << report.halvings << " halvings. Finished steps are kept. Try a smaller reference.element_size_m (now "
+         << ", residual " << report.last.residual_rel
+         << " of the acting forces (asked: " << ContactProblem<dim>::force_tolerance
+         << "), stuck at t = " << report.stuck_time_s << " s after " << report.halvings
+         << " halvings. Finished steps are kept. Try a smaller reference.element_size_m (now "
          << element_size_m(scene_, 0) << " m on the coarsest level), more instants, or less depth.";
     return text.str();
   }
@@ -354,8 +355,9 @@ class Run {
       indefinite += steps[instant].indefinite;
     }
     if (indefinite > 0) {
-      result.linear_solver += "; " + std::to_string(indefinite) +
-                              " tangents were not positive definite and went without the tool's curvature or to UMFPACK";
+      result.linear_solver +=
+          "; " + std::to_string(indefinite) +
+          " tangents were not positive definite and went without the tool's curvature or to UMFPACK";
     }
   }
 
@@ -395,14 +397,16 @@ scene::Plan plan(const Scene& scene) {
     add("axial symmetry", true, "ball on the axis of a ball: one meridian plane is the whole body");
   } else if (mirrors > 0) {
     add(mirrors == 2 ? "quarter symmetry" : "half symmetry", true,
-        mirrors == 2 ? "box, tool and track lie on both symmetry planes" : "box, tool and track lie on one symmetry plane",
+        mirrors == 2 ? "box, tool and track lie on both symmetry planes"
+                     : "box, tool and track lie on one symmetry plane",
         mirrors == 2 ? "a quarter of the unknowns" : "half of the unknowns");
   } else {
     add("symmetry", false, "the track leaves both symmetry planes of the box", "the full box is meshed");
   }
   const bool finite = scene.reference.kinematics == scene::Kinematics::finite;
   add("finite strain", finite,
-      finite ? "neo-Hookean, deformed geometry in contact" : "reference.kinematics is \"small\": linear elasticity, gap along the rest normal");
+      finite ? "neo-Hookean, deformed geometry in contact"
+             : "reference.kinematics is \"small\": linear elasticity, gap along the rest normal");
   std::ostringstream nu;
   nu << "nu = " << scene.body.material.poissons_ratio << "; "
      << (scene.body.material.poissons_ratio == 0.5 ? "incompressible, the pressure keeps the volume"
@@ -423,7 +427,8 @@ scene::Plan plan(const Scene& scene) {
 }
 
 Result solve(const Scene& scene, const Eigen::Matrix3Xd& rest_points_m, const Options& options) {
-  if (std::vector<scene::Fault> faults = unsupported(scene); !faults.empty()) throw scene::InputError(std::move(faults));
+  if (std::vector<scene::Fault> faults = unsupported(scene); !faults.empty())
+    throw scene::InputError(std::move(faults));
   const ModelChoice choice = choose_model(scene);
   if (choice.dim == 2) return Run<2>(scene, choice, rest_points_m, options).answer();
   return Run<3>(scene, choice, rest_points_m, options).answer();

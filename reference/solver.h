@@ -26,7 +26,7 @@ struct Progress {
   int unknowns = 0;
   double seconds_left = 0.0;   ///< estimate for all levels; negative while unknown
   bool step_finished = false;  ///< true once per finished load step, after it is on disk
-  std::string note{};                ///< "load step halved", "resumed at instant 7", "from the store"; usually empty
+  std::string note{};          ///< "load step halved", "resumed at instant 7", "from the store"; usually empty
 };
 
 struct Options {

@@ -51,9 +51,9 @@ inline Indentation sneddon(double E_star_pa, double R_m, double d_m) {
 /// Laterally free, P = lam sigma_1 / lam with sigma_1 - sigma_2 = mu (lam^2 - 1/lam) and sigma_2 = 0.
 inline double neo_hookean_bar_pa(double mu_pa, double lam) { return mu_pa * (lam - 1.0 / (lam * lam)); }
 
-/// Inflation of a thick incompressible neo-Hookean sphere, inner radius A, outer B, outside free: inner pressure at inner
-/// stretch la, p = 2 mu [1/lb - 1/la + (lb^-4 - la^-4) / 4], lb^3 = 1 + (la^3 - 1)(A/B)^3.
-/// A. E. Green, W. Zerna, Theoretical Elasticity (1968), 3.10; from dp/dlam = 2 mu (lam^-2 + lam^-5) between la and lb.
+/// Inflation of a thick incompressible neo-Hookean sphere, inner radius A, outer B, outside free: inner pressure at
+/// inner stretch la, p = 2 mu [1/lb - 1/la + (lb^-4 - la^-4) / 4], lb^3 = 1 + (la^3 - 1)(A/B)^3. A. E. Green, W. Zerna,
+/// Theoretical Elasticity (1968), 3.10; from dp/dlam = 2 mu (lam^-2 + lam^-5) between la and lb.
 inline double thick_sphere_pressure_pa(double mu_pa, double A_m, double B_m, double la) {
   const double lb = std::cbrt(1.0 + (la * la * la - 1.0) * std::pow(A_m / B_m, 3));
   return 2.0 * mu_pa * (1.0 / lb - 1.0 / la + 0.25 * (std::pow(lb, -4) - std::pow(la, -4)));

@@ -106,7 +106,7 @@ TEST_F(WriteComparison, SummaryIsFlatWithAUnitForEveryKey) {
 
 TEST_F(WriteComparison, TellsTheVerdictInPlainText) {
   EXPECT_TRUE(comparison_.text.starts_with("The fast model's force at the deepest instant")) << comparison_.text;
-  EXPECT_TRUE(comparison_.text.ends_with("meshes.\n")) << comparison_.text;
+  EXPECT_TRUE(comparison_.text.ends_with("meshes.\n\n")) << comparison_.text;
 }
 
 }  // namespace

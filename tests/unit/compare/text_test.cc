@@ -8,7 +8,7 @@
 namespace touchstone::compare {
 namespace {
 
-const std::string no_break = "\u00a0";
+const std::string gap(no_break);
 
 TEST(Text, NumbersHaveThreeDigits) {
   EXPECT_EQ(number_text(0.0), "0");
@@ -30,17 +30,24 @@ TEST(Text, WhatIsNotFiniteIsSaid) {
 }
 
 TEST(Text, QuantitiesAreScaledToAHandyUnit) {
-  EXPECT_EQ(quantity_text(0.005, "m"), "5" + no_break + "mm");
-  EXPECT_EQ(quantity_text(0.0005, "m"), "0.5" + no_break + "mm");
-  EXPECT_EQ(quantity_text(5.01e-5, "m"), "50.1" + no_break + "µm");
-  EXPECT_EQ(quantity_text(319.2, "s"), "5.32" + no_break + "min");
-  EXPECT_EQ(quantity_text(11.24, "us"), "11.2" + no_break + "µs");
-  EXPECT_EQ(quantity_text(3.4e6, "byte"), "3.4" + no_break + "MB");
-  EXPECT_EQ(quantity_text(37.7, "N"), "37.7" + no_break + "N");
-  EXPECT_EQ(quantity_text(5.2e-18, "m"), "0" + no_break + "mm");
-  EXPECT_EQ(quantity_text(0.0, "N"), "0" + no_break + "N");
-  EXPECT_EQ(quantity_text(0.9964, ""), "99.6" + no_break + "%");
+  EXPECT_EQ(quantity_text(0.005, "m"), "5" + gap + "mm");
+  EXPECT_EQ(quantity_text(0.0005, "m"), "0.5" + gap + "mm");
+  EXPECT_EQ(quantity_text(5.01e-5, "m"), "50.1" + gap + "µm");
+  EXPECT_EQ(quantity_text(319.2, "s"), "5.32" + gap + "min");
+  EXPECT_EQ(quantity_text(11.24, "us"), "11.2" + gap + "µs");
+  EXPECT_EQ(quantity_text(3.4e6, "byte"), "3.4" + gap + "MB");
+  EXPECT_EQ(quantity_text(37.7, "N"), "37.7" + gap + "N");
+  EXPECT_EQ(quantity_text(5.2e-18, "m"), "0" + gap + "mm");
+  EXPECT_EQ(quantity_text(0.0, "N"), "0" + gap + "N");
+  EXPECT_EQ(quantity_text(0.9964, ""), "99.6" + gap + "%");
   EXPECT_EQ(quantity_text(std::nullopt, "m", "none"), "none");
+}
+
+TEST(Text, IsWrappedAtSpacesByCharacters) {
+  EXPECT_EQ(wrapped("one two three", 7), "one two\nthree");
+  EXPECT_EQ(wrapped("ééé ééé ééé", 7), "ééé ééé\nééé");
+  EXPECT_EQ(wrapped("longerthanthat a", 4), "longerthanthat\na");
+  EXPECT_EQ(wrapped("", 4), "");
 }
 
 TEST(Text, IsEscapedForMarkup) { EXPECT_EQ(escape_xml("a<b>&\"c\"\x01"), "a&lt;b&gt;&amp;&quot;c&quot;"); }

@@ -1,0 +1,178 @@
+// The promises of solve(): resume bit for bit, answer at once from the store, release, and fail with a name.
+#include "reference/solver.h"
+
+#include "scene/surface.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+namespace touchstone::reference {
+namespace {
+
+/// A ball pressed on a ball and taken off again: small, and axisymmetric.
+scene::Scene press_and_release() {
+  scene::Scene scene;
+  scene.name = "ball-on-ball";
+  scene.body.shape = scene::BodyShape::sphere;
+  scene.body.radius_m = 0.03;
+  scene.body.support_height_m = 0.006;
+  scene.body.material = {3e6, 0.45};
+  scene.tool.radius_m = 0.01;
+  const auto at = [](double time_s, double z_m) {
+    return scene::Waypoint{time_s, {{0.0, 0.0, z_m}, Eigen::Quaterniond::Identity()}};
+  };
+  scene.track = {at(0.0, 0.0705), at(1.0, 0.0665), at(2.0, 0.0705)};
+  scene.compare.instants = 9;
+  scene.reference.levels = 2;
+  scene.reference.element_size_m = 0.003;
+  return scene;
+}
+
+class SolverTest : public testing::Test {
+ protected:
+  SolverTest()
+      : root_(std::filesystem::temp_directory_path() / ("touchstone-solver-" + std::to_string(::getpid()))),
+        scene_(press_and_release()),
+        points_m_(scene::tessellate(*scene::body_shape(scene_.body), 64).points_m) {}
+  ~SolverTest() override { std::filesystem::remove_all(root_); }
+
+  Result run(const std::string& store, Options options = {}) {
+    options.store = root_ / store;
+    return solve(scene_, points_m_, options);
+  }
+  static void expect_identical(const Result& a, const Result& b) {
+    ASSERT_EQ(a.instants.size(), b.instants.size());
+    for (std::size_t i = 0; i < a.instants.size(); ++i) {
+      EXPECT_EQ(a.instants[i].force_n(), b.instants[i].force_n());
+      EXPECT_EQ(a.instants[i].displacement_m, b.instants[i].displacement_m);
+      EXPECT_EQ(a.levels[0].force_n[i], b.levels[0].force_n[i]);
+    }
+  }
+
+  std::filesystem::path root_;
+  scene::Scene scene_;
+  Eigen::Matrix3Xd points_m_;
+};
+
+TEST_F(SolverTest, InterruptedRunResumesBitForBit) {
+  const Result whole = run("whole");
+  std::atomic<bool> stop = false;
+  int finished = 0, first_resumed = 0;
+  Options options;
+  options.stop = &stop;
+  options.progress = [&](const Progress& progress) {
+    finished += progress.step_finished ? 1 : 0;
+    if (finished == 4 && progress.newton == 2 && !progress.step_finished) stop = true;  // within the fifth step
+  };
+  EXPECT_THROW(run("parts", options), Interrupted);
+  EXPECT_EQ(finished, 4);
+  Options resume;
+  resume.progress = [&](const Progress& progress) {
+    if (progress.step_finished && first_resumed == 0) first_resumed = progress.instant;
+  };
+  const Result resumed = run("parts", resume);
+  EXPECT_EQ(first_resumed, 5);
+  expect_identical(whole, resumed);
+}
+
+TEST_F(SolverTest, SecondRunAnswersFromTheStore) {
+  const Result first = run("store");
+  EXPECT_FALSE(first.from_store);
+  const auto begin = std::chrono::steady_clock::now();
+  const Result second = run("store");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+  EXPECT_TRUE(second.from_store);
+  EXPECT_EQ(first.key, content_key(scene_));
+  EXPECT_EQ(first.linear_solver, second.linear_solver);
+  expect_identical(first, second);
+}
+
+TEST_F(SolverTest, DamagedStepIsSolvedAgain) {
+  const Result first = run("damaged");
+  const auto file = root_ / "damaged" / first.key / "level-2" / "instant-5.step";
+  ASSERT_TRUE(std::filesystem::exists(file));
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  const Result second = run("damaged");
+  EXPECT_FALSE(second.from_store);
+  expect_identical(first, second);
+}
+
+TEST_F(SolverTest, ReleasesTheWayItPressed) {
+  const Result result = run("release");
+  const std::size_t last = result.instants.size() - 1;
+  EXPECT_EQ(result.instants[0].force_n().norm(), 0.0);
+  EXPECT_EQ(result.instants[last].force_n().norm(), 0.0);
+  EXPECT_EQ(result.instants[last].displacement_m.cwiseAbs().maxCoeff(), 0.0);
+  for (std::size_t i = 1; i < last; ++i) {
+    const double down_n = result.instants[i].force_n().z(), up_n = result.instants[last - i].force_n().z();
+    ASSERT_GT(down_n, 0.1);
+    EXPECT_NEAR(up_n / down_n, 1.0, 1e-6);
+    EXPECT_LT(result.equilibrium_rel[i], 1e-6);
+    EXPECT_LT(result.residual_penetration_m[i], 1e-6 * result.instants[i].depth_m);
+    EXPECT_LT(result.between_nodes_penetration_m[i], 0.02 * result.instants[i].depth_m);
+  }
+}
+
+TEST_F(SolverTest, TwoLevelsGiveNoUncertainty) {
+  const Result result = run("two");
+  for (const double half_width_n : result.force_uncertainty_n) EXPECT_TRUE(std::isinf(half_width_n));
+  EXPECT_TRUE(std::isinf(result.displacement_uncertainty_m[3][0]));
+}
+
+TEST_F(SolverTest, KeyFollowsTheAnswerOnly) {
+  const std::string key = content_key(scene_);
+  scene::Scene other = scene_;
+  other.title = "another title";
+  other.tool.mass_kg = 5.0;
+  other.fast.triangles = 17;
+  other.contact.k1_n_per_m = 3.0;
+  EXPECT_EQ(content_key(other), key);
+  other.body.material.poissons_ratio = 0.4500000001;
+  EXPECT_NE(content_key(other), key);
+  other = scene_;
+  other.track[1].pose.position_m.z() += 1e-9;
+  EXPECT_NE(content_key(other), key);
+}
+
+TEST_F(SolverTest, FailureNamesTheInstant) {
+  // A soft ball flattened to a tenth of its height by a much larger one.
+  scene_.tool.radius_m = 0.3;
+  scene_.track = {{0.0, {{0.0, 0.0, 0.361}, Eigen::Quaterniond::Identity()}},
+                  {1.0, {{0.0, 0.0, 0.306}, Eigen::Quaterniond::Identity()}}};
+  scene_.compare.instants = 3;
+  scene_.reference.element_size_m = 0.02;
+  try {
+    run("fails");
+    FAIL() << "converged";
+  } catch (const NotConverged& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("instant "), std::string::npos) << text;
+    EXPECT_NE(text.find("depth "), std::string::npos) << text;
+    EXPECT_NE(text.find("Try "), std::string::npos) << text;
+  }
+}
+
+TEST_F(SolverTest, PlanNamesSymmetryAndWhatIsLeftOut) {
+  const scene::Plan lines = plan(scene_);
+  const auto find = [&](const std::string& part) {
+    for (const auto& line : lines) {
+      if (line.part == part) return &line;
+    }
+    return static_cast<const scene::PlanLine*>(nullptr);
+  };
+  ASSERT_TRUE(find("axial symmetry"));
+  EXPECT_TRUE(find("axial symmetry")->modelled);
+  ASSERT_TRUE(find("friction"));
+  EXPECT_FALSE(find("friction")->modelled);
+  ASSERT_TRUE(find("level 2"));
+  EXPECT_NE(find("level 2")->cost.find("unknowns"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace touchstone::reference

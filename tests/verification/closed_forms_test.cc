@@ -1,0 +1,35 @@
+// The closed forms against printed or independently computed numbers, before anything is held against them.
+#include "verification/closed_forms.h"
+
+#include <gtest/gtest.h>
+
+namespace touchstone::verification {
+namespace {
+
+TEST(ClosedForms, SneddonOverHertz) {
+  const double ratio[][2] = {{.05, .99500}, {.1, .98999}, {.2, .97996}, {.3, .96991}, {.5, .94981}, {1.0, .89976}};
+  for (const auto& [d_over_R, expected] : ratio) {
+    EXPECT_NEAR(sneddon(1.0, 1.0, d_over_R).force_n / hertz(1.0, 1.0, d_over_R).force_n, expected, 6e-6);
+  }
+}
+
+TEST(ClosedForms, HertzPeakPressureOfSsnv104) {
+  // Code_Aster SSNV104: ball of 50 mm, E = 20 GPa, nu = 0.3, a = 10 mm: p0 = 2798.3 MPa.
+  const Indentation contact = hertz(contact_modulus_pa(20e9, 0.3), 0.05, 0.002);
+  EXPECT_NEAR(contact.contact_radius_m, 0.010, 1e-12);
+  EXPECT_NEAR(hertz_peak_pressure_pa(contact), 2798.3e6, 0.1e6);
+}
+
+TEST(ClosedForms, ThickSpherePressure) {
+  for (const auto& [stretch, expected] : {std::pair{1.25, .551869}, {1.5, .755433}, {2.0, .806927}}) {
+    EXPECT_NEAR(thick_sphere_pressure_pa(1.0, 1.0, 2.0, stretch), expected, 1e-6);
+  }
+}
+
+TEST(ClosedForms, CantileverOfOneMaterial) {
+  EXPECT_DOUBLE_EQ(cantilever_tip_m(3.0, 2.0, 4.0), 3.0 * 8.0 / (3.0 * 4.0));
+  EXPECT_NEAR(cantilever_tip_m(3.0, 2.0, 4.0, 4.0, 0.5, 1.0), cantilever_tip_m(3.0, 2.0, 4.0), 1e-15);
+}
+
+}  // namespace
+}  // namespace touchstone::verification
