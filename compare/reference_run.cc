@@ -45,9 +45,9 @@ std::string time_left_text(double seconds) {
 }
 
 std::string progress_text(const reference::Progress& p) {
-  std::string text = fmt::format("reference: mesh {}/{}", p.level, p.levels);
-  if (p.unknowns > 0) text += fmt::format(" ({} unknowns)", p.unknowns);
-  text += fmt::format(", load step {}/{} at {:.2f} mm", p.instant, p.instants, 1e3 * p.depth_m);
+  if (p.newton == 0 && !p.note.empty()) return "reference: " + p.note;
+  std::string text = fmt::format("reference: mesh {}/{} ({} unknowns), load step {}/{} at {:.2f} mm", p.level, p.levels,
+                                 p.unknowns, p.instant, p.instants, 1e3 * p.depth_m);
   if (p.newton > 0) text += fmt::format(", Newton {} residual {:.1e}", p.newton, p.residual_rel);
   text += time_left_text(p.seconds_left);
   if (!p.note.empty()) text += " - " + p.note;

@@ -2,6 +2,7 @@
 
 #include "compare/compare.h"
 #include "compare/reference_run.h"
+#include "compare/vtk_out.h"
 #include "fast/results.h"
 #include "reference/solver.h"
 #include "scene/results.h"
@@ -62,6 +63,7 @@ int run_fast(const fast::VerbOptions& options, const std::filesystem::path&) {
   scene::prepare_result_folder(folder);
   const fast::Run run =
       fast::run_into_folder(scene, folder, scene::make_manifest(scene, "touchstone fast"), options.quiet);
+  write_fast_surfaces(folder, run);
   std::cout << fast::summary_text(run) << "Results: " << folder.string() << '\n';
   return fast::done;
 }
@@ -78,6 +80,7 @@ int run_reference(const fast::VerbOptions& options, const std::filesystem::path&
     scene::Manifest manifest = scene::make_manifest(scene, "touchstone reference");
     manifest.times.push_back(watch.read("reference"));
     write_reference(folder, result, manifest);
+    write_reference_surfaces(folder, surface, result);
     std::cout << reference_text(result) << "Results: " << folder.string() << '\n';
     return fast::done;
   });

@@ -16,4 +16,12 @@ namespace touchstone::compare {
 void write_surfaces(const std::filesystem::path& folder, const fast::Run& run, const reference::Result& result,
                     const Errors& errors);
 
+/// The same for one side alone: displacement_m and the current normal.
+void write_fast_surfaces(const std::filesystem::path& folder, const fast::Run& run);
+
+/// displacement_m and displacement_uncertainty_m.
+/// @param surface the rest points the result was asked for
+void write_reference_surfaces(const std::filesystem::path& folder, const scene::Surface& surface,
+                              const reference::Result& result);
+
 }  // namespace touchstone::compare

@@ -253,7 +253,9 @@ class Run {
         estimate_->found(work_at(level, time_s));
       } else {
         std::string note;
-        if (instant > 0 && !problem && all_stored) note = "resumed at instant " + std::to_string(instant + 1);
+        if (instant > 0 && !problem && all_stored) {
+          note = "resumed on mesh " + std::to_string(level + 1) + " at instant " + std::to_string(instant + 1);
+        }
         all_stored = false;
         if (!problem) {
           problem.emplace(mesh, scene_.body.material, scene_.reference.kinematics, choice_.mirror_x, choice_.mirror_y);
@@ -420,7 +422,7 @@ scene::Plan plan(const Scene& scene) {
                                   : "fewer than three levels: unknown, reported as infinite");
   for (int level = 0; level < scene.reference.levels; ++level) {
     std::ostringstream size;
-    size << "cells of " << element_size_m(scene, level) << " m at the deepest contact's rim";
+    size << "cells of " << std::setprecision(3) << 1e3 * element_size_m(scene, level) << " mm at the deepest contact's rim";
     add(("level " + std::to_string(level + 1)).c_str(), true, size.str(), expected_unknowns(scene, choice, level));
   }
   return plan;

@@ -104,5 +104,23 @@ TEST_F(VtkOut, LeavesNoSurfaceOfAnEarlierLongerRun) {
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "surface_0002.vtp"));
 }
 
+TEST_F(VtkOut, OneSideAloneHasItsOwnArrays) {
+  const testing::TemporaryFolder fast, reference;
+  write_fast_surfaces(fast.path(), sides_.run);
+  write_reference_surfaces(reference.path(), sides_.run.surface, sides_.result);
+  const auto last = [&](const testing::TemporaryFolder& folder) {
+    reader_->SetFileName((folder.path() / "surface_0002.vtp").c_str());
+    reader_->Update();
+    return reader_->GetOutput()->GetPointData();
+  };
+  const Eigen::Index i = sides_.run.surface.vertex_count() / 2;
+  EXPECT_EQ(last(fast)->GetArray("displacement_m")->GetComponent(i, 2), sides_.run.instants[2].displacement_m(2, i));
+  EXPECT_EQ(last(fast)->GetArray("normal")->GetComponent(i, 1), sides_.run.normals[2](1, i));
+  EXPECT_EQ(last(reference)->GetArray("displacement_m")->GetComponent(i, 2),
+            sides_.result.instants[2].displacement_m(2, i));
+  EXPECT_EQ(last(reference)->GetArray("displacement_uncertainty_m")->GetComponent(i, 0),
+            sides_.result.displacement_uncertainty_m[2][i]);
+}
+
 }  // namespace
 }  // namespace touchstone::compare
