@@ -50,7 +50,7 @@ int with_reference_exits(Solve solve) {
 
 int plan(const fast::VerbOptions& options, const std::filesystem::path&) {
   const scene::Scene scene = options.load();
-  std::cout << scene::resolved_toml(scene) << '\n'
+  std::cout << scene::explained_toml(scene) << '\n'
             << fast::plan_text("The fast model computes", fast::plan(scene)) << '\n'
             << fast::plan_text("The reference solves", reference::plan(scene));
   refuse(reference::unsupported(scene));

@@ -11,7 +11,7 @@ namespace {
 
 int plan(const fast::VerbOptions& options) {
   const scene::Scene scene = options.load();
-  std::cout << scene::resolved_toml(scene) << '\n' << fast::plan_text("The fast model computes", fast::plan(scene));
+  std::cout << scene::explained_toml(scene) << '\n' << fast::plan_text("The fast model computes", fast::plan(scene));
   return fast::done;
 }
 

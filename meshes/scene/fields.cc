@@ -61,7 +61,7 @@ std::vector<Field<Scene>> make_scene_fields() {
       {"tool.radius_m", "m", between(1e-5, 10.0), required, shared, +[](S& s) -> double& { return s.tool.radius_m; }, always,
            "Radius of the tool."},
       {"tool.mass_kg", "kg", above(0.0, 1e3), "1.0", fast, +[](S& s) -> double& { return s.tool.mass_kg; }, always,
-           "Mass m of the tool, shared out over the contact points."},
+           "Mass m of the tool; k1 and k3 hold its size already, only its shares over the contact points count."},
 
       {"contact.law", "", any, "\"duffing\"", fast, choice({"duffing"}, +[](S& s) -> ContactLaw& { return s.contact.law; }), always,
            "Contact law of the fast model."},
@@ -79,7 +79,7 @@ std::vector<Field<Scene>> make_scene_fields() {
       {"fast.rate_hz", "Hz", between(1.0, 1e5), "1000.0", fast, +[](S& s) -> double& { return s.fast.rate_hz; }, always,
            "Ticks per second of virtual time."},
       {"fast.r_th_m", "m", above(0.0, 1.0), "0.004", fast, +[](S& s) -> double& { return s.fast.r_th_m; }, always,
-           "r_th: contact points closer than this belong to one contact region."},
+           "r_th: contact points closer than this belong to one contact region; a ball on a convex body is always one."},
       {"fast.r_R_m", "m", above(0.0, 10.0), "0.015", fast, +[](S& s) -> double& { return s.fast.r_R_m; }, always,
            "r_R: radius of the local neighbourhood R."},
       {"fast.C_n", "", between(0.0, 1e3), "0.2", fast, +[](S& s) -> double& { return s.fast.C_n; }, always,

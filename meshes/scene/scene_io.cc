@@ -358,9 +358,16 @@ void apply_override(const std::string& setting, toml::table& document) {
   }
 }
 
+/// @param keep  which keys; @param meaning  put every key's line of documentation behind it
 template <class Keep>
-std::string toml_text(const Scene& scene, Keep keep) {
+std::string toml_text(const Scene& scene, Keep keep, bool meaning = false) {
   std::ostringstream out;
+  const auto line = [&](std::string_view key, const auto& field, const std::string& value) {
+    const std::string text = std::string(key) + " = " + value;
+    out << text;
+    if (meaning) out << std::string(text.size() < 36 ? 36 - text.size() : 1, ' ') << "# " << field.doc;
+    out << '\n';
+  };
   std::string section;
   for (const auto& field : scene_fields()) {
     const std::string value = value_text(field, scene);
@@ -369,11 +376,11 @@ std::string toml_text(const Scene& scene, Keep keep) {
     const std::size_t dot = key.rfind('.');
     const std::string table = dot == std::string::npos ? "" : key.substr(0, dot);
     if (table != section) out << "\n[" << (section = table) << "]\n";
-    out << (dot == std::string::npos ? key : key.substr(dot + 1)) << " = " << value << '\n';
+    line(dot == std::string::npos ? key : key.substr(dot + 1), field, value);
   }
   for (const Waypoint& waypoint : scene.track) {
     out << "\n[[track]]\n";
-    for (const auto& field : waypoint_fields()) out << field.key << " = " << value_text(field, waypoint) << '\n';
+    for (const auto& field : waypoint_fields()) line(field.key, field, value_text(field, waypoint));
   }
   return out.str();
 }
@@ -403,6 +410,11 @@ Scene load_scene(const std::filesystem::path& file, const std::vector<std::strin
 
 std::string resolved_toml(const Scene& scene) {
   return toml_text(scene, [](const auto&) { return true; });
+}
+
+std::string explained_toml(const Scene& scene) {
+  return toml_text(
+      scene, [](const auto&) { return true; }, true);
 }
 
 std::string scene_hash(const Scene& scene) {

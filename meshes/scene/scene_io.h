@@ -23,6 +23,9 @@ namespace touchstone::scene {
 /// Every value in force, as a scene file that loads to the same scene; the track is written out.
 [[nodiscard]] std::string resolved_toml(const Scene& scene);
 
+/// The same with every key's meaning as a comment behind it: what `plan` shows.
+[[nodiscard]] std::string explained_toml(const Scene& scene);
+
 /// XXH3 (128 bits, hexadecimal) of the resolved scene without its title: the scene's identity in results.
 [[nodiscard]] std::string scene_hash(const Scene& scene);
 

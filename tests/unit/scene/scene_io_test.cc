@@ -129,6 +129,9 @@ TEST(SceneFile, ResolvedSceneLoadsToTheSameScene) {
       parse_scene(good, "a.toml", {"reference.element_size_m=0.00123456789012345", "title=\"say \\\"hi\\\"\""});
   const std::string resolved = resolved_toml(s);
   EXPECT_EQ(resolved_toml(parse_scene(resolved, "a.toml")), resolved);
+  const std::string explained = explained_toml(s);
+  EXPECT_EQ(resolved_toml(parse_scene(explained, "a.toml")), resolved);
+  EXPECT_THAT(explained, HasSubstr("# Young's modulus E of the body.\n"));
 }
 
 TEST(SceneHash, FollowsValuesButNotTheTitle) {
