@@ -8,25 +8,10 @@
 #include "scene/results.h"
 #include "scene/scene_io.h"
 
-#include <chrono>
-#include <ctime>
 #include <iostream>
 
 namespace touchstone::compare {
 namespace {
-
-/// Wall and CPU time since construction.
-class Stopwatch {
- public:
-  [[nodiscard]] scene::StageTime read(const std::string& stage) const {
-    return {stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count(),
-            static_cast<double>(std::clock() - cpu_) / CLOCKS_PER_SEC};
-  }
-
- private:
-  std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
-  std::clock_t cpu_ = std::clock();
-};
 
 void refuse(std::vector<scene::Fault> faults) {
   if (!faults.empty()) throw scene::InputError(std::move(faults));
@@ -74,7 +59,7 @@ int run_reference(const fast::VerbOptions& options, const std::filesystem::path&
   const std::filesystem::path folder = options.folder(scene, "reference");
   scene::prepare_result_folder(folder);
   return with_reference_exits([&] {
-    const Stopwatch watch;
+    const scene::Stopwatch watch;
     const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
     const reference::Result result = solve_with_progress(scene, surface.points_m, store, options.quiet);
     scene::Manifest manifest = scene::make_manifest(scene, "touchstone reference");
@@ -93,10 +78,10 @@ int run_compare(const fast::VerbOptions& options, const std::filesystem::path& s
   scene::prepare_result_folder(folder);
   return with_reference_exits([&] {
     scene::Manifest manifest = scene::make_manifest(scene, "touchstone compare");
-    const Stopwatch fast_watch;
+    const scene::Stopwatch fast_watch;
     const fast::Run run = fast::run(scene);
     manifest.times.push_back(fast_watch.read("fast"));
-    const Stopwatch reference_watch;
+    const scene::Stopwatch reference_watch;
     const reference::Result result = solve_with_progress(scene, run.surface.points_m, store, options.quiet);
     manifest.times.push_back(reference_watch.read("reference"));
     manifest.entries.emplace_back("linear_solver", result.linear_solver);

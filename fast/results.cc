@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 
 namespace touchstone::fast {
 
@@ -26,8 +25,7 @@ scene::Figures figures(const Run& run) {
 
 Run run_into_folder(const scene::Scene& scene, const std::filesystem::path& folder, scene::Manifest manifest,
                     bool quiet) {
-  const std::time_t begin = std::time(nullptr);
-  const std::clock_t begin_cpu = std::clock();
+  const scene::Stopwatch watch;
   ProgressLine progress(quiet);
   Run result = run(scene, [&](double fraction) {
     char text[64];
@@ -35,8 +33,7 @@ Run run_into_folder(const scene::Scene& scene, const std::filesystem::path& fold
     progress.show(text);
   });
   progress.finish();
-  manifest.times.push_back({"fast", std::difftime(std::time(nullptr), begin),
-                            static_cast<double>(std::clock() - begin_cpu) / CLOCKS_PER_SEC});
+  manifest.times.push_back(watch.read("fast"));
   std::vector<scene::Column> columns = scene::track_columns(result.instants);
   for (scene::Column& c : scene::record_columns(result.instants, "")) columns.push_back(std::move(c));
   scene::write_csv(folder / "curve.csv", columns);

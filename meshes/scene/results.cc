@@ -135,6 +135,11 @@ void write_summary(const std::filesystem::path& path, const Figures& figures) {
   write_file(path, json.dump(2) + "\n");
 }
 
+StageTime Stopwatch::read(const std::string& stage) const {
+  return {stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count(),
+          static_cast<double>(std::clock() - cpu_) / CLOCKS_PER_SEC};
+}
+
 Manifest make_manifest(const Scene& scene, const std::string& command) {
   utsname host{};
   uname(&host);

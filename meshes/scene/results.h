@@ -4,6 +4,8 @@
 #include "scene/record.h"
 #include "scene/scene.h"
 
+#include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -38,6 +40,16 @@ void write_summary(const std::filesystem::path& path, const Figures& figures);
 struct StageTime {
   std::string stage;
   double wall_s = 0.0, cpu_s = 0.0;
+};
+
+/// Wall and CPU time since construction.
+class Stopwatch {
+ public:
+  [[nodiscard]] StageTime read(const std::string& stage) const;
+
+ private:
+  std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
+  std::clock_t cpu_ = std::clock();
 };
 
 /// Manifest as lines of name and value: scene hash, version, compiler, host, date, times.

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 namespace touchstone::scene {
 namespace {
@@ -72,6 +73,15 @@ TEST_F(ResultFolder, RecordsBecomeColumnsOfEqualLength) {
   EXPECT_EQ(value("fast_region0_force_z_n"), 3.0);
   EXPECT_EQ(value("fast_region0_torque_x_nm"), 4.0);
   EXPECT_EQ(value("fast_region0_area_m2"), 7e-6);
+}
+
+TEST(Stopwatch, ReadsShortStages) {
+  const Stopwatch watch;
+  std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  const StageTime time = watch.read("stage");
+  EXPECT_EQ(time.stage, "stage");
+  EXPECT_GE(time.wall_s, 0.002);
+  EXPECT_GE(time.cpu_s, 0.0);
 }
 
 TEST_F(ResultFolder, UnusableFolderIsOneMessage) {
