@@ -152,7 +152,7 @@ TEST_F(SolverTest, FailureNamesTheInstant) {
     FAIL() << "converged";
   } catch (const NotConverged& error) {
     const std::string text = error.what();
-    EXPECT_NE(text.find("instant "), std::string::npos) << text;
+    EXPECT_TRUE(text.starts_with("instant 2 of 3 (t = 0.5 s") || text.starts_with("instant 3 of 3 (t = 1 s")) << text;
     EXPECT_NE(text.find("depth "), std::string::npos) << text;
     EXPECT_NE(text.find("Try "), std::string::npos) << text;
   }
