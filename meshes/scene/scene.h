@@ -3,7 +3,9 @@
 #pragma once
 
 #include "scene/frames.h"
+#include "scene/revolution.h"
 #include "scene/shape.h"
+#include "scene/triangle_mesh.h"
 
 #include <cstdint>
 #include <memory>
@@ -13,10 +15,11 @@
 
 namespace touchstone::scene {
 
-enum class BodyShape { box, sphere };
-enum class ToolShape { sphere };
+enum class BodyShape { box, sphere, ellipsoid, revolution };
+enum class ToolShape { sphere, capsule, cylinder, box, mesh };
+enum class LengthUnit { m, cm, mm, inch };
 enum class Support { bottom };
-enum class ContactLaw { duffing };
+enum class ContactLaw { duffing, area_aware };
 enum class Formulation { published, corrected };
 enum class Kinematics { finite, small };
 
@@ -36,19 +39,47 @@ struct Material {
   }
 };
 
-struct Body {
+/// A convex solid; which members count, its shape says.
+struct Solid {
   BodyShape shape = BodyShape::box;
-  Vec3 size_m = Vec3::Zero();  ///< box only: edge lengths
-  double radius_m = 0.0;       ///< sphere only
-  Support support = Support::bottom;
-  double support_height_m = 0.0;  ///< sphere only: surface below this height is held
+  Vec3 size_m = Vec3::Zero();       ///< box: edge lengths
+  double radius_m = 0.0;            ///< sphere
+  Vec3 semi_axes_m = Vec3::Zero();  ///< ellipsoid: along x, y, z
+  Profile profile;                  ///< revolution: about z
+};
+
+/// A part of the body of another material, strictly inside it, apart from the other inclusions.
+struct Inclusion : Solid {
+  Vec3 center_m = Vec3::Zero();  ///< of its bounding box, world frame at rest
   Material material;
 };
 
+struct Body : Solid {
+  Support support = Support::bottom;
+  double support_height_m = 0.0;  ///< a body without a flat bottom: surface below this height is held
+  Material material;
+  std::vector<Inclusion> inclusions;  ///< empty: homogeneous
+
+  /// The bottom is a face, and all of it is held.
+  [[nodiscard]] bool flat_bottom() const noexcept;
+};
+
+/// The rigid tool. Capsule and cylinder lie along z of the tool, box edges along its axes.
 struct Tool {
   ToolShape shape = ToolShape::sphere;
-  double radius_m = 0.0;
+  double radius_m = 0.0;        ///< sphere, capsule, cylinder
   double mass_kg = 0.0;
+  double length_m = 0.0;        ///< capsule: of the straight part; cylinder: overall
+  double edge_radius_m = 0.0;   ///< cylinder: of the fillet at both rims
+  Vec3 size_m = Vec3::Zero();   ///< box: edge lengths
+  std::string file;             ///< mesh: path relative to the scene file
+  LengthUnit unit = LengthUnit::m;             ///< mesh: of the file's coordinates
+  std::shared_ptr<const TriangleMesh> mesh;    ///< mesh: as read, in metres, before the mass centre is taken off
+  /// Mass centre, from the shape's centre or in the mesh's own coordinates; absent: the centre of a uniform solid.
+  std::optional<Vec3> mass_center_m;
+
+  /// In one piece without dents: it touches a convex body in one region.
+  [[nodiscard]] bool convex() const noexcept { return shape != ToolShape::mesh; }
 };
 
 /// The tool's pose at one time; between two of them position is linear and orientation slerp.
@@ -57,12 +88,21 @@ struct Waypoint {
   Pose pose;
 };
 
-/// Duffing contact force in identifiable constants: F = k1 D + k3 D^3, where k1 = m w0^2 and
-/// k3 = (3/4) m b0^2 eps keeps the paper's 3/4 inside (errata E1).
+/// Friction limits of the contact (section IV-B): stuck up to f_max = K F_n^beta, sliding at mu_D F_n.
+struct Friction {
+  double K = 0.0;     ///< [N^(1 - beta)]
+  double beta = 0.0;  ///< 2/3 to 1
+  double mu_D = 0.0;  ///< dynamic friction coefficient
+};
+
+/// Contact force law in identifiable constants: F = k1 D + k3 D^3, where k1 = m w0^2 and k3 = (3/4) m b0^2 eps keeps
+/// the paper's 3/4 inside (errata E1). The area-aware law (errata E7) takes k1 = k1_per_radius a, a = sqrt(A / pi).
 struct Contact {
   ContactLaw law = ContactLaw::duffing;
-  double k1_n_per_m = 0.0;
+  double k1_n_per_m = 0.0;  ///< duffing
   double k3_n_per_m3 = 0.0;
+  double k1_per_radius_n_per_m2 = 0.0;  ///< area_aware
+  std::optional<Friction> friction;     ///< absent: frictionless
 };
 
 /// Settings of the real-time model; names are the paper's symbols.
@@ -71,6 +111,7 @@ struct FastSettings {
   int triangles = 0;     ///< body surface, also the rest points of every comparison
   int tool_samples = 0;  ///< points on the tool's surface
   double rate_hz = 0.0;  ///< ticks per second of virtual time
+  int max_regions = 1;   ///< contact regions at a time; a convex tool needs one
   double r_th_m = 0.0;   ///< contact points closer than this are one region
   double r_R_m = 0.0;    ///< radius of the local neighbourhood R
   double C_n = 0.0;      ///< local factor, strength
@@ -88,6 +129,16 @@ struct CompareSettings {
   int instants = 0;  ///< evenly spaced track instants recorded by both sides, first and last included
 };
 
+/// Limits of the device loop, and the virtual hand that can take the place of a device.
+struct LiveSettings {
+  double force_max_n = 0.0;             ///< norm of the force sent to the device
+  double force_slew_n_per_s = 0.0;      ///< change of that force
+  double release_s = 0.0;               ///< after a bad pose the force falls to zero in this time
+  double hand_mass_kg = 0.0;            ///< the hand's mass with the device's
+  double hand_damping_n_s_per_m = 0.0;  ///< between hand and track
+  double hand_stiffness_n_per_m = 0.0;  ///< between hand and track
+};
+
 struct Scene {
   std::string name;  ///< file stem; names the output folder
   std::string title;
@@ -96,15 +147,22 @@ struct Scene {
   std::vector<Waypoint> track;  ///< at least two, times strictly increasing
   Contact contact;
   FastSettings fast;
+  LiveSettings live;
   ReferenceSettings reference;
   CompareSettings compare;
 };
 
+/// The solid's surface, the centre of its bounding box at center_m.
+[[nodiscard]] std::unique_ptr<const Shape> solid_shape(const Solid& solid, const Vec3& center_m);
+
 /// The body's rest surface in the world frame, its lowest point on z = 0 and its centre on the z axis.
 [[nodiscard]] std::unique_ptr<const Shape> body_shape(const Body& body);
 
-/// The tool's surface in the tool frame.
+/// A convex tool's surface in the tool frame, whose origin is the mass centre; null for a mesh.
 [[nodiscard]] std::unique_ptr<const Shape> tool_shape(const Tool& tool);
+
+/// A mesh tool's surface in the tool frame.
+[[nodiscard]] TriangleMesh tool_mesh(const Tool& tool);
 
 /// The tool's pose at a time; held at the ends outside the track.
 [[nodiscard]] Pose pose_at(const std::vector<Waypoint>& track, double time_s);
@@ -112,8 +170,8 @@ struct Scene {
 /// The instants at which both sides record: compare.instants times, evenly spaced over the track [s].
 [[nodiscard]] std::vector<double> instants_s(const Scene& scene);
 
-/// How far the tool reaches below the rest surface [m]: the largest -signed_distance over the tool;
-/// zero when apart. The one depth both sides quote.
+/// How far the tool reaches below the rest surface [m]: the largest -signed_distance over the tool, to 1e-7 of the
+/// body's size; zero when apart. The one depth both sides quote. Not for a real-time step.
 [[nodiscard]] double rest_depth_m(const Shape& body, const Tool& tool, const Pose& pose);
 
 }  // namespace touchstone::scene

@@ -86,4 +86,23 @@ class Sphere final : public Shape {
   double radius_m_;
 };
 
+/// Ellipsoid with its axes along x, y, z; patches as on a sphere, each octant the sphere's stretched by the semi-axes.
+class Ellipsoid final : public Shape {
+ public:
+  /// @param semi_axes_m each > 0; equal ones are allowed
+  Ellipsoid(const Vec3& center_m, const Vec3& semi_axes_m);
+  [[nodiscard]] int patch_count() const noexcept override { return 8; }
+  [[nodiscard]] SurfacePoint at(int patch, double u, double v) const noexcept override;
+  [[nodiscard]] SurfaceQuery query(const Vec3& p_m) const noexcept override;
+  [[nodiscard]] double signed_distance_m(const Vec3& p_m) const noexcept override;
+  [[nodiscard]] double area_m2() const noexcept override;
+  [[nodiscard]] double volume_m3() const noexcept override;
+  [[nodiscard]] Bounds bounds() const noexcept override;
+  [[nodiscard]] const Vec3& center_m() const noexcept { return center_m_; }
+  [[nodiscard]] const Vec3& semi_axes_m() const noexcept { return semi_axes_m_; }
+
+ private:
+  Vec3 center_m_, semi_axes_m_;
+};
+
 }  // namespace touchstone::scene
