@@ -10,6 +10,8 @@ std::unique_ptr<const Shape> body_shape(const Body& body) {
       return std::make_unique<Box>(Vec3(0.0, 0.0, 0.5 * body.size_m.z()), body.size_m);
     case BodyShape::sphere:
       return std::make_unique<Sphere>(Vec3(0.0, 0.0, body.radius_m), body.radius_m);
+    default:
+      break;
   }
   return nullptr;
 }
@@ -18,6 +20,8 @@ std::unique_ptr<const Shape> tool_shape(const Tool& tool) {
   switch (tool.shape) {
     case ToolShape::sphere:
       return std::make_unique<Sphere>(Vec3::Zero(), tool.radius_m);
+    default:
+      break;
   }
   return nullptr;
 }

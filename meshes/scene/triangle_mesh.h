@@ -15,7 +15,7 @@ namespace touchstone::scene {
 /// A closed surface of triangles, counter-clockwise seen from outside, without duplicate or unused vertices. It may
 /// have several closed pieces and need not be convex.
 struct TriangleMesh {
-  Eigen::Matrix3Xd points_m;                           ///< one column per vertex
+  Eigen::Matrix3Xd points_m;  ///< one column per vertex
   std::vector<std::array<std::int32_t, 3>> triangles;
 
   [[nodiscard]] double area_m2() const;
