@@ -48,6 +48,8 @@ struct Solid {
   Profile profile;                  ///< revolution: about z
 };
 
+inline constexpr std::size_t inclusions_max = 16;
+
 /// A part of the body of another material, strictly inside it, apart from the other inclusions.
 struct Inclusion : Solid {
   Vec3 center_m = Vec3::Zero();  ///< of its bounding box, world frame at rest
