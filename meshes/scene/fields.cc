@@ -18,7 +18,7 @@ Choice<T> choice(std::vector<std::string_view> names, Enum& (*member)(T&)) {
           [member](T& object, int value) { member(object) = static_cast<Enum>(value); }};
 }
 
-std::string quoted(std::string_view text) {
+std::string toml_quoted(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
@@ -160,7 +160,7 @@ std::string value_text(const Field<T>& field, const T& object) {
     T& o;
     std::string operator()(double& (*at)(T&)) const { return number_text(at(o)); }
     std::string operator()(int& (*at)(T&)) const { return std::to_string(at(o)); }
-    std::string operator()(std::string& (*at)(T&)) const { return quoted(at(o)); }
+    std::string operator()(std::string& (*at)(T&)) const { return toml_quoted(at(o)); }
     std::string operator()(std::optional<double>& (*at)(T&)) const { return at(o) ? number_text(*at(o)) : ""; }
     std::string operator()(Vec3& (*at)(T&)) const {
       const Vec3& v = at(o);
@@ -172,7 +172,7 @@ std::string value_text(const Field<T>& field, const T& object) {
              number_text(q.z()) + "]";
     }
     std::string operator()(const Choice<T>& access) const {
-      return quoted(std::string(access.names[static_cast<std::size_t>(access.get(o))]));
+      return toml_quoted(std::string(access.names[static_cast<std::size_t>(access.get(o))]));
     }
   };
   return std::visit(Visitor{o}, field.access);
@@ -183,7 +183,7 @@ std::string expected_text(const Field<T>& field) {
   if (const auto* access = std::get_if<Choice<T>>(&field.access)) {
     std::string out;
     for (const std::string_view name : access->names) {
-      out += (out.empty() ? "" : " or ") + quoted(std::string(name));
+      out += (out.empty() ? "" : " or ") + toml_quoted(std::string(name));
     }
     return out;
   }
