@@ -6,6 +6,7 @@
 #include "fast/interpolation.h"
 #include "fast/model.h"
 #include "fast/region_force.h"
+#include "fast/stage_clock.h"
 
 #include <cstdint>
 #include <vector>
@@ -55,10 +56,14 @@ struct FastState {
   int region_count = 0;
   int regions_created = 0;  ///< since the start
   SurfaceField field;
+  StageClock* clock = nullptr;  ///< laps at the end of every stage, where somebody wants to know
   bool deformed = false;  ///< field differs from rest
   bool placed = false;    ///< `pose` holds a good pose
   scene::Pose pose;       ///< last good pose, its orientation of unit length
 
+  void lap(Stage stage) noexcept {
+    if (clock != nullptr) clock->lap(stage);
+  }
   /// The tool pushes on the body.
   [[nodiscard]] bool in_contact() const noexcept;
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
