@@ -40,6 +40,42 @@ TEST(RegionForce, IsTheWeightedSumAgainstTheDirection) {
   EXPECT_FALSE(force.saturated);
 }
 
+TEST(RegionForce, BothPartsActAtTheLoadsCentre) {
+  const DuffingLaw law(40.0, 3e8);
+  const scene::Mat3 R_WT = test::tilted().toRotationMatrix();
+  const Vec3 d = Vec3(0.6, 0.0, -0.8), along = Vec3(0.8, 0.0, 0.6);
+  const test::OwnedPoints points = two_points();
+  RegionForce force = region_force(law, R_WT, d, points);
+  EXPECT_EQ(force.normal_n, force.magnitude_n);
+  EXPECT_EQ(force.tangential_n, Vec3::Zero());
+  set_force(d, 3.0, 4.0 * along, force);
+  EXPECT_NEAR(force.magnitude_n, 5.0, 1e-15);
+  EXPECT_LT((force.force_n - (4.0 * along - 3.0 * d)).norm(), 1e-15);
+  // Each point carries the part of the whole that it has of the force along d.
+  const double F1 = 0.25 * law.force_n(0.003), F2 = 0.75 * law.force_n(0.001);
+  const Vec3 moment = (R_WT * Vec3(0.002, 0.0, -0.01)).cross(F1 / (F1 + F2) * force.force_n) +
+                      (R_WT * Vec3(-0.001, 0.003, -0.009)).cross(F2 / (F1 + F2) * force.force_n);
+  EXPECT_LT((force.torque_nm - moment).norm(), 1e-16);
+}
+
+TEST(RegionForce, DepthScaleDeepensEveryPoint) {
+  const DuffingLaw law(40.0, 3e8);
+  const test::OwnedPoints points = two_points();
+  const RegionLoad load = region_load(law, points, 2.0);
+  EXPECT_NEAR(load.force_n, 0.25 * law.force_n(0.006) + 0.75 * law.force_n(0.002), 1e-15 * load.force_n);
+  EXPECT_EQ(load.deepest_m, 0.006);
+}
+
+TEST(RegionForce, WithoutDepthThereIsNone) {
+  const DuffingLaw law(40.0, 3e8);
+  test::OwnedPoints points = two_points();
+  points.depth_m[0] = points.depth_m[1] = 0.0;
+  const RegionForce force = region_force(law, scene::Mat3::Identity(), -Vec3::UnitZ(), points);
+  EXPECT_EQ(force.magnitude_n, 0.0);
+  EXPECT_EQ(force.force_n, Vec3::Zero());
+  EXPECT_EQ(force.torque_nm, Vec3::Zero());
+}
+
 TEST(RegionForce, SaysWhenTheLawIsSaturated) {
   const test::OwnedPoints points = two_points();
   const DuffingLaw law(40.0, -40.0 / (3.0 * 0.002 * 0.002));  // peak at 2 mm
