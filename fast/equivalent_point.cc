@@ -10,7 +10,11 @@ DeformationOrigin deformation_origin(const scene::Shape& body, ExitDistance exit
                                      const RegionExtent& extent) noexcept {
   const Vec3 along_d_m = extent.center_W_m - exit_distance_m(body, extent.center_W_m, -d) * d;
   // The closest point removes the rounding of the projection and names the patch.
-  const scene::SurfaceQuery on_surface = body.query(along_d_m);
+  return origin_at(body, along_d_m);
+}
+
+DeformationOrigin origin_at(const scene::Shape& body, const Vec3& p_W_m) noexcept {
+  const scene::SurfaceQuery on_surface = body.query(p_W_m);
   return {on_surface.point_m, on_surface.normal, on_surface.patch};
 }
 

@@ -19,6 +19,9 @@ struct DeformationOrigin {
 [[nodiscard]] DeformationOrigin deformation_origin(const scene::Shape& body, ExitDistance exit_distance_m,
                                                    const scene::Vec3& d, const RegionExtent& extent) noexcept;
 
+/// The rest surface's point nearest to p_W_m as an origin of deformation.
+[[nodiscard]] DeformationOrigin origin_at(const scene::Shape& body, const scene::Vec3& p_W_m) noexcept;
+
 /// No point is deeper than this part of the body's local thickness (RegionExtent::thickness_m): beyond it the rest
 /// shape says nothing about the force, and the depth is held.
 inline constexpr double depth_limit_rel = 0.5;

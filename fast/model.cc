@@ -25,18 +25,20 @@ ToolSamples samples_of(const scene::Scene& scene) {
   return {};
 }
 
-Formulas formulas_of(const scene::FastSettings& fast) {
+Formulas formulas_of(const scene::Scene& scene) {
+  const scene::FastSettings& fast = scene.fast;
   Formulas formulas;
   switch (fast.formulation) {
     case scene::Formulation::published:
-      formulas = {distribute_mass_published, split_force_published, interpolate_published,
+      formulas = {distribute_mass_published, resolve_friction_published, split_force_published, interpolate_published,
                   apply_local_factor_published};
       break;
     case scene::Formulation::corrected:
-      formulas = {distribute_mass_corrected, split_force_corrected, interpolate_corrected,
+      formulas = {distribute_mass_corrected, resolve_friction_corrected, split_force_corrected, interpolate_corrected,
                   apply_local_factor_corrected};
       break;
   }
+  if (!scene.contact.friction) formulas.resolve_friction = nullptr;
   if (fast.C_n == 0.0) formulas.apply_local_factor = nullptr;
   return formulas;
 }
@@ -47,14 +49,15 @@ FastModel::FastModel(const scene::Scene& scene)
     : body(scene::body_shape(scene.body)),
       detection(detection_of(scene.body, *body)),
       tool(samples_of(scene)),
-      law(scene.contact.k1_n_per_m, scene.contact.k3_n_per_m3),
+      law(scene.contact),
+      friction(scene.contact.friction ? std::optional<FrictionLaw>(*scene.contact.friction) : std::nullopt),
       anchors(anchor_points(scene.body, *body)),
       skeleton(beam_skeleton(*anchors, scene)),
       local{scene.fast.C_n, scene.fast.C_r_m, scene.fast.r_R_m},
       surface(scene::tessellate(*body, scene.fast.triangles)),
       rest(surface_patches(surface, *anchors)),
       normals(normal_stencils(surface)),
-      formulas(formulas_of(scene.fast)),
+      formulas(formulas_of(scene)),
       max_regions(scene.tool.convex() ? 1 : scene.fast.max_regions) {}
 
 std::size_t FastModel::memory_bytes() const noexcept {

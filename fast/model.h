@@ -5,6 +5,7 @@
 #include "fast/beam_skeleton.h"
 #include "fast/contact_detection.h"
 #include "fast/contact_law.h"
+#include "fast/friction.h"
 #include "fast/interpolation.h"
 #include "fast/local_factor.h"
 #include "fast/mass_distribution.h"
@@ -15,12 +16,14 @@
 #include "scene/surface.h"
 
 #include <memory>
+#include <optional>
 
 namespace touchstone::fast {
 
 /// The stages in which the published and the corrected formulation differ, chosen when the model is built.
 struct Formulas {
   DistributeMass distribute_mass = nullptr;
+  ResolveFriction resolve_friction = nullptr;  ///< null where the scene has no friction: there is no such stage
   SplitForce split_force = nullptr;
   Interpolate interpolate = nullptr;
   ApplyLocalFactor apply_local_factor = nullptr;  ///< null where C_n = 0: there is no such stage
@@ -35,7 +38,8 @@ struct FastModel {
   std::unique_ptr<const scene::Shape> body;  ///< rest shape
   Detection detection;
   ToolSamples tool;
-  DuffingLaw law;
+  ContactLaw law;
+  std::optional<FrictionLaw> friction;
   std::unique_ptr<const AnchorPoints> anchors;
   BeamSkeleton skeleton;
   LocalConstants local;

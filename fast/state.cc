@@ -15,6 +15,7 @@ void ContactRegion::clear() noexcept {
   extent = {};
   origin = {};
   force = {};
+  friction = {};
   displacement_m.setZero();
   ends.clear();
 }

@@ -33,13 +33,14 @@ struct ContactRegion {
   void clear() noexcept;
 
   bool active = false;
-  int id = 0;                             ///< counts the regions as they came into being
+  int id = 0;                             ///< the smallest number free at its creation
   scene::Vec3 d = -scene::Vec3::UnitZ();  ///< direction of deformation, into the body
   double depth_rel = 0.0;                 ///< deepest point of the last tick over the body's thickness there
   RegionPoints points;                    ///< p_i, a window on FastState::store
   RegionExtent extent;
   DeformationOrigin origin;
   RegionForce force;
+  FrictionState friction;                            ///< as it begins where the scene has none
   scene::Vec3 displacement_m = scene::Vec3::Zero();  ///< D of the equivalent point contact, world
   BeamEnds ends;                                     ///< what it does to the anchor points
 
@@ -54,12 +55,11 @@ struct FastState {
   PointStore store;
   std::vector<ContactRegion> regions;  ///< by creation; the first `region_count` are active
   int region_count = 0;
-  int regions_created = 0;  ///< since the start
   SurfaceField field;
   StageClock* clock = nullptr;  ///< laps at the end of every stage, where somebody wants to know
-  bool deformed = false;  ///< field differs from rest
-  bool placed = false;    ///< `pose` holds a good pose
-  scene::Pose pose;       ///< last good pose, its orientation of unit length
+  bool deformed = false;        ///< field differs from rest
+  bool placed = false;          ///< `pose` holds a good pose
+  scene::Pose pose;             ///< last good pose, its orientation of unit length
 
   void lap(Stage stage) noexcept {
     if (clock != nullptr) clock->lap(stage);

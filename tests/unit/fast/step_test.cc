@@ -43,8 +43,8 @@ TEST(Step, PressesBackHarderTheDeeper) {
       before_n = s.force_n().z();
     }
     // A mean over the region of f(d_i): below the law at the deepest point.
-    EXPECT_LT(before_n, s.model.law.force_n(0.006));
-    EXPECT_GT(before_n, 0.05 * s.model.law.force_n(0.006));
+    EXPECT_LT(before_n, s.model.law.at(0.0).force_n(0.006));
+    EXPECT_GT(before_n, 0.05 * s.model.law.at(0.0).force_n(0.006));
   }
 }
 
@@ -134,7 +134,7 @@ TEST(Step, DeepPressNeverPopsThrough) {
       if (i > 0) {
         ASSERT_GT(s.force_n().z(), 0.0) << i;
       }
-      ASSERT_LT(s.force_n().z(), 1.01 * s.model.law.force_n(0.03));
+      ASSERT_LT(s.force_n().z(), 1.01 * s.model.law.at(0.0).force_n(0.03));
     }
     EXPECT_TRUE(limited);
   }

@@ -1,0 +1,94 @@
+#include "fast/press.h"
+
+namespace touchstone::fast {
+namespace {
+
+using scene::Pose;
+using scene::Vec3;
+
+/// Beyond this part of the body's thickness the closest surface says little about where the tool came from, and the
+/// region keeps its direction.
+constexpr double direction_kept_rel = 0.25;
+
+/// Way of the tool's material point at the contact's load centre since the last tick [m].
+Vec3 contact_step_m(const Motion& motion, const RegionForce& force) noexcept {
+  const Vec3 now_m = motion.at.origin_W_m + force.load_center_m;
+  const Placement before = placement(motion.before);
+  const Vec3 before_m = before.R_WT * (motion.at.R_WT.transpose() * force.load_center_m) + before.origin_W_m;
+  return now_m - before_m;
+}
+
+}  // namespace
+
+Placement placement(const Pose& pose) noexcept { return {pose.orientation.toRotationMatrix(), pose.position_m}; }
+
+Vec3 entry_direction(const FastModel& model, const Motion& motion, const InsideSummary& inside,
+                     FastState& state) noexcept {
+  InsideSummary first = inside;
+  if (!motion.first && inside.deepest_m > model.tool.spacing_m) {
+    double apart = 0.0, touching = 1.0;
+    for (int halving = 0; halving < 30; ++halving) {
+      const double s = 0.5 * (apart + touching);
+      const Pose between{(1.0 - s) * motion.before.position_m + s * motion.pose.position_m,
+                         motion.before.orientation.slerp(s, motion.pose.orientation)};
+      RegionPoints points = state.store.window();
+      const InsideSummary here =
+          model.detection.find_inside(*model.body, model.tool, placement(between), 0.0, 1, points);
+      if (points.count > 0) {
+        touching = s;
+        first = here;
+      } else {
+        apart = s;
+      }
+    }
+  }
+  const Vec3 otherwise = -model.body->query(motion.pose.position_m).normal;
+  return direction_from(first, otherwise);
+}
+
+Vec3 next_direction(const ContactRegion& region, const InsideSummary& inside) noexcept {
+  return region.depth_rel < direction_kept_rel ? follow_direction(region.d, inside) : region.d;
+}
+
+StepStatus press(const FastModel& model, const Motion& motion, bool created, ContactRegion& region,
+                 FastState& state) noexcept {
+  region.force = RegionForce{};
+  region.displacement_m.setZero();
+  region.extent = model.detection.measure_depths(*model.body, motion.at.R_WT, region.d, region.points);
+  // Only the tool's back is inside: nothing pushes, but the region lives on with its direction.
+  if (region.points.count == 0) return StepStatus::ok;
+  StepStatus status = StepStatus::ok;
+  region.depth_rel = region.extent.deepest_m / region.extent.thickness_m;
+  region.origin = deformation_origin(*model.body, model.detection.exit_distance_m, region.d, region.extent);
+  if (limit_depths(depth_limit_rel * region.extent.thickness_m, region.points)) status |= StepStatus::depth_limited;
+  state.lap(Stage::detection);
+
+  model.formulas.distribute_mass(motion.at.R_WT.transpose() * region.d, model.tool.spacing_m, region.points);
+  const DuffingLaw law = model.law.at(contact_radius_m(region.extent.area_m2));
+  region.force = region_force(law, motion.at.R_WT, region.d, region.points);
+  if (region.force.saturated) status |= StepStatus::law_saturated;
+  if (model.formulas.resolve_friction == nullptr) {
+    region.displacement_m = law.depth_m(region.force.magnitude_n) * region.d;
+    state.lap(Stage::force);
+    return status;
+  }
+  state.lap(Stage::force);
+  const Vec3 step_m = created ? Vec3(Vec3::Zero()) : contact_step_m(motion, region.force);
+  region.displacement_m = model.formulas.resolve_friction(*model.friction, law, motion.at.R_WT, region.d, region.points,
+                                                          step_m, region.force, region.friction);
+  // The contact has been dragged from where it began.
+  region.origin = origin_at(*model.body, region.origin.p0_W_m - region.friction.stretch_m);
+  state.lap(Stage::friction);
+  return status;
+}
+
+ContactPoint contact_point(const FastModel& model, const ContactRegion& region) noexcept {
+  ContactPoint contact;
+  contact.patch = region.origin.patch;
+  contact.place = model.anchors->at(contact.patch, region.origin.p0_W_m);
+  contact.normal = region.origin.normal;
+  if (!contact.place.held()) contact.displacement_m = region.displacement_m;
+  return contact;
+}
+
+}  // namespace touchstone::fast

@@ -1,0 +1,35 @@
+// What one contact region does in a tick: direction, depths, shares, force, friction, equivalent point contact
+// (sections III, IV and appendix III).
+#pragma once
+
+#include "fast/model.h"
+#include "fast/state.h"
+
+namespace touchstone::fast {
+
+[[nodiscard]] Placement placement(const scene::Pose& pose) noexcept;
+
+/// The tool's poses around a tick.
+struct Motion {
+  scene::Pose pose;    ///< now, orientation of unit length
+  Placement at;        ///< the same
+  scene::Pose before;  ///< in the last tick; equal to `pose` in the first
+  bool first = true;   ///< nothing is known of the last tick
+};
+
+/// Direction of deformation of a region that has just come into being in a tick that began apart. Where one tick has
+/// brought the tool further in than its samples lie apart, the pose of first touch on the way is looked for, or a fast
+/// tool would be taken to have come from the nearest side of the body. Uses up the points of state.store.
+[[nodiscard]] scene::Vec3 entry_direction(const FastModel&, const Motion&, const InsideSummary&, FastState&) noexcept;
+
+/// A region's direction in a further tick.
+[[nodiscard]] scene::Vec3 next_direction(const ContactRegion& region, const InsideSummary& inside) noexcept;
+
+/// Depths, shares, force with friction, and the equivalent point contact of a region whose points and direction are
+/// known. @param created in this tick: friction has no way behind it
+StepStatus press(const FastModel&, const Motion&, bool created, ContactRegion&, FastState&) noexcept;
+
+/// The equivalent point contact as a point of the interpolation.
+[[nodiscard]] ContactPoint contact_point(const FastModel&, const ContactRegion&) noexcept;
+
+}  // namespace touchstone::fast
