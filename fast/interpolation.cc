@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace touchstone::fast {
 namespace {
@@ -145,20 +144,10 @@ void interpolate_published(const SurfacePatches& rest, const std::vector<Vec3>& 
     for (std::size_t v = begin; v < end; ++v) {
       const float height = hat(v);
       const float raised_length = length_at(v) + height * length_rise, raised_angle = angle_at(v) + height * angle_rise;
-      const float magnitude = raised_length > 0.0f ? raised_length : 0.0f;
-      const float not_negative = raised_angle > 0.0f ? raised_angle : 0.0f;
-      const float theta = not_negative < std::numbers::pi_v<float> ? not_negative : std::numbers::pi_v<float>;
-      // Unit tangent towards the mean displacement; none where that is along the normal.
-      const float along = toward.x() * nx[v] + toward.y() * ny[v] + toward.z() * nz[v];
-      const float tx = toward.x() - along * nx[v], ty = toward.y() - along * ny[v], tz = toward.z() - along * nz[v];
-      const float tangent2 = tx * tx + ty * ty + tz * tz;
-      const float inverse = 1.0f / std::sqrt(tangent2 + 1e-20f);
-      const float to_unit = tangent2 > 1e-10f ? inverse : 0.0f;
-      const CosSin turn = cos_sin(theta);
-      const float out = magnitude * turn.cos, aside = magnitude * turn.sin * to_unit;
-      x[v] = out * nx[v] + aside * tx;
-      y[v] = out * ny[v] + aside * ty;
-      z[v] = out * nz[v] + aside * tz;
+      const Turned turned_m = turned(raised_length, raised_angle, toward, nx[v], ny[v], nz[v]);
+      x[v] = turned_m.x;
+      y[v] = turned_m.y;
+      z[v] = turned_m.z;
     }
   }
 }

@@ -92,6 +92,27 @@ TOUCHSTONE_INLINE CosSin cos_sin(float angle) noexcept {
   return {-sine, cosine};
 }
 
+/// The displacement of a length and an angle to the normal, towards the given unit direction; lengths are kept >= 0 and
+/// angles within 0 to pi.
+struct Turned {
+  float x, y, z;
+};
+TOUCHSTONE_INLINE Turned turned(float length_m, float angle_rad, const Eigen::Vector3f& toward, float nx, float ny,
+                                float nz) noexcept {
+  const float magnitude = length_m > 0.0f ? length_m : 0.0f;
+  const float not_negative = angle_rad > 0.0f ? angle_rad : 0.0f;
+  const float theta = not_negative < std::numbers::pi_v<float> ? not_negative : std::numbers::pi_v<float>;
+  // Unit tangent towards the direction; none where that is along the normal.
+  const float along = toward.x() * nx + toward.y() * ny + toward.z() * nz;
+  const float tx = toward.x() - along * nx, ty = toward.y() - along * ny, tz = toward.z() - along * nz;
+  const float tangent2 = tx * tx + ty * ty + tz * tz;
+  const float inverse = 1.0f / std::sqrt(tangent2 + 1e-20f);
+  const float to_unit = tangent2 > 1e-10f ? inverse : 0.0f;
+  const CosSin turn = cos_sin(theta);
+  const float out = magnitude * turn.cos, aside = magnitude * turn.sin * to_unit;
+  return {out * nx + aside * tx, out * ny + aside * ty, out * nz + aside * tz};
+}
+
 /// Natural logarithm of a normal positive number, to 2e-7 of max(1, |ln x|), so that the loop is vectorised.
 TOUCHSTONE_INLINE float log_of(float x) noexcept {
   // x = 2^exponent m with m within sqrt(1/2) to sqrt(2); ln m = 2 artanh(s).

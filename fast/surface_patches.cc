@@ -22,8 +22,6 @@ Vec3 normal_near(const scene::Surface& surface, const Patch& patch, const Vec3& 
   return normal;
 }
 
-constexpr std::int32_t block_vertices = 32;
-
 void add_blocks(const Columns3& rest_W_m, Patch& patch, std::vector<VertexBlock>& blocks) {
   patch.first_block = static_cast<std::int32_t>(blocks.size());
   for (std::int32_t begin = patch.begin; begin < patch.end; begin += block_vertices) {

@@ -15,7 +15,10 @@ namespace touchstone::fast {
 using Columns3 = std::array<std::vector<float>, 3>;
 using Columns4 = std::array<std::vector<float>, patch_corners_max>;
 
-/// A few consecutive vertices of a patch and the box around their rest points, to pass over what is out of reach.
+inline constexpr std::int32_t block_vertices = 32;
+
+/// Consecutive vertices of a patch, at most block_vertices, and the box around their rest points, to pass over what is
+/// out of reach.
 struct VertexBlock {
   std::int32_t begin = 0, end = 0;
   Eigen::Vector3f low_W_m, high_W_m;
