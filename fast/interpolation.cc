@@ -1,16 +1,17 @@
 #include "fast/interpolation.h"
 
+#include "fast/patch_kernels.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace touchstone::fast {
 namespace {
 
 using scene::Vec3;
 
-constexpr std::size_t corners = patch_corners_max;
+constexpr std::size_t corners = corners_max;
 
 /// Value of a quantity at p0 by the anchor points alone.
 template <class Quantity>
@@ -19,66 +20,8 @@ Quantity at_p0(const std::array<Quantity, corners>& corner, const PatchPlace& pl
   return sum;
 }
 
-/// The hat over the star of p0.
-class Hat {
- public:
-  Hat(const SurfacePatches& rest, const PatchPlace& p0) noexcept {
-    for (std::size_t k = 0; k < corners; ++k) {
-      edge_[k] = rest.edge[k].data();
-      // p0 on an edge: the hat has no width on that side.
-      inverse_[k] = static_cast<float>(1.0 / std::max(p0.edge[k], 1e-9));
-    }
-  }
-  [[nodiscard]] float operator()(std::size_t v) const noexcept {
-    const float e0 = edge_[0][v] * inverse_[0], e1 = edge_[1][v] * inverse_[1];
-    const float e2 = edge_[2][v] * inverse_[2], e3 = edge_[3][v] * inverse_[3];
-    const float a = e0 < e1 ? e0 : e1, b = e2 < e3 ? e2 : e3;
-    // At most 1: away from p0 some edge comes nearer.
-    return a < b ? a : b;
-  }
-
- private:
-  std::array<const float*, corners> edge_;
-  std::array<float, corners> inverse_;
-};
-
-/// Sum of a patch quantity by weight at vertex v.
-class Weighted {
- public:
-  Weighted(const SurfacePatches& rest, const std::array<double, corners>& corner) noexcept {
-    for (std::size_t k = 0; k < corners; ++k) {
-      weight_[k] = rest.weight[k].data();
-      corner_[k] = static_cast<float>(corner[k]);
-    }
-  }
-  [[nodiscard]] float operator()(std::size_t v) const noexcept {
-    return weight_[0][v] * corner_[0] + weight_[1][v] * corner_[1] + weight_[2][v] * corner_[2] +
-           weight_[3][v] * corner_[3];
-  }
-
- private:
-  std::array<const float*, corners> weight_;
-  std::array<float, corners> corner_;
-};
-
-std::array<double, corners> component(const std::array<Vec3, corners>& u, int axis) noexcept {
-  std::array<double, corners> out{};
-  for (std::size_t k = 0; k < corners; ++k) out[k] = u[k][axis];
-  return out;
-}
-
-std::array<Vec3, corners> corner_displacements(const Patch& patch, const std::vector<Vec3>& anchor_m) noexcept {
-  std::array<Vec3, corners> u;
-  for (std::size_t k = 0; k < corners; ++k) u[k] = anchor_m[static_cast<std::size_t>(patch.anchor[k])];
-  return u;
-}
-
 bool moves(const ContactPoint& contact, std::size_t patch) noexcept {
   return static_cast<std::size_t>(contact.patch) == patch && contact.displacement_m.squaredNorm() > 0.0;
-}
-
-double angle_to(const Vec3& direction, const Vec3& normal) noexcept {
-  return std::atan2(direction.cross(normal).norm(), direction.dot(normal));
 }
 
 /// Angle of a displacement to the outward normal, `mean` standing in where nothing moves.
@@ -86,37 +29,76 @@ double displacement_angle(const Vec3& u_m, const Vec3& normal, const Vec3& mean_
   return angle_to(u_m.squaredNorm() > 0.0 ? u_m : mean_m, normal);
 }
 
-/// cos and sin of an angle within 0 to pi by their series about pi/2, to 1e-7, so that the loop is vectorised.
-struct CosSin {
-  float cos, sin;
+/// A corner of a patch that moves.
+struct MovingCorner {
+  const float* weight;
+  float x, y, z;
 };
-CosSin cos_sin(float angle) noexcept {
-  const float x = angle - 0.5f * std::numbers::pi_v<float>, x2 = x * x;
-  const float sine =
-      x * (1.0f + x2 * (-1.0f / 6 + x2 * (1.0f / 120 + x2 * (-1.0f / 5040 + x2 * (1.0f / 362880 - x2 / 39916800)))));
-  const float cosine = 1.0f + x2 * (-0.5f + x2 * (1.0f / 24 + x2 * (-1.0f / 720 + x2 * (1.0f / 40320 - x2 / 3628800))));
-  return {-sine, cosine};
+
+/// Sum of the displacements of a patch's moving corners by weight, all axes in one pass.
+template <std::size_t count>
+TOUCHSTONE_INLINE void weigh(const MovingCorner* corner, std::size_t begin, std::size_t end, float* x, float* y,
+                             float* z) noexcept {
+  // Columns never overlap.
+#pragma GCC ivdep
+  for (std::size_t v = begin; v < end; ++v) {
+    float sx = 0.0f, sy = 0.0f, sz = 0.0f;
+    if constexpr (count > 0) {
+      const float w0 = corner[0].weight[v];
+      sx = w0 * corner[0].x, sy = w0 * corner[0].y, sz = w0 * corner[0].z;
+    }
+    if constexpr (count > 1) {
+      const float w1 = corner[1].weight[v];
+      sx += w1 * corner[1].x, sy += w1 * corner[1].y, sz += w1 * corner[1].z;
+    }
+    if constexpr (count > 2) {
+      const float w2 = corner[2].weight[v];
+      sx += w2 * corner[2].x, sy += w2 * corner[2].y, sz += w2 * corner[2].z;
+    }
+    if constexpr (count > 3) {
+      const float w3 = corner[3].weight[v];
+      sx += w3 * corner[3].x, sy += w3 * corner[3].y, sz += w3 * corner[3].z;
+    }
+    x[v] = sx, y[v] = sy, z[v] = sz;
+  }
 }
 
 }  // namespace
 
+TOUCHSTONE_WIDE_LOOPS
 void interpolate_corrected(const SurfacePatches& rest, const std::vector<Vec3>& anchor_displacement_m,
                            const ContactPoint& contact, SurfaceField& field) noexcept {
+  float *x = field.displacement_m[0].data(), *y = field.displacement_m[1].data(), *z = field.displacement_m[2].data();
   for (std::size_t p = 0; p < rest.patches.size(); ++p) {
     const Patch& patch = rest.patches[p];
     const std::array<Vec3, corners> u = corner_displacements(patch, anchor_displacement_m);
     const auto begin = static_cast<std::size_t>(patch.begin), end = static_cast<std::size_t>(patch.end);
-    for (int axis = 0; axis < 3; ++axis) {
-      const Weighted weighted(rest, component(u, axis));
-      float* out = field.displacement_m[static_cast<std::size_t>(axis)].data();
-      // Columns never overlap.
-#pragma GCC ivdep
-      for (std::size_t v = begin; v < end; ++v) out[v] = weighted(v);
+    // Held corners are most of a body's, and a patch with three repeats one: what adds nothing is not read.
+    MovingCorner moving[corners];
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < patch.corners; ++k) {
+      const Eigen::Vector3f to = u[k].cast<float>();
+      if (!to.isZero(0.0f)) moving[count++] = {rest.weight[k].data(), to.x(), to.y(), to.z()};
+    }
+    switch (count) {
+      case 0:
+        weigh<0>(moving, begin, end, x, y, z);
+        break;
+      case 1:
+        weigh<1>(moving, begin, end, x, y, z);
+        break;
+      case 2:
+        weigh<2>(moving, begin, end, x, y, z);
+        break;
+      case 3:
+        weigh<3>(moving, begin, end, x, y, z);
+        break;
+      default:
+        weigh<4>(moving, begin, end, x, y, z);
     }
     if (!moves(contact, p)) continue;
     const Hat hat(rest, contact.place);
     const Eigen::Vector3f rise = (contact.displacement_m - at_p0(u, contact.place, Vec3(Vec3::Zero()))).cast<float>();
-    float *x = field.displacement_m[0].data(), *y = field.displacement_m[1].data(), *z = field.displacement_m[2].data();
 #pragma GCC ivdep
     for (std::size_t v = begin; v < end; ++v) {
       const float height = hat(v);
@@ -127,6 +109,7 @@ void interpolate_corrected(const SurfacePatches& rest, const std::vector<Vec3>& 
   }
 }
 
+TOUCHSTONE_WIDE_LOOPS
 void interpolate_published(const SurfacePatches& rest, const std::vector<Vec3>& anchor_displacement_m,
                            const ContactPoint& contact, SurfaceField& field) noexcept {
   for (std::size_t p = 0; p < rest.patches.size(); ++p) {
@@ -161,20 +144,10 @@ void interpolate_published(const SurfacePatches& rest, const std::vector<Vec3>& 
     for (std::size_t v = begin; v < end; ++v) {
       const float height = hat(v);
       const float raised_length = length_at(v) + height * length_rise, raised_angle = angle_at(v) + height * angle_rise;
-      const float magnitude = raised_length > 0.0f ? raised_length : 0.0f;
-      const float not_negative = raised_angle > 0.0f ? raised_angle : 0.0f;
-      const float theta = not_negative < std::numbers::pi_v<float> ? not_negative : std::numbers::pi_v<float>;
-      // Unit tangent towards the mean displacement; none where that is along the normal.
-      const float along = toward.x() * nx[v] + toward.y() * ny[v] + toward.z() * nz[v];
-      const float tx = toward.x() - along * nx[v], ty = toward.y() - along * ny[v], tz = toward.z() - along * nz[v];
-      const float tangent2 = tx * tx + ty * ty + tz * tz;
-      const float inverse = 1.0f / std::sqrt(tangent2 + 1e-20f);
-      const float to_unit = tangent2 > 1e-10f ? inverse : 0.0f;
-      const CosSin turn = cos_sin(theta);
-      const float out = magnitude * turn.cos, aside = magnitude * turn.sin * to_unit;
-      x[v] = out * nx[v] + aside * tx;
-      y[v] = out * ny[v] + aside * ty;
-      z[v] = out * nz[v] + aside * tz;
+      const Turned turned_m = turned(raised_length, raised_angle, toward, nx[v], ny[v], nz[v]);
+      x[v] = turned_m.x;
+      y[v] = turned_m.y;
+      z[v] = turned_m.z;
     }
   }
 }

@@ -29,6 +29,11 @@ struct RegionSize {
 /// displacement, and the factor sets in over one core radius outside their rim, so that no edge appears there.
 [[nodiscard]] double local_factor_corrected(const LocalConstants&, const RegionSize&, double r_m) noexcept;
 
+/// How much of the factor's effect a region's contact points leave, at distance r from its p0: 0 where they are, 1
+/// away from them. The factor above holds its own region's already.
+[[nodiscard]] double local_room_published(const LocalConstants&, const RegionSize&, double r_m) noexcept;
+[[nodiscard]] double local_room_corrected(const LocalConstants&, const RegionSize&, double r_m) noexcept;
+
 /// Multiplies the displacement of every vertex with r < r_R, r its rest distance from p0.
 using ApplyLocalFactor = void (*)(const SurfacePatches&, const LocalConstants&, const RegionSize&,
                                   const scene::Vec3& p0_W_m, SurfaceField&) noexcept;

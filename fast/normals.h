@@ -15,17 +15,28 @@ namespace touchstone::fast {
 /// mesh directions, laid into the rest shape's tangent plane. The undeformed surface thus has the shape's own normals,
 /// where averaged triangles would have theirs. Neighbours are taken within the patch, so a sharp edge keeps one normal
 /// per side; on the border of a patch the vertex itself stands in for the missing neighbour.
+///
+/// Most vertices have their neighbours at the same offsets as the vertex before and are worked off in runs. A run goes
+/// on over a vertex or two with other neighbours, as from one row of a mesh to the next; what it leaves there is
+/// written over by the pass over the single vertices.
 struct NormalStencils {
   /// Consecutive vertices whose neighbours lie at the same offsets in the vertex order.
   struct Run {
     std::int32_t begin, end;
     std::array<std::int32_t, 4> offset;  ///< of a, b, c, d
+    bool flat;                           ///< the chords are those of the first vertex all along
+  };
+  /// A vertex with neighbours of its own.
+  struct Single {
+    std::int32_t vertex;
+    std::array<std::int32_t, 4> neighbour;  ///< a, b, c, d
   };
   std::vector<Run> runs;
+  std::vector<Single> singles;
   Columns3 t1_m, t2_m;
 
   [[nodiscard]] std::size_t memory_bytes() const noexcept {
-    return runs.size() * sizeof(Run) + 6 * t1_m[0].size() * sizeof(float);
+    return runs.size() * sizeof(Run) + singles.size() * sizeof(Single) + 6 * t1_m[0].size() * sizeof(float);
   }
 };
 [[nodiscard]] NormalStencils normal_stencils(const scene::Surface& surface);

@@ -22,10 +22,27 @@ Vec3 normal_near(const scene::Surface& surface, const Patch& patch, const Vec3& 
   return normal;
 }
 
+void add_blocks(const Columns3& rest_W_m, Patch& patch, std::vector<VertexBlock>& blocks) {
+  patch.first_block = static_cast<std::int32_t>(blocks.size());
+  for (std::int32_t begin = patch.begin; begin < patch.end; begin += block_vertices) {
+    VertexBlock block;
+    block.begin = begin;
+    block.end = std::min(begin + block_vertices, patch.end);
+    for (int axis = 0; axis < 3; ++axis) {
+      const float* column = rest_W_m[static_cast<std::size_t>(axis)].data();
+      const auto [low, high] = std::minmax_element(column + block.begin, column + block.end);
+      block.low_W_m[axis] = *low;
+      block.high_W_m[axis] = *high;
+    }
+    blocks.push_back(block);
+  }
+  patch.last_block = static_cast<std::int32_t>(blocks.size());
+}
+
 }  // namespace
 
 std::size_t SurfacePatches::memory_bytes() const noexcept {
-  return patches.size() * sizeof(Patch) + 14 * vertex_count() * sizeof(float);
+  return patches.size() * sizeof(Patch) + blocks.size() * sizeof(VertexBlock) + 14 * vertex_count() * sizeof(float);
 }
 
 SurfacePatches surface_patches(const scene::Surface& surface, const AnchorPoints& anchors) {
@@ -54,6 +71,7 @@ SurfacePatches surface_patches(const scene::Surface& surface, const AnchorPoints
         rest.edge[k].push_back(static_cast<float>(at.edge[k]));
       }
     }
+    add_blocks(rest.rest_W_m, patch, rest.blocks);
     rest.patches.push_back(patch);
   }
   return rest;

@@ -15,6 +15,20 @@ namespace touchstone::fast {
 using Columns3 = std::array<std::vector<float>, 3>;
 using Columns4 = std::array<std::vector<float>, patch_corners_max>;
 
+inline constexpr std::int32_t block_vertices = 32;
+
+/// Consecutive vertices of a patch, at most block_vertices, and the box around their rest points, to pass over what is
+/// out of reach.
+struct VertexBlock {
+  std::int32_t begin = 0, end = 0;
+  Eigen::Vector3f low_W_m, high_W_m;
+
+  /// Square of a point's distance to the box.
+  [[nodiscard]] float distance2_m2(const Eigen::Vector3f& p_m) const noexcept {
+    return (low_W_m - p_m).cwiseMax(p_m - high_W_m).cwiseMax(0.0f).squaredNorm();
+  }
+};
+
 /// One patch of the rest surface.
 struct Patch {
   std::int32_t begin = 0, end = 0;  ///< its vertices
@@ -25,11 +39,13 @@ struct Patch {
   /// A ball around its vertices.
   scene::Vec3 center_W_m;
   double radius_m = 0.0;
+  std::int32_t first_block = 0, last_block = 0;  ///< its blocks, the last one not included
 };
 
 /// Everything about the rest surface that the passes read, fixed once built.
 struct SurfacePatches {
   std::vector<Patch> patches;
+  std::vector<VertexBlock> blocks;
   Columns3 rest_W_m;  ///< rest points
   Columns3 normal;    ///< outward unit normals of the rest shape
   Columns4 weight;    ///< PatchPlace::weight
