@@ -108,6 +108,8 @@ std::unique_ptr<const AnchorPoints> anchor_points(const scene::Body& body, const
       return std::make_unique<BoxAnchors>(static_cast<const scene::Box&>(shape));
     case scene::BodyShape::sphere:
       return std::make_unique<SphereAnchors>(static_cast<const scene::Sphere&>(shape), body.support_height_m);
+    default:
+      break;
   }
   return nullptr;
 }

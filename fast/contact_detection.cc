@@ -3,6 +3,7 @@
 #include "fast/rest_distance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace touchstone::fast {
@@ -11,9 +12,16 @@ namespace {
 using scene::Mat3;
 using scene::Vec3;
 
+void add(InsideSummary& summary, const RestDistance& rest, double area_m2) noexcept {
+  const double weight = -rest.signed_distance_m * area_m2;
+  summary.normal_sum += weight * rest.normal;
+  summary.weight_sum += weight;
+  summary.deepest_m = std::max(summary.deepest_m, -rest.signed_distance_m);
+}
+
 template <class Body>
-InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, const Placement& at, int limit,
-                          RegionPoints& points) noexcept {
+InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, const Placement& at, double margin_m,
+                          int limit, RegionPoints& points) noexcept {
   const Body& body = static_cast<const Body&>(shape);
   InsideSummary summary;
   int count = 0;
@@ -21,7 +29,7 @@ InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, co
   for (std::int32_t node = 0; node < nodes && count < limit;) {
     const SampleBall& ball = tool.tree[static_cast<std::size_t>(node)];
     // Not ">": a centre at NaN distance is passed over too.
-    if (!(body.signed_distance_m(at.R_WT * ball.center_T_m + at.origin_W_m) <= ball.radius_m)) {
+    if (!(body.signed_distance_m(at.R_WT * ball.center_T_m + at.origin_W_m) <= ball.radius_m + margin_m)) {
       node = ball.next;
       continue;
     }
@@ -31,11 +39,8 @@ InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, co
       const Vec3 p_T(tool.x_T_m[i], tool.y_T_m[i], tool.z_T_m[i]);
       const Vec3 p_W = at.R_WT * p_T + at.origin_W_m;
       const RestDistance rest = rest_distance(body, p_W);
-      if (!(rest.signed_distance_m < 0.0)) continue;
-      const double weight = -rest.signed_distance_m * tool.area_m2[i];
-      summary.normal_sum += weight * rest.normal;
-      summary.weight_sum += weight;
-      summary.deepest_m = std::max(summary.deepest_m, -rest.signed_distance_m);
+      if (!(rest.signed_distance_m < margin_m)) continue;
+      if (rest.signed_distance_m < 0.0) add(summary, rest, tool.area_m2[i]);
       const auto k = static_cast<std::size_t>(count++);
       points.x_W_m[k] = p_W.x();
       points.y_W_m[k] = p_W.y();
@@ -47,9 +52,21 @@ InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, co
       points.ny_T[k] = tool.ny_T[i];
       points.nz_T[k] = tool.nz_T[i];
       points.area_m2[k] = tool.area_m2[i];
+      points.sample[k] = static_cast<std::int32_t>(i);
     }
   }
   points.count = count;
+  return summary;
+}
+
+template <class Body>
+InsideSummary summarise(const scene::Shape& shape, const RegionPoints& points) noexcept {
+  const Body& body = static_cast<const Body&>(shape);
+  InsideSummary summary;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
+    const RestDistance rest = rest_distance(body, points.p_W_m(i));
+    if (rest.signed_distance_m < 0.0) add(summary, rest, points.area_m2[i]);
+  }
   return summary;
 }
 
@@ -98,22 +115,47 @@ double exit_distance(const scene::Shape& shape, const Vec3& p_W_m, const Vec3& d
 }
 
 template <class Body>
-constexpr Detection detection_of{&find_inside<Body>, &measure_depths<Body>, &exit_distance<Body>};
+constexpr Detection detection_of{&find_inside<Body>, &summarise<Body>, &measure_depths<Body>, &exit_distance<Body>};
 
 }  // namespace
 
-RegionPoints::RegionPoints(int capacity) {
-  for (auto* column :
-       {&x_W_m, &y_W_m, &z_W_m, &x_T_m, &y_T_m, &z_T_m, &nx_T, &ny_T, &nz_T, &area_m2, &cos_theta, &depth_m, &share}) {
-    column->resize(static_cast<std::size_t>(capacity));
-  }
+namespace {
+
+constexpr int columns = 13;  // of doubles
+
+std::array<double**, columns> columns_of(RegionPoints& p) noexcept {
+  return {&p.x_W_m, &p.y_W_m, &p.z_W_m,   &p.x_T_m,     &p.y_T_m,   &p.z_T_m, &p.nx_T,
+          &p.ny_T,  &p.nz_T,  &p.area_m2, &p.cos_theta, &p.depth_m, &p.share};
 }
+
+}  // namespace
 
 void RegionPoints::move(int from, int to) noexcept {
   const auto i = static_cast<std::size_t>(from), k = static_cast<std::size_t>(to);
-  for (auto* column : {&x_W_m, &y_W_m, &z_W_m, &x_T_m, &y_T_m, &z_T_m, &nx_T, &ny_T, &nz_T, &area_m2}) {
-    (*column)[k] = (*column)[i];
+  for (double* column : {x_W_m, y_W_m, z_W_m, x_T_m, y_T_m, z_T_m, nx_T, ny_T, nz_T, area_m2}) column[k] = column[i];
+  sample[k] = sample[i];
+}
+
+RegionPoints RegionPoints::slice(int begin, int size) const noexcept {
+  RegionPoints part = *this;
+  for (double** column : columns_of(part)) *column += begin;
+  part.sample += begin;
+  part.count = size;
+  return part;
+}
+
+PointStore::PointStore(int capacity)
+    : numbers_(columns * static_cast<std::size_t>(capacity)), samples_(static_cast<std::size_t>(capacity)) {}
+
+RegionPoints PointStore::window() noexcept {
+  RegionPoints points;
+  double* next = numbers_.data();
+  for (double** column : columns_of(points)) {
+    *column = next;
+    next += samples_.size();
   }
+  points.sample = samples_.data();
+  return points;
 }
 
 Detection detection_for(const scene::Box&) noexcept { return detection_of<scene::Box>; }

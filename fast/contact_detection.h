@@ -7,6 +7,7 @@
 #include "scene/shape.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace touchstone::fast {
@@ -17,22 +18,40 @@ struct Placement {
   scene::Vec3 origin_W_m = scene::Vec3::Zero();  ///< the tool's mass centre
 };
 
-/// The points p_i of one contact region. Storage is fixed at construction; `count` entries are in use.
+/// The points p_i of one contact region: a window on a PointStore.
 struct RegionPoints {
-  explicit RegionPoints(int capacity);
-
   int count = 0;
-  std::vector<double> x_W_m, y_W_m, z_W_m;  ///< p_i in the world
-  std::vector<double> x_T_m, y_T_m, z_T_m;  ///< p_i about the tool's mass centre
-  std::vector<double> nx_T, ny_T, nz_T;     ///< outward normal n_i of the tool
-  std::vector<double> area_m2;              ///< A_i
-  std::vector<double> cos_theta;            ///< n_i . d, >= 0
-  std::vector<double> depth_m;              ///< d_i, along d from the rest surface
-  std::vector<double> share;                ///< m_i / m
+  double *x_W_m = nullptr, *y_W_m = nullptr, *z_W_m = nullptr;  ///< p_i in the world
+  double *x_T_m = nullptr, *y_T_m = nullptr, *z_T_m = nullptr;  ///< p_i about the tool's mass centre
+  double *nx_T = nullptr, *ny_T = nullptr, *nz_T = nullptr;     ///< outward normal n_i of the tool
+  double* area_m2 = nullptr;                                    ///< A_i
+  double* cos_theta = nullptr;                                  ///< n_i . d, >= 0
+  double* depth_m = nullptr;                                    ///< d_i, along d from the rest surface
+  double* share = nullptr;                                      ///< m_i / m
+  std::int32_t* sample = nullptr;                               ///< of ToolSamples
 
+  [[nodiscard]] scene::Vec3 p_W_m(std::size_t i) const noexcept { return {x_W_m[i], y_W_m[i], z_W_m[i]}; }
+  [[nodiscard]] scene::Vec3 p_T_m(std::size_t i) const noexcept { return {x_T_m[i], y_T_m[i], z_T_m[i]}; }
   /// Copies point `from` to the place `to`, as far as detection has filled it.
   void move(int from, int to) noexcept;
-  [[nodiscard]] std::size_t memory_bytes() const noexcept { return 13 * x_W_m.size() * sizeof(double); }
+  /// The points [begin, begin + size) of this window.
+  [[nodiscard]] RegionPoints slice(int begin, int size) const noexcept;
+};
+
+/// Owns the storage of the points, fixed at construction.
+class PointStore {
+ public:
+  explicit PointStore(int capacity);
+  /// A window on all of it, without points yet.
+  [[nodiscard]] RegionPoints window() noexcept;
+  [[nodiscard]] int capacity() const noexcept { return static_cast<int>(samples_.size()); }
+  [[nodiscard]] std::size_t memory_bytes() const noexcept {
+    return numbers_.size() * sizeof(double) + samples_.size() * sizeof(std::int32_t);
+  }
+
+ private:
+  std::vector<double> numbers_;
+  std::vector<std::int32_t> samples_;
 };
 
 /// What the inside samples say about the rest surface above them, each weighted by its area times its distance to
@@ -43,11 +62,15 @@ struct InsideSummary {
   double deepest_m = 0.0;  ///< largest distance to the rest surface
 };
 
-/// Fills `points` with the samples strictly inside the rest surface: a ball of the tree further out than its radius
-/// is passed over. Points come in the order of the tree, so equal poses give equal bits.
+/// Fills `points` with the samples strictly inside the rest surface, or nearer to it from outside than margin_m: a ball
+/// of the tree further out than that is passed over. Points come in the order of the tree, so equal poses give equal
+/// bits. The summary speaks of the inside ones.
 /// @param limit stops once this many points are found
-using FindInside = InsideSummary (*)(const scene::Shape&, const ToolSamples&, const Placement&, int limit,
-                                     RegionPoints&) noexcept;
+using FindInside = InsideSummary (*)(const scene::Shape&, const ToolSamples&, const Placement&, double margin_m,
+                                     int limit, RegionPoints&) noexcept;
+
+/// The summary of points as they stand, none left out but those that are not inside.
+using Summarise = InsideSummary (*)(const scene::Shape&, const RegionPoints&) noexcept;
 
 /// What the region looks like along d.
 struct RegionExtent {
@@ -68,6 +91,7 @@ using ExitDistance = double (*)(const scene::Shape&, const scene::Vec3& p_W_m, c
 /// Detection for one shape of body.
 struct Detection {
   FindInside find_inside = nullptr;
+  Summarise summarise = nullptr;
   MeasureDepths measure_depths = nullptr;
   ExitDistance exit_distance_m = nullptr;
 };

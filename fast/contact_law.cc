@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace touchstone::fast {
 
@@ -24,7 +25,7 @@ double DuffingLaw::energy_j(double depth_m) const noexcept {
 
 double DuffingLaw::depth_m(double force_n) const noexcept {
   const double F = force_n;
-  if (F == 0.0) return 0.0;
+  if (F == 0.0 || std::isnan(F)) return F;
   if (k3_ == 0.0) return k1_ > 0.0 ? F / k1_ : 0.0;
   if (k3_ < 0.0) {
     // F / F* = (3x - x^3) / 2 with x = D / D* = 2 sin(a) is sin(3a).
@@ -32,13 +33,25 @@ double DuffingLaw::depth_m(double force_n) const noexcept {
     if (F >= peak_n) return peak_depth_m_;
     return 2.0 * peak_depth_m_ * std::sin(std::asin(F / peak_n) / 3.0);
   }
-  // D^3 + p D = q. With D = s sinh(t), s = 2 sqrt(p/3), this is sinh(3t) = 3q / (p s).
-  const double p = k1_ / k3_, q = F / k3_;
-  const double s = 2.0 * std::sqrt(p / 3.0);
-  const double argument = 3.0 * q / (p * s);
+  // With D = s sinh(t), s = 2 sqrt(k1 / (3 k3)), the cubic is sinh(3t) = x.
+  const double linear_m = F / k1_, x = 1.5 * linear_m * std::sqrt(3.0 * k3_ / k1_);
+  if (x < 1e-9) return linear_m;
   // k1 = 0, or so small that the cube alone decides.
-  if (!(argument < 1e100)) return std::isnan(F) ? F : std::cbrt(q);
-  return s * std::sinh(std::asinh(argument) / 3.0);
+  if (!(x < 1e100)) return std::cbrt(F / k3_);
+  return 2.0 * std::sqrt(k1_ / (3.0 * k3_)) * std::sinh(std::asinh(x) / 3.0);
+}
+
+double contact_radius_m(double area_m2) noexcept { return std::sqrt(area_m2 / std::numbers::pi); }
+
+ContactLaw::ContactLaw(const scene::Contact& contact) noexcept : k3_n_per_m3_(contact.k3_n_per_m3) {
+  switch (contact.law) {
+    case scene::ContactLaw::duffing:
+      k1_n_per_m_ = contact.k1_n_per_m;
+      break;
+    case scene::ContactLaw::area_aware:
+      k1_per_radius_n_per_m2_ = contact.k1_per_radius_n_per_m2;
+      break;
+  }
 }
 
 }  // namespace touchstone::fast

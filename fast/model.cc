@@ -9,6 +9,8 @@ Detection detection_of(const scene::Body& body, const scene::Shape& shape) {
       return detection_for(static_cast<const scene::Box&>(shape));
     case scene::BodyShape::sphere:
       return detection_for(static_cast<const scene::Sphere&>(shape));
+    default:
+      break;
   }
   return {};
 }
@@ -17,6 +19,8 @@ ToolSamples samples_of(const scene::Scene& scene) {
   switch (scene.tool.shape) {
     case scene::ToolShape::sphere:
       return sample_tool(scene::Sphere(scene::Vec3::Zero(), scene.tool.radius_m), scene.fast.tool_samples);
+    default:
+      break;
   }
   return {};
 }
@@ -50,7 +54,8 @@ FastModel::FastModel(const scene::Scene& scene)
       surface(scene::tessellate(*body, scene.fast.triangles)),
       rest(surface_patches(surface, *anchors)),
       normals(normal_stencils(surface)),
-      formulas(formulas_of(scene.fast)) {}
+      formulas(formulas_of(scene.fast)),
+      max_regions(scene.tool.convex() ? 1 : scene.fast.max_regions) {}
 
 std::size_t FastModel::memory_bytes() const noexcept {
   const auto vertices = static_cast<std::size_t>(surface.vertex_count());

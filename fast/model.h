@@ -43,6 +43,7 @@ struct FastModel {
   SurfacePatches rest;
   NormalStencils normals;
   Formulas formulas;
+  int max_regions = 1;  ///< capacity; 1 for a convex tool
 
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };

@@ -47,7 +47,7 @@ Measured measure(const scene::Scene& scene, const FastModel& model) {
     std::nth_element(sample.begin(), sample.begin() + ticks / 2, sample.end());
     return sample[ticks / 2];
   };
-  return {median(force_us), median(shape_us), state.points.count, state.in_contact()};
+  return {median(force_us), median(shape_us), state.regions[0].points.count, state.in_contact()};
 }
 
 }  // namespace

@@ -1,25 +1,41 @@
 #include "fast/region_force.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace touchstone::fast {
 
 using scene::Vec3;
 
+RegionLoad region_load(const DuffingLaw& law, const RegionPoints& points, double depth_scale) noexcept {
+  RegionLoad sum;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
+    const double depth_m = depth_scale * points.depth_m[i];
+    const double F_i = points.share[i] * law.force_n(depth_m);
+    sum.force_n += F_i;
+    sum.center_T_m += F_i * points.p_T_m(i);
+    sum.deepest_m = std::max(sum.deepest_m, depth_m);
+  }
+  if (sum.force_n > 0.0) sum.center_T_m /= sum.force_n;
+  return sum;
+}
+
 RegionForce region_force(const DuffingLaw& law, const scene::Mat3& R_WT, const Vec3& d,
                          const RegionPoints& points) noexcept {
-  RegionForce sum;
-  Vec3 load_center_T = Vec3::Zero();  // sum of F_i p_i
-  double deepest_m = 0.0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
-    const double F_i = points.share[i] * law.force_n(points.depth_m[i]);
-    sum.magnitude_n += F_i;
-    load_center_T += F_i * Vec3(points.x_T_m[i], points.y_T_m[i], points.z_T_m[i]);
-    deepest_m = std::max(deepest_m, points.depth_m[i]);
-  }
-  sum.saturated = deepest_m > law.peak_depth_m();
-  sum.force_n = -sum.magnitude_n * d;
-  // All forces share the direction -d, so their moments add up to that of the load's centre.
-  sum.torque_nm = (R_WT * load_center_T).cross(-d);
-  return sum;
+  const RegionLoad load = region_load(law, points);
+  RegionForce force;
+  force.load_center_m = R_WT * load.center_T_m;
+  force.saturated = load.deepest_m > law.peak_depth_m();
+  set_force(d, load.force_n, Vec3::Zero(), force);
+  return force;
+}
+
+void set_force(const Vec3& d, double normal_n, const Vec3& tangential_n, RegionForce& force) noexcept {
+  force.normal_n = normal_n;
+  force.tangential_n = tangential_n;
+  force.force_n = tangential_n - normal_n * d;
+  force.magnitude_n = std::hypot(normal_n, tangential_n.norm());
+  force.torque_nm = force.load_center_m.cross(force.force_n);
 }
 
 }  // namespace touchstone::fast

@@ -88,9 +88,9 @@ scene::InstantRecord record_of(const scene::Scene& scene, const FastModel& model
   record.tool = pose;
   record.depth_m = scene::rest_depth_m(*model.body, scene.tool, pose);
   record.displacement_m = matrix_of(state.field.displacement_m);
-  record.support_force_n = support_force_n(state.ends);
+  record.support_force_n = support_force_n(state);
   if (state.in_contact()) {
-    const ContactRegion& region = state.region;
+    const ContactRegion& region = state.regions[0];
     record.regions.push_back({record.depth_m, region.force.force_n, region.force.torque_nm, region.extent.area_m2});
   }
   return record;
@@ -142,7 +142,7 @@ Run run(const scene::Scene& scene, const std::function<void(double)>& progress) 
       run.regions_max = 1;
     }
     run.status |= static_cast<std::uint32_t>(status);
-    hash.add_force(state.region.force.force_n);
+    hash.add_force(state.regions[0].force.force_n);
     if (ticks[k].instant >= 0) {
       run.instants.push_back(record_of(scene, model, state, ticks[k].time_s, pose));
       run.normals.push_back(matrix_of(state.field.normal));

@@ -1,13 +1,55 @@
 #include "fast/state.h"
 
+#include <algorithm>
+
 namespace touchstone::fast {
 
+using scene::Vec3;
+
+void ContactRegion::clear() noexcept {
+  active = false;
+  id = 0;
+  d = -Vec3::UnitZ();
+  depth_rel = 0.0;
+  points.count = 0;
+  extent = {};
+  origin = {};
+  force = {};
+  displacement_m.setZero();
+  ends.clear();
+}
+
 FastState::FastState(const FastModel& model)
-    : points(model.tool.count()), ends(model.skeleton.anchor_m.size()), field(model.rest) {}
+    : store(model.tool.count()),
+      regions(static_cast<std::size_t>(model.max_regions), ContactRegion(model.skeleton.anchor_m.size())),
+      field(model.rest) {}
+
+bool FastState::in_contact() const noexcept {
+  return std::any_of(regions.begin(), regions.begin() + region_count,
+                     [](const ContactRegion& region) { return region.pressing(); });
+}
 
 std::size_t FastState::memory_bytes() const noexcept {
-  return sizeof(FastState) + points.memory_bytes() + field.memory_bytes() +
-         2 * ends.force_n.size() * sizeof(scene::Vec3);
+  return sizeof(FastState) + store.memory_bytes() + field.memory_bytes() +
+         regions.size() * (sizeof(ContactRegion) + 2 * regions[0].ends.force_n.size() * sizeof(Vec3));
+}
+
+Vec3 total_force_n(const FastState& state) noexcept {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < state.region_count; ++i) sum += state.regions[static_cast<std::size_t>(i)].force.force_n;
+  return sum;
+}
+
+Vec3 total_torque_nm(const FastState& state) noexcept {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < state.region_count; ++i) sum += state.regions[static_cast<std::size_t>(i)].force.torque_nm;
+  return sum;
+}
+
+Vec3 support_force_n(const FastState& state) noexcept {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < state.region_count; ++i) sum += support_force_n(state.regions[static_cast<std::size_t>(i)].ends);
+  return sum;
 }
 
 }  // namespace touchstone::fast

@@ -6,8 +6,10 @@
 #include "fast/interpolation.h"
 #include "fast/model.h"
 #include "fast/region_force.h"
+#include "fast/stage_clock.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace touchstone::fast {
 
@@ -24,32 +26,54 @@ enum class StepStatus : std::uint32_t {
 }
 constexpr StepStatus& operator|=(StepStatus& a, StepStatus b) noexcept { return a = a | b; }
 
-/// The one contact region, kept from tick to tick.
+/// A contact region, kept from tick to tick.
 struct ContactRegion {
+  explicit ContactRegion(std::size_t beams) : ends(beams) {}
+  /// Back to before its creation.
+  void clear() noexcept;
+
   bool active = false;
+  int id = 0;                             ///< counts the regions as they came into being
   scene::Vec3 d = -scene::Vec3::UnitZ();  ///< direction of deformation, into the body
   double depth_rel = 0.0;                 ///< deepest point of the last tick over the body's thickness there
+  RegionPoints points;                    ///< p_i, a window on FastState::store
   RegionExtent extent;
   DeformationOrigin origin;
   RegionForce force;
-  double displacement_m = 0.0;  ///< D of the equivalent point contact
+  scene::Vec3 displacement_m = scene::Vec3::Zero();  ///< D of the equivalent point contact, world
+  BeamEnds ends;                                     ///< what it does to the anchor points
+
+  /// It pushes on the body: not only the tool's back is inside.
+  [[nodiscard]] bool pressing() const noexcept { return active && points.count > 0; }
 };
 
 /// The changing part of the fast model.
 struct FastState {
   explicit FastState(const FastModel& model);
 
-  RegionPoints points;
-  ContactRegion region;
-  BeamEnds ends;
+  PointStore store;
+  std::vector<ContactRegion> regions;  ///< by creation; the first `region_count` are active
+  int region_count = 0;
+  int regions_created = 0;  ///< since the start
   SurfaceField field;
+  StageClock* clock = nullptr;  ///< laps at the end of every stage, where somebody wants to know
   bool deformed = false;  ///< field differs from rest
   bool placed = false;    ///< `pose` holds a good pose
   scene::Pose pose;       ///< last good pose, its orientation of unit length
 
+  void lap(Stage stage) noexcept {
+    if (clock != nullptr) clock->lap(stage);
+  }
   /// The tool pushes on the body.
-  [[nodiscard]] bool in_contact() const noexcept { return region.active && points.count > 0; }
+  [[nodiscard]] bool in_contact() const noexcept;
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };
+
+/// Force of the body on the tool [N], world.
+[[nodiscard]] scene::Vec3 total_force_n(const FastState& state) noexcept;
+/// Its torque about the tool's mass centre [N m], world.
+[[nodiscard]] scene::Vec3 total_torque_nm(const FastState& state) noexcept;
+/// Force of the support on the body [N], world.
+[[nodiscard]] scene::Vec3 support_force_n(const FastState& state) noexcept;
 
 }  // namespace touchstone::fast

@@ -48,9 +48,10 @@ Vec3 entry_direction(const FastModel& model, const Pose& pose, const InsideSumma
       const double s = 0.5 * (apart + touching);
       const Pose between{(1.0 - s) * state.pose.position_m + s * pose.position_m,
                          state.pose.orientation.slerp(s, pose.orientation)};
+      RegionPoints points = state.store.window();
       const InsideSummary here =
-          model.detection.find_inside(*model.body, model.tool, placement(between), 1, state.points);
-      if (state.points.count > 0) {
+          model.detection.find_inside(*model.body, model.tool, placement(between), 0.0, 1, points);
+      if (points.count > 0) {
         touching = s;
         first = here;
       } else {
@@ -62,74 +63,87 @@ Vec3 entry_direction(const FastModel& model, const Pose& pose, const InsideSumma
   return direction_from(first, otherwise);
 }
 
+/// Depths, shares, force and equivalent point contact of a region whose points and direction are known.
+StepStatus press(const FastModel& model, const Placement& at, ContactRegion& region) noexcept {
+  region.force = RegionForce{};
+  region.displacement_m.setZero();
+  region.extent = model.detection.measure_depths(*model.body, at.R_WT, region.d, region.points);
+  // Only the tool's back is inside: nothing pushes, but the region lives on with its direction.
+  if (region.points.count == 0) return StepStatus::ok;
+  StepStatus status = StepStatus::ok;
+  region.depth_rel = region.extent.deepest_m / region.extent.thickness_m;
+  region.origin = deformation_origin(*model.body, model.detection.exit_distance_m, region.d, region.extent);
+  if (limit_depths(depth_limit_rel * region.extent.thickness_m, region.points)) status |= StepStatus::depth_limited;
+
+  model.formulas.distribute_mass(at.R_WT.transpose() * region.d, model.tool.spacing_m, region.points);
+  region.force = region_force(model.law, at.R_WT, region.d, region.points);
+  if (region.force.saturated) status |= StepStatus::law_saturated;
+  region.displacement_m = model.law.depth_m(region.force.magnitude_n) * region.d;
+  return status;
+}
+
+/// The whole tool in one region.
+StepStatus press_one_region(const FastModel& model, const Pose& pose, const Placement& at, FastState& state) noexcept {
+  const int all = model.tool.count();
+  ContactRegion& region = state.regions[0];
+  RegionPoints points = state.store.window();
+  InsideSummary inside = model.detection.find_inside(*model.body, model.tool, at, 0.0, all, points);
+  if (points.count == 0) {
+    if (region.active) region.clear();
+    state.region_count = 0;
+    return StepStatus::ok;
+  }
+  if (!region.active) {
+    region.active = true;
+    region.id = state.regions_created++;
+    state.region_count = 1;
+    region.d = entry_direction(model, pose, inside, state);
+    inside = model.detection.find_inside(*model.body, model.tool, at, 0.0, all, points);
+  } else if (region.depth_rel < direction_kept_rel) {
+    region.d = follow_direction(region.d, inside);
+  }
+  region.points = points;
+  return press(model, at, region);
+}
+
 }  // namespace
 
 StepStatus step_force(const FastModel& model, const Pose& pose_asked, FastState& state) noexcept {
   if (!finite(pose_asked)) return StepStatus::not_finite;
   const Pose pose{pose_asked.position_m, pose_asked.orientation.normalized()};
-  const Placement at = placement(pose);
-  const int all = model.tool.count();
-  ContactRegion& region = state.region;
-
-  InsideSummary inside = model.detection.find_inside(*model.body, model.tool, at, all, state.points);
-  if (state.points.count == 0) {
-    region = ContactRegion{};
-  } else if (!region.active) {
-    region.active = true;
-    region.d = entry_direction(model, pose, inside, state);
-    inside = model.detection.find_inside(*model.body, model.tool, at, all, state.points);
-  } else if (region.depth_rel < direction_kept_rel) {
-    region.d = follow_direction(region.d, inside);
-  }
+  const StepStatus status = press_one_region(model, pose, placement(pose), state);
   state.pose = pose;
   state.placed = true;
-  region.force = RegionForce{};
-  region.displacement_m = 0.0;
-  if (!region.active) return StepStatus::ok;
-
-  region.extent = model.detection.measure_depths(*model.body, at.R_WT, region.d, state.points);
-  // Only the tool's back is inside: nothing pushes, but the region lives on with its direction.
-  if (!state.in_contact()) return StepStatus::ok;
-  StepStatus status = StepStatus::ok;
-  region.depth_rel = region.extent.deepest_m / region.extent.thickness_m;
-  region.origin = deformation_origin(*model.body, model.detection.exit_distance_m, region.d, region.extent);
-  if (limit_depths(depth_limit_rel * region.extent.thickness_m, state.points)) status |= StepStatus::depth_limited;
-
-  model.formulas.distribute_mass(at.R_WT.transpose() * region.d, model.tool.spacing_m, state.points);
-  region.force = region_force(model.law, at.R_WT, region.d, state.points);
-  if (region.force.saturated) status |= StepStatus::law_saturated;
-  region.displacement_m = model.law.depth_m(region.force.magnitude_n);
   return status;
 }
 
 StepStatus step_shape(const FastModel& model, FastState& state) noexcept {
-  const ContactRegion& region = state.region;
   if (!state.in_contact()) {
     if (state.deformed) {
       state.field.reset(model.rest);
-      state.ends.clear();
+      for (ContactRegion& region : state.regions) region.ends.clear();
       state.deformed = false;
     }
     return StepStatus::ok;
   }
   [[maybe_unused]] const FlushTinyNumbers flush;
-  const Vec3 displacement_m = region.displacement_m * region.d;
+  ContactRegion& region = state.regions[0];
   const Vec3 force_on_body_n = -region.force.force_n;
-  model.formulas.split_force(model.skeleton, region.origin.p0_W_m, force_on_body_n, displacement_m, state.ends);
+  model.formulas.split_force(model.skeleton, region.origin.p0_W_m, force_on_body_n, region.displacement_m, region.ends);
 
   ContactPoint contact;
   contact.patch = region.origin.patch;
   contact.place = model.anchors->at(contact.patch, region.origin.p0_W_m);
   contact.normal = region.origin.normal;
-  if (!contact.place.held()) contact.displacement_m = displacement_m;
-  model.formulas.interpolate(model.rest, state.ends.displacement_m, contact, state.field);
+  if (!contact.place.held()) contact.displacement_m = region.displacement_m;
+  model.formulas.interpolate(model.rest, region.ends.displacement_m, contact, state.field);
   if (model.formulas.apply_local_factor != nullptr) {
-    model.formulas.apply_local_factor(model.rest, model.local, {state.points.count, region.extent.area_m2},
+    model.formulas.apply_local_factor(model.rest, model.local, {region.points.count, region.extent.area_m2},
                                       region.origin.p0_W_m, state.field);
   }
   update_normals(model.normals, model.rest, state.field);
   state.deformed = true;
-  return state.ends.limited ? StepStatus::anchors_limited : StepStatus::ok;
+  return region.ends.limited ? StepStatus::anchors_limited : StepStatus::ok;
 }
 
 StepStatus step(const FastModel& model, const Pose& pose, FastState& state) noexcept {

@@ -8,12 +8,12 @@
 namespace touchstone::fast {
 
 /// Contact and force: the tool's samples against the rest shape, the region's direction, depths, shares and force.
-/// The answer is in state.region; a device gets it before the shape is touched.
+/// The answer is total_force_n(state) and state.regions; a device gets it before the shape is touched.
 /// A pose that is not finite leaves the state as it is.
 StepStatus step_force(const FastModel& model, const scene::Pose& pose, FastState& state) noexcept;
 
 /// Shape: beam skeleton, surface, local factor where there is one, normals. The answer is in state.field and
-/// state.ends. Follows step_force.
+/// state.regions[].ends. Follows step_force.
 StepStatus step_shape(const FastModel& model, FastState& state) noexcept;
 
 /// Both. No heap, lock, throw, log or file access happens below; equal poses from equal states give equal bits.

@@ -36,12 +36,23 @@ struct Choice {
 };
 template <class T>
 using Access = std::variant<double& (*)(T&), int& (*)(T&), std::string& (*)(T&), std::optional<double>& (*)(T&),
-                            Vec3& (*)(T&), Eigen::Quaterniond& (*)(T&), Choice<T>>;
+                            Vec3& (*)(T&), std::optional<Vec3>& (*)(T&), Eigen::Quaterniond& (*)(T&),
+                            std::vector<double>& (*)(T&), std::vector<Eigen::Vector2d>& (*)(T&), Choice<T>>;
 
-/// The key applies only where another key has this value; elsewhere giving it is an error.
+/// The key applies only where this holds; elsewhere giving it is an error.
+template <class T>
 struct Condition {
-  std::string_view key, value;
+  std::string_view key;   ///< of the value it hangs on
+  std::string_view text;  ///< in TOML: body.shape = "box"
+  bool (*holds)(const T&) = nullptr;
 };
+
+/// A table that a scene may leave out altogether; its keys apply only where it is given.
+struct OptionalTable {
+  std::string_view key;
+  void (*give)(Scene&);
+};
+[[nodiscard]] const std::vector<OptionalTable>& optional_tables();
 
 template <class T>
 struct Field {
@@ -51,7 +62,7 @@ struct Field {
   std::optional<std::string_view> default_value;  ///< as TOML; a key without one must be given, unless optional
   Side side;
   Access<T> access;
-  std::optional<Condition> only_when;
+  std::optional<Condition<T>> only_when;
   std::string_view doc;  ///< one line
 };
 
@@ -61,8 +72,21 @@ struct Field {
 /// The keys of one [[track]] row.
 [[nodiscard]] const std::vector<Field<Waypoint>>& waypoint_fields();
 
-/// Is the key's value of this scene in force (its condition holds)?
-[[nodiscard]] bool applies(const Field<Scene>& field, const Scene& scene);
+/// The keys of one [[body.inclusion]] row.
+[[nodiscard]] const std::vector<Field<Inclusion>>& inclusion_fields();
+
+/// Is the key's value in force (its condition holds)?
+template <class T>
+[[nodiscard]] bool applies(const Field<T>& field, const T& object) {
+  return !field.only_when || field.only_when->holds(object);
+}
+
+/// May the key be left out without a default taking its place?
+template <class T>
+[[nodiscard]] bool optional(const Field<T>& field) {
+  return std::holds_alternative<std::optional<double>& (*)(T&)>(field.access) ||
+         std::holds_alternative<std::optional<Vec3>& (*)(T&)>(field.access);
+}
 
 /// Shortest text that reads back as the same double and is a TOML float.
 [[nodiscard]] std::string number_text(double value);

@@ -12,10 +12,13 @@ namespace touchstone::scene {
 
 /// One contact region at one instant.
 struct RegionRecord {
-  double depth_m = 0.0;           ///< rest_depth_m of the region
-  Vec3 force_n = Vec3::Zero();    ///< on the tool
-  Vec3 torque_nm = Vec3::Zero();  ///< on the tool, about its mass centre
-  double area_m2 = 0.0;           ///< contact area
+  double depth_m = 0.0;            ///< rest_depth_m of the region
+  Vec3 force_n = Vec3::Zero();     ///< on the tool
+  Vec3 torque_nm = Vec3::Zero();   ///< on the tool, about its mass centre
+  double area_m2 = 0.0;            ///< contact area
+  int id = 0;                      ///< the smallest number free at its creation, kept while it lives
+  Vec3 friction_n = Vec3::Zero();  ///< part of force_n along the surface, where the scene has friction
+  bool sliding = false;            ///< slips over the surface, where the scene has friction
 };
 
 /// One side's answer at one track instant.
@@ -23,7 +26,8 @@ struct InstantRecord {
   double time_s = 0.0;
   Pose tool;
   double depth_m = 0.0;                 ///< rest_depth_m, zero when apart
-  std::vector<RegionRecord> regions;    ///< empty when apart
+  double separation_m = 0.0;            ///< between tool and body while apart; a solver that does not know it says 0
+  std::vector<RegionRecord> regions;    ///< empty when apart; in the order of their creation
   Vec3 support_force_n = Vec3::Zero();  ///< of the support on the body
   Eigen::Matrix3Xd displacement_m;      ///< one column per rest point asked for
 

@@ -65,18 +65,29 @@ std::vector<Column> track_columns(const std::vector<InstantRecord>& records) {
         column(names[i], records, [at = order[i]](const InstantRecord& r) { return r.tool.orientation.coeffs()[at]; }));
   }
   columns.push_back(column("depth_m", records, [](const InstantRecord& r) { return r.depth_m; }));
+  if (std::any_of(records.begin(), records.end(), [](const InstantRecord& r) { return r.separation_m > 0.0; })) {
+    columns.push_back(column("separation_m", records, [](const InstantRecord& r) { return r.separation_m; }));
+  }
   return columns;
 }
 
 std::vector<Column> record_columns(const std::vector<InstantRecord>& records, const std::string& prefix) {
-  std::size_t regions = 0;
-  for (const InstantRecord& record : records) regions = std::max(regions, record.regions.size());
+  int regions = 0;
+  bool friction = false;
+  for (const InstantRecord& record : records) {
+    for (const RegionRecord& region : record.regions) {
+      regions = std::max(regions, region.id + 1);
+      friction = friction || region.sliding || region.friction_n != Vec3::Zero();
+    }
+  }
   std::vector<Column> columns;
-  for (std::size_t i = 0; i < regions; ++i) {
-    const std::string name = prefix + "region" + std::to_string(i) + "_";
+  for (int id = 0; id < regions; ++id) {
+    const std::string name = prefix + "region" + std::to_string(id) + "_";
     const auto add = [&](const std::string& quantity, const std::function<double(const RegionRecord&)>& get) {
-      columns.push_back(column(name + quantity, records,
-                               [&](const InstantRecord& r) { return i < r.regions.size() ? get(r.regions[i]) : 0.0; }));
+      columns.push_back(column(name + quantity, records, [&](const InstantRecord& r) {
+        const auto region = std::find_if(r.regions.begin(), r.regions.end(), [&](const auto& x) { return x.id == id; });
+        return region != r.regions.end() ? get(*region) : 0.0;
+      }));
     };
     add("depth_m", [](const RegionRecord& r) { return r.depth_m; });
     for (int axis = 0; axis < 3; ++axis) {
@@ -87,6 +98,12 @@ std::vector<Column> record_columns(const std::vector<InstantRecord>& records, co
           [axis](const RegionRecord& r) { return r.torque_nm[axis]; });
     }
     add("area_m2", [](const RegionRecord& r) { return r.area_m2; });
+    if (!friction) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      add("friction_" + std::string(axis_names[axis]) + "_n",
+          [axis](const RegionRecord& r) { return r.friction_n[axis]; });
+    }
+    add("sliding", [](const RegionRecord& r) { return r.sliding ? 1.0 : 0.0; });
   }
   for (int axis = 0; axis < 3; ++axis) {
     columns.push_back(column(prefix + "support_force_" + axis_names[axis] + "_n", records,

@@ -18,7 +18,8 @@ struct Column {
   std::vector<double> values;
 };
 
-/// Columns of one side: depth, force, torque, area per region (region0_..., as many as occur).
+/// Columns of one side: depth, force, torque, area per region by its id (region0_..., as many as occur), with friction
+/// and sliding (0 or 1) where there is friction.
 /// @param prefix put before every name, such as "fast_"; may be empty
 [[nodiscard]] std::vector<Column> record_columns(const std::vector<InstantRecord>& records, const std::string& prefix);
 

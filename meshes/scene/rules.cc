@@ -1,5 +1,7 @@
 #include "scene/rules.h"
 
+#include "scene/surface.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -52,9 +54,10 @@ void check_start(const Scene& scene, const Shape& body, std::vector<Violation>& 
 
 void check_contact_law(const Scene& scene, const Shape& body, std::vector<Violation>& found) {
   const Contact& c = scene.contact;
-  if (c.k1_n_per_m == 0.0 && c.k3_n_per_m3 <= 0.0) {
+  const double k1 = c.law == ContactLaw::area_aware ? c.k1_per_radius_n_per_m2 : c.k1_n_per_m;
+  if (k1 == 0.0 && c.k3_n_per_m3 <= 0.0) {
     found.push_back({"contact.k3_n_per_m3", "a law with k1 = 0 needs k3 > 0, or there is no force"});
-  } else if (c.k3_n_per_m3 < 0.0) {
+  } else if (c.k3_n_per_m3 < 0.0 && c.law == ContactLaw::duffing) {
     // Errata E1: beyond D* = sqrt(k1 / (3 |k3|)) the softening law's force falls.
     const double peak_m = std::sqrt(c.k1_n_per_m / (-3.0 * c.k3_n_per_m3));
     const double deepest = deepest_m(scene, body);
@@ -77,18 +80,86 @@ void check_local_factor(const Scene& scene, std::vector<Violation>& found) {
   }
 }
 
+void check_profile(const Solid& solid, const std::string& table, std::vector<Violation>& found) {
+  if (solid.shape != BodyShape::revolution) return;
+  for (const std::string& fault : profile_faults(solid.profile)) found.push_back({table + ".profile_rz_m", fault});
+}
+
+void check_support(const Body& body, const Shape& shape, std::vector<Violation>& found) {
+  const double middle_m = 0.5 * shape.bounds().upper_m.z();
+  if (!body.flat_bottom() && body.support_height_m >= middle_m) {
+    found.push_back(
+        {"body.support_height_m", "expected less than the height of the body's middle, " + number(middle_m) + " m"});
+  }
+}
+
+/// Points all over a solid's surface, dense enough for a check by sampling.
+Eigen::Matrix3Xd surface_points_m(const Shape& shape) { return tessellate(shape, 2000).points_m; }
+
+void check_inclusions(const Body& body, const Shape& shape, std::vector<Violation>& found) {
+  std::vector<std::unique_ptr<const Shape>> inclusions;
+  for (const Inclusion& inclusion : body.inclusions) {
+    const std::string name = "body.inclusion[" + std::to_string(inclusions.size()) + "]";
+    inclusions.push_back(solid_shape(inclusion, inclusion.center_m));
+    const Eigen::Matrix3Xd points_m = surface_points_m(*inclusions.back());
+    double outermost_m = -1e300;
+    for (const auto& p_m : points_m.colwise()) outermost_m = std::max(outermost_m, shape.signed_distance_m(p_m));
+    if (outermost_m >= 0.0) {
+      found.push_back({name + ".center_m", "reaches " + number(outermost_m * 1e3) +
+                                               " mm beyond the body's surface; expected it strictly inside"});
+    }
+    for (std::size_t other = 0; other + 1 < inclusions.size(); ++other) {
+      double apart_m = 1e300;
+      for (const auto& p_m : points_m.colwise()) apart_m = std::min(apart_m, inclusions[other]->signed_distance_m(p_m));
+      const Eigen::Matrix3Xd others_m = surface_points_m(*inclusions[other]);
+      for (const auto& p_m : others_m.colwise())
+        apart_m = std::min(apart_m, inclusions.back()->signed_distance_m(p_m));
+      if (apart_m <= 0.0) {
+        found.push_back({name + ".center_m", "overlaps body.inclusion[" + std::to_string(other) + "] by " +
+                                                 number(-apart_m * 1e3) + " mm; expected them apart"});
+      }
+    }
+  }
+  if (body.inclusions.size() > inclusions_max) {
+    found.push_back({"body.inclusion[0]", "expected at most " + std::to_string(inclusions_max) + " inclusions, found " +
+                                              std::to_string(body.inclusions.size())});
+  }
+}
+
+void check_tool(const Tool& tool, std::vector<Violation>& found) {
+  if (tool.shape != ToolShape::cylinder) return;
+  const double largest_m = std::min(tool.radius_m, 0.5 * tool.length_m);
+  if (!(tool.length_m > 0.0)) {
+    found.push_back({"tool.length_m", "a cylinder needs a length above 0"});
+  } else if (tool.edge_radius_m > largest_m) {
+    found.push_back({"tool.edge_radius_m", "the fillet does not fit; expected at most " + number(largest_m) + " m"});
+  }
+}
+
+void check_friction(const Contact& contact, std::vector<Violation>& found) {
+  // Errata E5: at beta = 1 no normal force brings the static limit back above the dynamic friction.
+  if (contact.friction && contact.friction->beta == 1.0 && contact.friction->mu_D > contact.friction->K) {
+    found.push_back({"contact.friction.mu_D",
+                     "with beta = 1 sliding would rub harder than the static limit; expected mu_D <= K = " +
+                         number(contact.friction->K)});
+  }
+}
+
 }  // namespace
 
 std::vector<Violation> broken_rules(const Scene& scene) {
   std::vector<Violation> found;
-  const Body& b = scene.body;
-  if (b.shape == BodyShape::sphere && b.support_height_m >= b.radius_m) {
-    found.push_back({"body.support_height_m", "expected less than the body's radius, " + number(b.radius_m) + " m"});
-  }
+  check_profile(scene.body, "body", found);
+  for (std::size_t i = 0; i < scene.body.inclusions.size(); ++i)
+    check_profile(scene.body.inclusions[i], "body.inclusion[" + std::to_string(i) + "]", found);
+  check_tool(scene.tool, found);
+  check_friction(scene.contact, found);
   check_local_factor(scene, found);
   check_track(scene, found);
   if (!found.empty()) return found;
-  const auto body = body_shape(b);
+  const auto body = body_shape(scene.body);
+  check_support(scene.body, *body, found);
+  check_inclusions(scene.body, *body, found);
   check_start(scene, *body, found);
   check_contact_law(scene, *body, found);
   return found;

@@ -48,6 +48,8 @@ struct Solid {
   Profile profile;                  ///< revolution: about z
 };
 
+inline constexpr std::size_t inclusions_max = 16;
+
 /// A part of the body of another material, strictly inside it, apart from the other inclusions.
 struct Inclusion : Solid {
   Vec3 center_m = Vec3::Zero();  ///< of its bounding box, world frame at rest
@@ -67,14 +69,14 @@ struct Body : Solid {
 /// The rigid tool. Capsule and cylinder lie along z of the tool, box edges along its axes.
 struct Tool {
   ToolShape shape = ToolShape::sphere;
-  double radius_m = 0.0;        ///< sphere, capsule, cylinder
+  double radius_m = 0.0;  ///< sphere, capsule, cylinder
   double mass_kg = 0.0;
-  double length_m = 0.0;        ///< capsule: of the straight part; cylinder: overall
-  double edge_radius_m = 0.0;   ///< cylinder: of the fillet at both rims
-  Vec3 size_m = Vec3::Zero();   ///< box: edge lengths
-  std::string file;             ///< mesh: path relative to the scene file
-  LengthUnit unit = LengthUnit::m;             ///< mesh: of the file's coordinates
-  std::shared_ptr<const TriangleMesh> mesh;    ///< mesh: as read, in metres, before the mass centre is taken off
+  double length_m = 0.0;                     ///< capsule: of the straight part; cylinder: overall
+  double edge_radius_m = 0.0;                ///< cylinder: of the fillet at both rims
+  Vec3 size_m = Vec3::Zero();                ///< box: edge lengths
+  std::string file;                          ///< mesh: path relative to the scene file
+  LengthUnit unit = LengthUnit::m;           ///< mesh: of the file's coordinates
+  std::shared_ptr<const TriangleMesh> mesh;  ///< mesh: as read, in metres, before the mass centre is taken off
   /// Mass centre, from the shape's centre or in the mesh's own coordinates; absent: the centre of a uniform solid.
   std::optional<Vec3> mass_center_m;
 
@@ -101,8 +103,8 @@ struct Contact {
   ContactLaw law = ContactLaw::duffing;
   double k1_n_per_m = 0.0;  ///< duffing
   double k3_n_per_m3 = 0.0;
-  double k1_per_radius_n_per_m2 = 0.0;  ///< area_aware
-  std::optional<Friction> friction;     ///< absent: frictionless
+  double k1_per_radius_n_per_m2 = 0.0;    ///< area_aware
+  std::optional<Friction> friction = {};  ///< absent: frictionless
 };
 
 /// Settings of the real-time model; names are the paper's symbols.

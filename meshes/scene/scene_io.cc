@@ -18,6 +18,7 @@ namespace touchstone::scene {
 namespace {
 
 constexpr std::string_view track_file_key = "file";
+constexpr std::string_view inclusion_key = "body.inclusion";
 constexpr std::string_view override_mark = "--set ";
 
 /// Edit distance with transpositions, to suggest the key that was meant.
@@ -69,13 +70,13 @@ class Reader {
   Scene read() {
     Scene scene;
     scene.name = file_.stem().string();
-    find_unknown(document_, "");
-    // Choices first: conditions of other keys ask for them.
-    for (const bool choices : {true, false}) {
-      for (const auto& field : scene_fields()) {
-        if (std::holds_alternative<Choice<Scene>>(field.access) == choices) read_scene_field(field, scene);
-      }
+    find_unknown(document_, "", known_scene_keys());
+    for (const OptionalTable& table : optional_tables()) {
+      if (document_.at_path(table.key).is_table()) table.give(scene);
     }
+    read_fields(scene_fields(), document_, "", scene);
+    scene.body.inclusions = read_rows(inclusion_fields(), document_.at_path(inclusion_key), inclusion_key);
+    read_mesh(scene);
     read_track(scene);
     if (faults_.empty()) {
       for (const Violation& v : broken_rules(scene)) add_fault(v.key, v.message);
@@ -116,56 +117,117 @@ class Reader {
                                        : Fault{file_.string(), 0, 0, key + ": " + message});
   }
 
-  void find_unknown(const toml::table& table, const std::string& prefix) {
-    static const std::vector<std::string> known = [] {
-      std::vector<std::string> keys = {"track"};
-      for (const auto& field : scene_fields()) keys.emplace_back(field.key);
-      return keys;
-    }();
+  template <class T>
+  static std::vector<std::string> keys_of(const std::vector<Field<T>>& fields) {
+    std::vector<std::string> keys;
+    for (const auto& field : fields) keys.emplace_back(field.key);
+    return keys;
+  }
+
+  static std::vector<std::string> known_scene_keys() {
+    std::vector<std::string> keys = keys_of(scene_fields());
+    keys.emplace_back("track");
+    keys.emplace_back(inclusion_key);
+    return keys;
+  }
+
+  /// @param path of the table within its row or document; @param known keys of that row or document
+  void find_unknown(const toml::table& table, const std::string& path, const std::vector<std::string>& known,
+                    const std::string& row = "") {
     for (const auto& [key, node] : table) {
-      const std::string path = prefix + std::string(key.str());
-      if (path == "track") continue;
+      const std::string here = path + std::string(key.str());
+      if (here == "track" || here == inclusion_key) continue;
       const bool is_section =
-          std::any_of(known.begin(), known.end(), [&](const std::string& k) { return k.starts_with(path + "."); });
+          std::any_of(known.begin(), known.end(), [&](const std::string& k) { return k.starts_with(here + "."); });
       if (is_section && node.is_table()) {
-        find_unknown(*node.as_table(), path + ".");
+        find_unknown(*node.as_table(), here + ".", known, row);
       } else if (is_section) {
-        faults_.push_back(at(node.source(), path + ": expected a table, [" + path + "]"));
-      } else if (std::find(known.begin(), known.end(), path) == known.end()) {
-        faults_.push_back(at(key.source(), unknown_key_message(path, known)));
+        faults_.push_back(at(node.source(), row + here + ": expected a table, [" + row + here + "]"));
+      } else if (std::find(known.begin(), known.end(), here) == known.end()) {
+        faults_.push_back(at(key.source(), unknown_key_message(here, known, row)));
       }
     }
   }
 
-  static std::string unknown_key_message(const std::string& path, std::vector<std::string> known) {
+  static std::string unknown_key_message(const std::string& path, const std::vector<std::string>& known,
+                                         const std::string& row) {
     // Sections are keys too: [boddy] should lead to [body], not to a long key below it.
     std::set<std::string> names(known.begin(), known.end());
     for (const std::string& key : known) {
       for (std::size_t dot = key.find('.'); dot != std::string::npos; dot = key.find('.', dot + 1))
         names.insert(key.substr(0, dot));
     }
-    return "unknown key \"" + path + "\"; did you mean \"" + nearest(path, {names.begin(), names.end()}) + "\"?";
+    return "unknown key \"" + row + path + "\"; did you mean \"" + nearest(path, {names.begin(), names.end()}) + "\"?";
   }
 
-  void read_scene_field(const Field<Scene>& field, Scene& scene) {
-    const std::string key(field.key);
-    const toml::node_view node = document_.at_path(field.key);
-    if (field.only_when && !failed_.contains(std::string(field.only_when->key)) && !applies(field, scene)) {
-      if (node) {
-        faults_.push_back(at(node.node()->source(), key + ": only applies where " + std::string(field.only_when->key) +
-                                                        " = \"" + std::string(field.only_when->value) + "\""));
+  /// Every field of a document or row. @param row its name with a dot, for messages; empty for the document
+  template <class T>
+  void read_fields(const std::vector<Field<T>>& fields, const toml::table& table, const std::string& row, T& object) {
+    // What conditions ask for comes first: choices, then lists, then the rest.
+    const auto rank = [](const Field<T>& field) {
+      if (std::holds_alternative<Choice<T>>(field.access)) return 0;
+      return std::holds_alternative<std::vector<Eigen::Vector2d>& (*)(T&)>(field.access) ? 1 : 2;
+    };
+    for (const int turn : {0, 1, 2}) {
+      for (const auto& field : fields) {
+        if (rank(field) == turn) read_field(field, table, row, object);
+      }
+    }
+  }
+
+  template <class T>
+  void read_field(const Field<T>& field, const toml::table& table, const std::string& row, T& object) {
+    const std::string key = row + std::string(field.key);
+    const toml::node* node = table.at_path(field.key).node();
+    if (field.only_when && failed_.contains(row + std::string(field.only_when->key))) return;
+    if (!applies(field, object)) {
+      if (node != nullptr) {
+        faults_.push_back(at(node->source(), key + ": only applies with " + std::string(field.only_when->text)));
       }
       return;
     }
-    if (field.only_when && failed_.contains(std::string(field.only_when->key))) return;
-    if (node) {
-      places_[key] = at(node.node()->source(), "");
-      read_value(field, *node.node(), key, scene);
-    } else if (!read_default(field, scene) &&
-               !std::holds_alternative<std::optional<double>& (*)(Scene&)>(field.access)) {
-      add_fault(key, "missing; expected " + expected_text(field));
+    if (node != nullptr) {
+      places_[key] = at(node->source(), "");
+      read_value(field, *node, key, object);
+    } else if (!read_default(field, object) && !optional(field)) {
+      if (row.empty()) {
+        add_fault(key, "missing; expected " + expected_text(field));
+      } else {
+        faults_.push_back(at(table.source(), key + ": missing; expected " + expected_text(field)));
+      }
       failed_.insert(key);
     }
+  }
+
+  /// An array of tables. @param node of it, or of nothing
+  template <class T>
+  std::vector<T> read_rows(const std::vector<Field<T>>& fields, toml::node_view<const toml::node> node,
+                           std::string_view name) {
+    std::vector<T> rows;
+    if (!node) return rows;
+    const toml::array* array = node.as_array();
+    if (array == nullptr || !array->is_array_of_tables()) {
+      faults_.push_back(at(node.node()->source(), std::string(name) + ": expected [[" + std::string(name) + "]] rows"));
+      return rows;
+    }
+    for (std::size_t i = 0; i < array->size(); ++i) {
+      const toml::table& table = *(*array)[i].as_table();
+      const std::string row = std::string(name) + "[" + std::to_string(i) + "].";
+      places_[row.substr(0, row.size() - 1)] = at(table.source(), "");
+      find_unknown(table, "", keys_of(fields), row);
+      rows.emplace_back();
+      read_fields(fields, table, row, rows.back());
+    }
+    return rows;
+  }
+
+  void read_mesh(Scene& scene) {
+    if (scene.tool.shape != ToolShape::mesh || scene.tool.file.empty()) return;
+    if (failed_.contains("tool.file") || failed_.contains("tool.unit")) return;
+    constexpr double units_m[] = {1.0, 1e-2, 1e-3, 0.0254};
+    auto mesh = read_triangle_mesh(file_.parent_path() / scene.tool.file,
+                                   units_m[static_cast<std::size_t>(scene.tool.unit)], faults_);
+    if (mesh) scene.tool.mesh = std::make_shared<const TriangleMesh>(std::move(*mesh));
   }
 
   template <class T>
@@ -216,9 +278,10 @@ class Reader {
   }
   /// Numbers of an array, or nothing when it is not one of `count` numbers in range.
   template <class T>
-  static std::optional<std::vector<double>> numbers(const Field<T>& field, const toml::node& node, std::size_t count) {
+  static std::optional<std::vector<double>> numbers(const Field<T>& field, const toml::node& node,
+                                                    std::optional<std::size_t> count = std::nullopt) {
     const toml::array* array = node.as_array();
-    if (array == nullptr || array->size() != count) return std::nullopt;
+    if (array == nullptr || (count && array->size() != *count)) return std::nullopt;
     std::vector<double> values;
     for (const toml::node& element : *array) {
       const auto value = element.is_number() ? element.value<double>() : std::nullopt;
@@ -232,6 +295,33 @@ class Reader {
     const auto v = numbers(field, node, 3);
     if (!v) return false;
     member(object) = Vec3((*v)[0], (*v)[1], (*v)[2]);
+    return true;
+  }
+  template <class T>
+  static bool assign(const Field<T>& field, std::optional<Vec3>& (*const& member)(T&), const toml::node& node,
+                     T& object) {
+    const auto v = numbers(field, node, 3);
+    if (v) member(object) = Vec3((*v)[0], (*v)[1], (*v)[2]);
+    return v.has_value();
+  }
+  template <class T>
+  static bool assign(const Field<T>& field, std::vector<double>& (*const& member)(T&), const toml::node& node,
+                     T& object) {
+    auto values = numbers(field, node);
+    if (values) member(object) = std::move(*values);
+    return values.has_value();
+  }
+  template <class T>
+  static bool assign(const Field<T>& field, std::vector<Eigen::Vector2d>& (*const& member)(T&), const toml::node& node,
+                     T& object) {
+    const toml::array* array = node.as_array();
+    if (array == nullptr) return false;
+    member(object).clear();
+    for (const toml::node& element : *array) {
+      const auto pair = numbers(field, element, 2);
+      if (!pair) return false;
+      member(object).emplace_back((*pair)[0], (*pair)[1]);
+    }
     return true;
   }
   template <class T>
@@ -263,7 +353,7 @@ class Reader {
     if (const toml::table* table = track->as_table()) {
       read_track_file(*table, scene);
     } else if (const toml::array* rows = track->as_array(); rows != nullptr && rows->is_array_of_tables()) {
-      for (std::size_t i = 0; i < rows->size(); ++i) read_waypoint(*(*rows)[i].as_table(), i, scene);
+      scene.track = read_rows(waypoint_fields(), toml::node_view<const toml::node>(track), "track");
     } else {
       add_fault("track", "expected [[track]] rows, or [track] file = \"...csv\"");
     }
@@ -290,29 +380,6 @@ class Reader {
         places_["track[" + std::to_string(i) + "]" + key] = {csv.string(), lines[i], 1, ""};
       }
     }
-  }
-
-  void read_waypoint(const toml::table& row, std::size_t index, Scene& scene) {
-    const std::string prefix = "track[" + std::to_string(index) + "].";
-    for (const auto& [key, node] : row) {
-      std::vector<std::string> known;
-      for (const auto& field : waypoint_fields()) known.emplace_back(field.key);
-      if (std::find(known.begin(), known.end(), key.str()) == known.end()) {
-        faults_.push_back(at(key.source(), "unknown key \"" + prefix + std::string(key.str()) + "\"; did you mean \"" +
-                                               nearest(key.str(), known) + "\"?"));
-      }
-    }
-    Waypoint waypoint;
-    for (const auto& field : waypoint_fields()) {
-      const std::string key = prefix + std::string(field.key);
-      if (const toml::node* node = row.get(field.key)) {
-        places_[key] = at(node->source(), "");
-        read_value(field, *node, key, waypoint);
-      } else if (!read_default(field, waypoint)) {
-        faults_.push_back(at(row.source(), key + ": missing; expected " + expected_text(field)));
-      }
-    }
-    scene.track.push_back(waypoint);
   }
 
   const toml::table& document_;
@@ -370,19 +437,34 @@ std::string toml_text(const Scene& scene, Keep keep, bool meaning = false) {
   };
   std::string section;
   for (const auto& field : scene_fields()) {
+    if (!applies(field, scene) || !keep(field)) continue;
     const std::string value = value_text(field, scene);
-    if (!applies(field, scene) || value.empty() || !keep(field)) continue;
+    if (value.empty()) continue;
     const std::string key(field.key);
     const std::size_t dot = key.rfind('.');
     const std::string table = dot == std::string::npos ? "" : key.substr(0, dot);
     if (table != section) out << "\n[" << (section = table) << "]\n";
     line(dot == std::string::npos ? key : key.substr(dot + 1), field, value);
   }
-  for (const Waypoint& waypoint : scene.track) {
-    out << "\n[[track]]\n";
-    for (const auto& field : waypoint_fields()) line(field.key, field, value_text(field, waypoint));
-  }
+  const auto row = [&](std::string_view name, const auto& fields, const auto& object) {
+    out << "\n[[" << name << "]]\n";
+    for (const auto& field : fields) {
+      if (const std::string value = value_text(field, object); applies(field, object) && !value.empty())
+        line(field.key, field, value);
+    }
+  };
+  for (const Inclusion& inclusion : scene.body.inclusions) row(inclusion_key, inclusion_fields(), inclusion);
+  for (const Waypoint& waypoint : scene.track) row("track", waypoint_fields(), waypoint);
   return out.str();
+}
+
+/// The mesh's numbers, as bytes.
+std::string mesh_text(const TriangleMesh& mesh) {
+  const auto bytes = [](const auto* data, std::size_t count) {
+    return std::string(reinterpret_cast<const char*>(data), count * sizeof *data);
+  };
+  return bytes(mesh.points_m.data(), static_cast<std::size_t>(mesh.points_m.size())) +
+         bytes(mesh.triangles.data(), mesh.triangles.size());
 }
 
 }  // namespace
@@ -418,7 +500,11 @@ std::string explained_toml(const Scene& scene) {
 }
 
 std::string scene_hash(const Scene& scene) {
-  return hash_text(toml_text(scene, [](const auto& field) { return field.key != "title"; }));
+  // A mesh counts by what it holds, not by the name of its file.
+  std::string text =
+      toml_text(scene, [](const auto& field) { return field.key != "title" && field.key != "tool.file"; });
+  if (scene.tool.mesh) text += mesh_text(*scene.tool.mesh);
+  return hash_text(text);
 }
 
 }  // namespace touchstone::scene

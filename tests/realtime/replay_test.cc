@@ -69,10 +69,10 @@ TEST(Replay, AHeldPoseIsAFixedPoint) {
     step(model, test::pressed(-0.001), state);
     step(model, pose, state);
     step(model, pose, state);
-    const auto force_n = state.region.force.force_n;
+    const auto force_n = state.regions[0].force.force_n;
     const Columns3 displacement_m = state.field.displacement_m, normal = state.field.normal;
     for (int tick = 0; tick < 300; ++tick) step(model, pose, state);
-    EXPECT_EQ(state.region.force.force_n, force_n);
+    EXPECT_EQ(state.regions[0].force.force_n, force_n);
     EXPECT_EQ(state.field.displacement_m, displacement_m);
     EXPECT_EQ(state.field.normal, normal);
   }

@@ -1,5 +1,6 @@
 #include "fast/contact_detection.h"
 
+#include "unit/fast/points.h"
 #include "unit/fast/press.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +22,7 @@ struct Case {
                             ? detection_for(static_cast<const scene::Box&>(*body))
                             : detection_for(static_cast<const scene::Sphere&>(*body));
   ToolSamples tool = sample_tool(scene::Sphere(Vec3::Zero(), scene.tool.radius_m), scene.fast.tool_samples);
-  RegionPoints points{tool.count()};
+  test::OwnedPoints points{tool.count()};
 };
 
 /// Every sample asked one by one of the shape itself.
@@ -47,7 +48,8 @@ TEST_P(ContactDetection, FindsExactlyTheSamplesInside) {
     scene::Pose pose;
     pose.position_m = Vec3(place(random), place(random), 0.03 + place(random));
     pose.orientation = Eigen::Quaterniond(turn(random), turn(random), turn(random), turn(random)).normalized();
-    const InsideSummary summary = c.detection.find_inside(*c.body, c.tool, placement(pose), c.tool.count(), c.points);
+    const InsideSummary summary =
+        c.detection.find_inside(*c.body, c.tool, placement(pose), 0.0, c.tool.count(), c.points);
     const std::vector<Vec3> truth = inside_by_force(c, pose);
     ASSERT_NEAR(c.points.count, static_cast<int>(truth.size()), 0);
     contacts += c.points.count > 0;
@@ -72,7 +74,7 @@ TEST_P(ContactDetection, DeepestSampleIsTheRestDepth) {
     scene::Pose pose = test::at(0.0, 0.0, top_m + 0.010 - depth_m);
     pose.orientation = test::tilted();
     const Placement at = placement(pose);
-    const InsideSummary inside = c.detection.find_inside(*c.body, c.tool, at, c.tool.count(), c.points);
+    const InsideSummary inside = c.detection.find_inside(*c.body, c.tool, at, 0.0, c.tool.count(), c.points);
     const Vec3 d = direction_from(inside, Vec3::UnitX());
     const RegionExtent extent = c.detection.measure_depths(*c.body, at.R_WT, d, c.points);
     // The samples miss the deepest point by at most half a diagonal of their spacing.
@@ -86,7 +88,7 @@ TEST_P(ContactDetection, DeepestSampleIsTheRestDepth) {
 
 TEST_P(ContactDetection, LimitStopsTheSearchEarly) {
   const double top_m = c.body->bounds().upper_m.z();
-  c.detection.find_inside(*c.body, c.tool, placement(test::at(0.0, 0.0, top_m)), 1, c.points);
+  c.detection.find_inside(*c.body, c.tool, placement(test::at(0.0, 0.0, top_m)), 0.0, 1, c.points);
   EXPECT_GE(c.points.count, 1);
   EXPECT_LE(c.points.count, 8);
 }
@@ -98,7 +100,7 @@ TEST(ContactDepths, AreMeasuredAlongTheGivenDirection) {
   Case c{test::ball_on_cube()};
   const scene::Pose pose = test::pressed(0.004);
   const Placement at = placement(pose);
-  c.detection.find_inside(*c.body, c.tool, at, c.tool.count(), c.points);
+  c.detection.find_inside(*c.body, c.tool, at, 0.0, c.tool.count(), c.points);
   const Vec3 d = Vec3(0.6, 0.0, -0.8);
   const RegionExtent extent = c.detection.measure_depths(*c.body, at.R_WT, d, c.points);
   double area_m2 = 0.0;
@@ -116,7 +118,7 @@ TEST(ContactDepths, AreaIsTheOverlapsProjection) {
   Case c{test::ball_on_cube()};
   for (const double depth_m : {0.001, 0.003, 0.006}) {
     const Placement at = placement(test::pressed(depth_m));
-    c.detection.find_inside(*c.body, c.tool, at, c.tool.count(), c.points);
+    c.detection.find_inside(*c.body, c.tool, at, 0.0, c.tool.count(), c.points);
     const RegionExtent extent = c.detection.measure_depths(*c.body, at.R_WT, -Vec3::UnitZ(), c.points);
     const double cap_m2 = std::numbers::pi * (2.0 * 0.010 * depth_m - depth_m * depth_m);
     EXPECT_NEAR(extent.area_m2, cap_m2, 0.02 * cap_m2);
@@ -128,7 +130,7 @@ TEST(ContactDepths, AreaIsTheOverlapsProjection) {
 TEST(ContactDepths, PointsFacingAwayAreLeftOut) {
   Case c{test::ball_on_cube()};
   const Placement at = placement(test::at(0.0, 0.0, 0.03));  // the whole ball inside
-  c.detection.find_inside(*c.body, c.tool, at, c.tool.count(), c.points);
+  c.detection.find_inside(*c.body, c.tool, at, 0.0, c.tool.count(), c.points);
   EXPECT_EQ(c.points.count, c.tool.count());
   c.detection.measure_depths(*c.body, at.R_WT, -Vec3::UnitZ(), c.points);
   EXPECT_EQ(c.points.count, c.tool.count() / 2);

@@ -1,6 +1,7 @@
 #include "fast/equivalent_point.h"
 
 #include "fast/step.h"
+#include "unit/fast/points.h"
 #include "unit/fast/press.h"
 
 #include <gtest/gtest.h>
@@ -16,9 +17,9 @@ TEST(EquivalentPoint, OriginIsUnderTheToolOnTheRestSurface) {
   for (const auto& [x, y] : {std::pair{0.0, 0.0}, {0.004, -0.011}, {0.015, 0.010}}) {
     step(model, test::pressed(-0.001, x, y), state);
     step(model, test::pressed(0.003, x, y), state);
-    EXPECT_EQ(state.region.origin.patch, 5);
-    EXPECT_LT((state.region.origin.p0_W_m - Vec3(x, y, 0.060)).norm(), 1e-12);
-    EXPECT_EQ(state.region.origin.normal, Vec3::UnitZ());
+    EXPECT_EQ(state.regions[0].origin.patch, 5);
+    EXPECT_LT((state.regions[0].origin.p0_W_m - Vec3(x, y, 0.060)).norm(), 1e-12);
+    EXPECT_EQ(state.regions[0].origin.normal, Vec3::UnitZ());
   }
 }
 
@@ -30,9 +31,9 @@ TEST(EquivalentPoint, OriginOnASphereIsTakenOutToTheSurface) {
     step(model, {Vec3(0.0, 0.0, 0.030) + (0.040 + gap_m) * out, test::tilted()}, state);
   }
   ASSERT_TRUE(state.in_contact());
-  EXPECT_NEAR(model.body->signed_distance_m(state.region.origin.p0_W_m), 0.0, 1e-15);
-  EXPECT_LT((state.region.origin.p0_W_m - (Vec3(0.0, 0.0, 0.030) + 0.030 * out)).norm(), 2e-4);
-  EXPECT_GT(state.region.origin.normal.dot(out), 0.999);
+  EXPECT_NEAR(model.body->signed_distance_m(state.regions[0].origin.p0_W_m), 0.0, 1e-15);
+  EXPECT_LT((state.regions[0].origin.p0_W_m - (Vec3(0.0, 0.0, 0.030) + 0.030 * out)).norm(), 2e-4);
+  EXPECT_GT(state.regions[0].origin.normal.dot(out), 0.999);
 }
 
 TEST(EquivalentPoint, OriginIsTakenOutAlongTheDirectionOfDeformation) {
@@ -50,20 +51,20 @@ TEST(EquivalentPoint, DisplacementGivesTheRegionsForce) {
   step(model, test::pressed(-0.001), state);
   for (const double depth_m : {0.001, 0.003, 0.006}) {
     step(model, test::pressed(depth_m), state);
-    const double F = state.region.force.magnitude_n;
-    EXPECT_NEAR(model.law.force_n(state.region.displacement_m), F, 1e-14 * F);
-    EXPECT_LT(state.region.displacement_m, depth_m);
-    EXPECT_GT(state.region.displacement_m, 0.3 * depth_m);
+    const double F = state.regions[0].force.magnitude_n;
+    EXPECT_NEAR(model.law.force_n(state.regions[0].displacement_m.norm()), F, 1e-14 * F);
+    EXPECT_LT(state.regions[0].displacement_m.norm(), depth_m);
+    EXPECT_GT(state.regions[0].displacement_m.norm(), 0.3 * depth_m);
   }
 }
 
 TEST(EquivalentPoint, DepthsAreHeldWithinTheLimit) {
-  RegionPoints points(3);
+  test::OwnedPoints points(3);
   points.count = 3;
-  points.depth_m = {0.001, 0.002, 0.003};
+  for (std::size_t i = 0; i < 3; ++i) points.depth_m[i] = 0.001 * static_cast<double>(i + 1);
   EXPECT_FALSE(limit_depths(0.003, points));
   EXPECT_TRUE(limit_depths(0.0015, points));
-  EXPECT_EQ(points.depth_m, (std::vector<double>{0.001, 0.0015, 0.0015}));
+  EXPECT_EQ((std::vector<double>(points.depth_m, points.depth_m + 3)), (std::vector<double>{0.001, 0.0015, 0.0015}));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "fast/mass_distribution.h"
 
+#include "unit/fast/points.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,8 +15,8 @@ using scene::Vec3;
 const Vec3 down = -Vec3::UnitZ();
 
 /// Points of a flat tool 10 mm under its mass centre, facing down.
-RegionPoints flat(const std::vector<Vec3>& places_m) {
-  RegionPoints points(static_cast<int>(places_m.size()));
+test::OwnedPoints flat(const std::vector<Vec3>& places_m) {
+  test::OwnedPoints points(static_cast<int>(places_m.size()));
   points.count = static_cast<int>(places_m.size());
   for (std::size_t i = 0; i < places_m.size(); ++i) {
     points.x_T_m[i] = places_m[i].x();
@@ -26,27 +28,25 @@ RegionPoints flat(const std::vector<Vec3>& places_m) {
   return points;
 }
 
-double sum(const RegionPoints& points) {
-  return std::accumulate(points.share.begin(), points.share.begin() + points.count, 0.0);
-}
+double sum(const RegionPoints& points) { return std::accumulate(points.share, points.share + points.count, 0.0); }
 
 TEST(MassDistribution, CorrectedBalancesTheLever) {
   // Supports at lever arms 1 : 3 carry 3/4 and 1/4, and the load's centre is the mass centre (errata E6).
-  RegionPoints points = flat({Vec3(0.01, 0.0, 0.0), Vec3(-0.03, 0.0, 0.0)});
+  test::OwnedPoints points = flat({Vec3(0.01, 0.0, 0.0), Vec3(-0.03, 0.0, 0.0)});
   distribute_mass_corrected(down, 1e-9, points);
   EXPECT_NEAR(points.share[0], 0.75, 1e-12);
   EXPECT_NEAR(points.share[1], 0.25, 1e-12);
 }
 
 TEST(MassDistribution, PublishedSwapsTheLever) {
-  RegionPoints points = flat({Vec3(0.01, 0.0, 0.0), Vec3(-0.03, 0.0, 0.0)});
+  test::OwnedPoints points = flat({Vec3(0.01, 0.0, 0.0), Vec3(-0.03, 0.0, 0.0)});
   distribute_mass_published(down, 1e-9, points);
   EXPECT_NEAR(points.share[0], 0.25, 1e-12);
   EXPECT_NEAR(points.share[1], 0.75, 1e-12);
 }
 
 TEST(MassDistribution, SumsToOneAndFollowsTheFormulas) {
-  RegionPoints points = flat({Vec3(0.0, 0.0, 0.0), Vec3(0.001, 0.002, 0.0), Vec3(-0.004, 0.001, 0.0)});
+  test::OwnedPoints points = flat({Vec3(0.0, 0.0, 0.0), Vec3(0.001, 0.002, 0.0), Vec3(-0.004, 0.001, 0.0)});
   points.cos_theta[1] = 0.5;
   points.area_m2[2] = 3e-6;
   const double r_0 = 0.001;
@@ -64,7 +64,7 @@ TEST(MassDistribution, SumsToOneAndFollowsTheFormulas) {
 }
 
 TEST(MassDistribution, LeverArmsAreTakenAcrossTheDirection) {
-  RegionPoints points = flat({Vec3(0.01, 0.0, 0.0), Vec3(0.0, 0.01, 0.0)});
+  test::OwnedPoints points = flat({Vec3(0.01, 0.0, 0.0), Vec3(0.0, 0.01, 0.0)});
   // Seen along x, the second point's arm is sqrt(0.01^2 + 0.01^2), the first one's 0.01 (both are 10 mm low).
   distribute_mass_published(Vec3::UnitX(), 1e-3, points);
   EXPECT_NEAR(points.share[1] / points.share[0], std::sqrt(2.0), 1e-12);
@@ -72,8 +72,8 @@ TEST(MassDistribution, LeverArmsAreTakenAcrossTheDirection) {
 
 TEST(MassDistribution, IsUniformWhereAllWeightsVanish) {
   for (const DistributeMass distribute : {distribute_mass_published, distribute_mass_corrected}) {
-    RegionPoints points = flat({Vec3(0.001, 0.0, 0.0), Vec3(0.0, 0.002, 0.0)});
-    points.cos_theta.assign(2, 0.0);
+    test::OwnedPoints points = flat({Vec3(0.001, 0.0, 0.0), Vec3(0.0, 0.002, 0.0)});
+    points.cos_theta[0] = points.cos_theta[1] = 0.0;
     distribute(down, 1e-3, points);
     EXPECT_EQ(points.share[0], 0.5);
     EXPECT_EQ(points.share[1], 0.5);
@@ -82,7 +82,7 @@ TEST(MassDistribution, IsUniformWhereAllWeightsVanish) {
 
 TEST(MassDistribution, OnePointUnderTheMassCentreCarriesAll) {
   for (const DistributeMass distribute : {distribute_mass_published, distribute_mass_corrected}) {
-    RegionPoints points = flat({Vec3::Zero()});
+    test::OwnedPoints points = flat({Vec3::Zero()});
     distribute(down, 1e-3, points);
     EXPECT_EQ(points.share[0], 1.0);
   }

@@ -53,8 +53,8 @@ TEST(Run, RecordsWhatAStepAnswers) {
   step(model, scene.track.back().pose, state);
   const scene::InstantRecord& last = result.instants.back();
   ASSERT_EQ(last.regions.size(), 1u);
-  EXPECT_LT((last.force_n() - state.region.force.force_n).norm(), 1e-12);
-  EXPECT_NEAR(last.regions[0].area_m2, state.region.extent.area_m2, 1e-15);
+  EXPECT_LT((last.force_n() - state.regions[0].force.force_n).norm(), 1e-12);
+  EXPECT_NEAR(last.regions[0].area_m2, state.regions[0].extent.area_m2, 1e-15);
   EXPECT_NEAR(last.regions[0].depth_m, 0.006, 1e-12);
   for (int v = 0; v < result.surface.vertex_count(); ++v) {
     const auto k = static_cast<std::size_t>(v);

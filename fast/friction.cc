@@ -1,0 +1,163 @@
+#include "fast/friction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace touchstone::fast {
+namespace {
+
+using scene::Mat3;
+using scene::Vec3;
+
+/// A length this part shorter than another is taken as equal: more than rounding, less than any step.
+constexpr double rounding_rel = 1e-12;
+/// Depths below this [m] are no contact, and vectors shorter than this have no direction: ratios of them may overflow.
+constexpr double smallest = 1e-100;
+
+Vec3 tangential(const Vec3& v, const Vec3& d) noexcept { return v - v.dot(d) * d; }
+
+Vec3 scaled_to(const Vec3& v, double length) noexcept {
+  const double norm = v.norm();
+  return norm > smallest ? Vec3(v * (length / norm)) : Vec3(Vec3::Zero());
+}
+
+/// The turn that takes `from` to `to` the short way, applied to a vector at right angles to `from`. Keeps its length.
+Vec3 carried(const Vec3& v, const Vec3& from, const Vec3& to) noexcept {
+  const double opposite = 1.0 + from.dot(to);
+  const Vec3 turned = opposite > 1e-6 ? Vec3(v - (v.dot(to) / opposite) * (from + to)) : v;
+  return scaled_to(tangential(turned, to), v.norm());
+}
+
+/// Brings the state to this tick's d. A region without depth does not touch the body, and has nothing to remember.
+void carry(const Vec3& d, double normal_depth_m, FrictionState& state) noexcept {
+  if (!(normal_depth_m > smallest)) state = FrictionState{};
+  if (state.d == d) return;
+  state.stretch_m = carried(state.stretch_m, state.d, d);
+  state.motion = carried(state.motion, state.d, d);
+  state.d = d;
+}
+
+}  // namespace
+
+FrictionLaw::FrictionLaw(const scene::Friction& friction) noexcept
+    : K_(friction.K), beta_(friction.beta), mu_D_(friction.mu_D), bound_n_(std::numeric_limits<double>::infinity()) {
+  if (mu_D_ > 0.0 && beta_ < 1.0) bound_n_ = std::pow(K_ / mu_D_, 1.0 / (1.0 - beta_));
+  if (beta_ >= 1.0 && mu_D_ > K_) bound_n_ = 0.0;
+}
+
+double FrictionLaw::limit_n(double normal_n) const noexcept { return K_ * std::pow(normal_n, beta_); }
+
+double sliding_stretch_m(const FrictionLaw& friction, const DuffingLaw& law, double normal_depth_m) noexcept {
+  const double D_n = normal_depth_m, farthest = friction.mu_D() * D_n;
+  if (!(D_n > smallest) || farthest == 0.0 || friction.K() == 0.0) return 0.0;
+  if (law.secant_n_per_m(std::hypot(D_n, farthest)) * D_n <= friction.bound_n()) return farthest;
+  // F_t = f_max. With the secant s of the law at |D| this is s^(1 - beta) D_t = K D_n^beta, whose left side rises with
+  // D_t for every law. Newton on the logarithms, whose slope lies between 0.5 and 2, kept within the bracket.
+  const double rest = 1.0 - friction.beta();
+  const double goal = std::log(friction.K()) + friction.beta() * std::log(D_n);
+  double low = 0.0, high = farthest, D_t = farthest;
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    const double D = std::hypot(D_n, D_t), s = law.secant_n_per_m(D);
+    const double excess = rest * std::log(s) + std::log(D_t) - goal;
+    (excess > 0.0 ? high : low) = D_t;
+    const double along = D_t / D;
+    const double slope = 1.0 + rest * (law.slope_n_per_m(D) / s - 1.0) * along * along;
+    double next = D_t * std::exp(-excess / slope);
+    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    const bool settled = std::abs(next - D_t) <= 4.0 * std::numeric_limits<double>::epsilon() * D_t;
+    D_t = next;
+    if (settled) break;
+  }
+  return D_t;
+}
+
+Vec3 resolve_friction_corrected(const FrictionLaw& friction, const DuffingLaw& law, const Mat3& /*R_WT*/, const Vec3& d,
+                                const RegionPoints& /*points*/, const Vec3& step_m, RegionForce& force,
+                                FrictionState& state) noexcept {
+  const double D_n = law.depth_m(force.magnitude_n);
+  carry(d, D_n, state);
+  const Vec3 step = D_n > smallest ? tangential(step_m, d) : Vec3(Vec3::Zero());
+  const Vec3 trial = state.stretch_m + step;
+  const double reach = trial.norm();
+
+  double longest = 0.0;
+  if (state.sliding) {
+    // Stuck again where the limit, on its way to where it is now, would have run ahead of the stretch.
+    longest = sliding_stretch_m(friction, law, D_n);
+    const double before = state.stretch_m.norm();
+    const double drive = before > 0.0 ? step.dot(state.stretch_m) / before : step.norm();
+    state.sliding = drive >= longest - before - rounding_rel * longest;
+  }
+  if (!state.sliding) {
+    const double s = law.secant_n_per_m(std::hypot(D_n, reach));
+    state.sliding = s * reach > friction.limit_n(s * D_n);
+    if (state.sliding) longest = sliding_stretch_m(friction, law, D_n);
+  }
+  state.stretch_m = state.sliding ? scaled_to(trial, longest) : trial;
+
+  const Vec3 displacement_m = D_n * d + state.stretch_m;
+  const double D = displacement_m.norm(), s = law.secant_n_per_m(D);
+  force.saturated = force.saturated || D > law.peak_depth_m();
+  set_force(d, s * D_n, -s * state.stretch_m, force);
+  return displacement_m;
+}
+
+namespace {
+
+/// F_cn and F_ct of a deformation that is stuck.
+struct Components {
+  double normal_n = 0.0, tangential_n = 0.0;
+  Vec3 load_center_T_m = Vec3::Zero();
+  double deepest_m = 0.0;
+};
+
+Components components(const DuffingLaw& law, const RegionPoints& points, double D_n, double D_t) noexcept {
+  if (!(D_n > smallest)) return {};
+  if (points.count == 1) return {law.force_n(D_n), law.force_n(D_t), points.p_T_m(0), std::max(D_n, D_t)};
+  const double D = std::hypot(D_n, D_t);
+  const RegionLoad load = region_load(law, points, D / D_n);
+  return {load.force_n * (D_n / D), load.force_n * (D_t / D), load.center_T_m, load.deepest_m};
+}
+
+}  // namespace
+
+Vec3 resolve_friction_published(const FrictionLaw& friction, const DuffingLaw& law, const Mat3& R_WT, const Vec3& d,
+                                const RegionPoints& points, const Vec3& step_m, RegionForce& force,
+                                FrictionState& state) noexcept {
+  double D_n = law.depth_m(force.magnitude_n);
+  carry(d, D_n, state);
+  const Vec3 step = D_n > smallest ? tangential(step_m, d) : Vec3(Vec3::Zero());
+  if (step.norm() > smallest) state.motion = step.normalized();
+
+  const Vec3 trial = state.stretch_m + step;
+  Components here = components(law, points, D_n, trial.norm());
+  double f_max = friction.limit_n(here.normal_n);
+  const bool past_limit = here.tangential_n > f_max;                              // C4
+  const bool stuck = !state.sliding || friction.mu_D() * here.normal_n >= f_max;  // C1 or C2; else C3
+  Vec3 against;
+  if (!past_limit && stuck) {
+    state.sliding = false;
+    state.stretch_m = trial;
+    against = state.stretch_m;
+  } else {
+    // p0 moves with the tool, so the stretch stays.
+    state.sliding = true;
+    here = components(law, points, D_n, state.stretch_m.norm());
+    f_max = friction.limit_n(here.normal_n);
+    here.tangential_n = friction.mu_D() * here.normal_n;
+    if (past_limit && here.tangential_n > f_max) {
+      here.tangential_n = f_max;
+      here.normal_n = f_max / friction.mu_D();
+      D_n = law.depth_m(here.normal_n);
+    }
+    against = state.motion != Vec3::Zero() ? state.motion : state.stretch_m;
+  }
+  force.load_center_m = R_WT * here.load_center_T_m;
+  force.saturated = force.saturated || here.deepest_m > law.peak_depth_m();
+  set_force(d, here.normal_n, scaled_to(against, -here.tangential_n), force);
+  if (points.count == 1) return D_n * d + state.stretch_m;
+  return scaled_to(force.force_n, -law.depth_m(force.magnitude_n));
+}
+
+}  // namespace touchstone::fast

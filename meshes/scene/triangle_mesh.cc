@@ -1,0 +1,75 @@
+#include "scene/triangle_mesh.h"
+
+#include "scene/mesh_checks.h"
+
+namespace touchstone::scene {
+
+double TriangleMesh::area_m2() const {
+  double twice_m2 = 0.0;
+  for (const auto& [a, b, c] : triangles) {
+    const Vec3 pa = points_m.col(a);
+    twice_m2 += (points_m.col(b) - pa).cross(points_m.col(c) - pa).norm();
+  }
+  return 0.5 * twice_m2;
+}
+
+double TriangleMesh::volume_m3() const {
+  // Tetrahedra about one of the mesh's own points, so that a mesh far from the origin loses nothing.
+  if (triangles.empty()) return 0.0;
+  const Vec3 from = points_m.col(0);
+  double six_m3 = 0.0;
+  for (const auto& [a, b, c] : triangles) {
+    six_m3 += (points_m.col(a) - from).dot((points_m.col(b) - from).cross(points_m.col(c) - from));
+  }
+  return six_m3 / 6.0;
+}
+
+Vec3 TriangleMesh::centroid_m() const {
+  if (triangles.empty()) return Vec3::Zero();
+  const Vec3 from = points_m.col(0);
+  double six_m3 = 0.0;
+  Vec3 moment = Vec3::Zero();
+  for (const auto& [a, b, c] : triangles) {
+    const Vec3 pa = points_m.col(a) - from, pb = points_m.col(b) - from, pc = points_m.col(c) - from;
+    const double part = pa.dot(pb.cross(pc));
+    six_m3 += part;
+    moment += part / 4.0 * (pa + pb + pc);
+  }
+  return from + moment / six_m3;
+}
+
+Bounds TriangleMesh::bounds() const { return {points_m.rowwise().minCoeff(), points_m.rowwise().maxCoeff()}; }
+
+std::optional<TriangleMesh> read_triangle_mesh(const std::filesystem::path& file, double unit_m,
+                                               std::vector<Fault>& faults) {
+  const auto refuse = [&](const std::string& message) {
+    faults.push_back({file.string(), 0, 0, message});
+    return std::nullopt;
+  };
+  RawMesh raw;
+  try {
+    raw = welded(read_mesh_file(file));
+  } catch (const InputError& error) {
+    faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+    return std::nullopt;
+  }
+  // Places in faults are in the file's own unit, as its author sees them.
+  std::vector<MeshPiece> pieces;
+  if (const auto fault = orient_outwards(raw, pieces)) return refuse(*fault);
+  if (const auto place = self_intersection(raw)) {
+    return refuse("the surface cuts or touches itself near " + place_text(*place));
+  }
+  if (const auto place = nested_piece(raw, pieces)) {
+    return refuse("the piece at " + place_text(*place) +
+                  " lies inside another; cavities are not supported, leave it out");
+  }
+  TriangleMesh mesh;
+  mesh.points_m.resize(3, static_cast<Eigen::Index>(raw.points.size()));
+  for (std::size_t i = 0; i < raw.points.size(); ++i) {
+    mesh.points_m.col(static_cast<Eigen::Index>(i)) = unit_m * raw.points[i];
+  }
+  mesh.triangles = std::move(raw.triangles);
+  return mesh;
+}
+
+}  // namespace touchstone::scene
