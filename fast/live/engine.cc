@@ -9,19 +9,6 @@
 #include <new>
 
 namespace touchstone::live {
-namespace {
-
-/// Either form of the state: one region, or several with their total (which stays once both are merged).
-template <class State>
-Wrench wrench_of(const State& state) noexcept {
-  if constexpr (requires { total_force_n(state); }) {
-    return {total_force_n(state), total_torque_nm(state)};
-  } else {
-    return {state.region.force.force_n, state.region.force.torque_nm};
-  }
-}
-
-}  // namespace
 
 void Engine::FreeHash::operator()(XXH3_state_s* hash) const noexcept { XXH3_freeState(hash); }
 
@@ -47,7 +34,7 @@ fast::StepStatus Engine::step_force(const scene::Pose& pose) noexcept {
 
 fast::StepStatus Engine::step_shape() noexcept { return fast::step_shape(model_, state_); }
 
-Wrench Engine::wrench() const noexcept { return wrench_of(state_); }
+Wrench Engine::wrench() const noexcept { return {fast::total_force_n(state_), fast::total_torque_nm(state_)}; }
 
 std::uint64_t Engine::answer_hash() const {
   const std::unique_ptr<XXH3_state_s, FreeHash> copy(XXH3_createState());

@@ -35,17 +35,10 @@ class StopOnSignal {
   struct sigaction end_before_ {};
 };
 
-/// Until scene files carry the [live] keys: a scene that was read without them gets their defaults.
-// TEMPORARY, to be removed with the keys' arrival in meshes/scene/fields.cc.
-scene::Scene with_live_defaults(scene::Scene scene) {
-  if (scene.live.force_max_n == 0.0) scene.live = {40.0, 2e4, 0.1, 0.2, 5.0, 500.0};
-  return scene;
-}
-
 }  // namespace
 
 int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const std::string& command) {
-  const scene::Scene scene = with_live_defaults(options.load());
+  const scene::Scene scene = options.load();
   if (std::vector<scene::Fault> faults = fast::unsupported(scene); !faults.empty()) {
     throw scene::InputError(std::move(faults));
   }

@@ -71,6 +71,14 @@ TEST_F(LiveVerb, LeavesItsFolderAndPlaysItAgain) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "other" / "summary.json"));
 }
 
+TEST_F(LiveVerb, TheLimitIsTheScenes) {
+  const Answer answer = live("--device scripted --seconds 1 --set live.force_max_n=2.5", "out");
+  ASSERT_EQ(answer.exit_code, 0) << answer.output;
+  EXPECT_LE(summary("out")["live.force_max_n"].get<double>(), 2.5);
+  EXPECT_GT(summary("out")["live.model_force_max_n"].get<double>(), 5.0);
+  EXPECT_GT(summary("out")["live.limited_ticks"].get<double>(), 10.0);
+}
+
 TEST_F(LiveVerb, CtrlCEndsItWithAllWritten) {
   const Answer answer =
       live("--device hand --seconds 3600", "out", "timeout --foreground --preserve-status -s INT 0.7 ");
