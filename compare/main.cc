@@ -1,6 +1,7 @@
 // touchstone: one scene in, one result folder out.
 #include "compare/verbs.h"
 #include "fast/command_line.h"
+#include "fast/live/live_verb.h"
 #include "scene/fields.h"
 
 #include <iostream>
@@ -18,6 +19,7 @@ int main(int argc, char** argv) {
       "print every key of a scene file as a Markdown table");
 
   fast::VerbOptions options;
+  live::LiveOptions live_options;
   std::filesystem::path store = "out/reference-store";
   int exit_code = fast::done;
   const auto add = [&](const char* name, const char* what, auto verb) {
@@ -39,5 +41,6 @@ int main(int argc, char** argv) {
                             compare::run_reference));
   add_store(
       add_with_folder("compare", "both sides, then force and shape errors: tables, VTK, report", compare::run_compare));
+  live::add_live_verb(app, options, live_options, exit_code);
   return fast::run_command_line(app, argc, argv, exit_code);
 }

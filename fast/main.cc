@@ -1,5 +1,6 @@
 // touchstone-fast: the real-time side alone, for the machine with the device. Links neither deal.II, VTK nor MPI.
 #include "fast/command_line.h"
+#include "fast/live/live_verb.h"
 #include "fast/results.h"
 #include "scene/scene_io.h"
 
@@ -30,6 +31,7 @@ int run(const fast::VerbOptions& options) {
 int main(int argc, char** argv) {
   CLI::App app("Real-time contact of a rigid tool with an elastic body.", "touchstone-fast");
   fast::VerbOptions options;
+  live::LiveOptions live_options;
   int exit_code = fast::done;
   fast::add_verb(
       app, "plan", "what the fast model computes for a scene, what it leaves out and why", options,
@@ -38,5 +40,6 @@ int main(int argc, char** argv) {
       app, "fast", "the real-time pipeline over the scene's track in virtual time", options,
       [&] { return run(options); }, exit_code)
       ->add_option("--out", options.out, "result folder (default out/<scene>-fast)");
+  live::add_live_verb(app, options, live_options, exit_code);
   return fast::run_command_line(app, argc, argv, exit_code);
 }

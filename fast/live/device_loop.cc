@@ -1,0 +1,123 @@
+#include "fast/live/device_loop.h"
+
+#include <algorithm>
+#include <limits>
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+namespace touchstone::live {
+namespace {
+
+/// Takes numbers too small for full precision as zero while it lives; they cost a hundred times a normal one.
+class FlushTinyNumbers {
+ public:
+#if defined(__SSE__)
+  FlushTinyNumbers() noexcept : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040u); }
+  ~FlushTinyNumbers() { _mm_setcsr(before_); }
+  FlushTinyNumbers(const FlushTinyNumbers&) = delete;
+  FlushTinyNumbers& operator=(const FlushTinyNumbers&) = delete;
+
+ private:
+  unsigned before_;
+#endif
+};
+
+scene::Pose no_pose() noexcept {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  return {scene::Vec3(nan, nan, nan), Eigen::Quaterniond(nan, nan, nan, nan)};
+}
+
+void publish_shape(const TickRecord& record, std::int64_t now_ns, const fast::SurfaceField& field,
+                   TripleBuffer<ShapeFrame>& shapes) noexcept {
+  ShapeFrame& back = shapes.back();
+  back.tick = record.tick.index;
+  back.stamp_ns = now_ns;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::copy(field.displacement_m[axis].begin(), field.displacement_m[axis].end(),
+              back.field.displacement_m[axis].begin());
+    std::copy(field.normal[axis].begin(), field.normal[axis].end(), back.field.normal[axis].begin());
+  }
+  shapes.publish();
+}
+
+/// One tick. @param begin_ns when it woke
+void do_tick(const Tick& tick, std::int64_t begin_ns, std::int64_t lateness_ns, const LoopPorts& ports,
+             Ledger& ledger) noexcept {
+  TickRecord record;
+  record.sequence = ledger.ticks;
+  record.tick = tick;
+  record.lateness_ns = lateness_ns;
+
+  DeviceSample sample;
+  record.pose = ports.device.read(tick, sample) ? sample.pose : no_pose();
+  record.buttons = sample.buttons;
+  fast::StepStatus status = ports.engine.step_force(record.pose);
+  const bool good = status != fast::StepStatus::not_finite;
+  record.model = ports.engine.wrench();
+  record.published = ports.limiter.next(record.model, good);
+  ports.device.write(record.published);
+  const std::int64_t published_ns = ports.clock.now_ns();
+
+  if (good) status |= ports.engine.step_shape();
+  // Also where nothing moved: it is of this tick all the same.
+  if (ports.shapes != nullptr) publish_shape(record, ports.clock.now_ns(), ports.engine.field(), *ports.shapes);
+  const std::int64_t shaped_ns = ports.clock.now_ns();
+
+  record.status = static_cast<std::uint32_t>(status);
+  if (!good) record.flags |= bad_pose;
+  if (ports.limiter.limited()) record.flags |= limited;
+  record.force_ns = published_ns - begin_ns;
+  record.shape_ns = shaped_ns - published_ns;
+  if (ports.listener != nullptr) ports.listener->tick_done(record);
+  if (ports.records != nullptr) ports.records->push(record);
+
+  const double force_n = record.published.force_n.norm();
+  ++ledger.ticks;
+  ledger.bad_poses += good ? 0 : 1;
+  ledger.limited_ticks += ports.limiter.limited() ? 1 : 0;
+  ledger.force_max_n = std::max(ledger.force_max_n, force_n);
+  ledger.model_force_max_n = std::max(ledger.model_force_max_n, record.model.force_n.norm());
+  ledger.status |= record.status;
+  ledger.force.add(record.force_ns);
+  ledger.shape.add(record.shape_ns);
+  if (ports.progress != nullptr) {
+    ports.progress->ticks.store(ledger.ticks, std::memory_order_relaxed);
+    ports.progress->missed.store(ledger.missed, std::memory_order_relaxed);
+    ports.progress->force_n.store(force_n, std::memory_order_relaxed);
+  }
+  ledger.step.add(ports.clock.now_ns() - begin_ns);
+}
+
+/// The newest grid point.
+std::int64_t newest_grid_point(const LoopTime& time, std::int64_t since_start_ns) noexcept {
+  constexpr std::int64_t second_ns = 1'000'000'000;
+  const std::int64_t seconds = since_start_ns / second_ns, rest_ns = since_start_ns % second_ns;
+  std::int64_t index = seconds * time.rate_hz + rest_ns * time.rate_hz / second_ns;
+  // Grid points are whole nanoseconds, rounded down.
+  while (time.time_ns(index + 1) <= since_start_ns) ++index;
+  return index;
+}
+
+}  // namespace
+
+void run_device_loop(const LoopTime& time, const LoopPorts& ports, Ledger& ledger) noexcept {
+  [[maybe_unused]] const FlushTinyNumbers flush;
+  // One period to be on time for the first.
+  const std::int64_t start_ns = ports.clock.now_ns() + time.time_ns(1);
+  for (std::int64_t index = 0; index < time.grid_points && ledger.ticks < time.ticks;) {
+    if (ports.stop != nullptr && ports.stop->load(std::memory_order_relaxed)) break;
+    ports.clock.wait_until(start_ns + time.time_ns(index));
+    const std::int64_t now_ns = ports.clock.now_ns();
+    ledger.lateness.add(now_ns - (start_ns + time.time_ns(index)));
+    const std::int64_t newest = std::min(newest_grid_point(time, now_ns - start_ns), time.grid_points);
+    ledger.missed += newest - index;
+    index = newest;
+    if (index == time.grid_points) break;
+    do_tick({index, time.time_s(index)}, now_ns, now_ns - (start_ns + time.time_ns(index)), ports, ledger);
+    ++index;
+  }
+  ports.device.write(Wrench{});
+}
+
+}  // namespace touchstone::live

@@ -1,0 +1,83 @@
+#include "fast/live/live_verb.h"
+
+#include "fast/run.h"
+#include "scene/error.h"
+
+#include <csignal>
+#include <iostream>
+#include <map>
+
+namespace touchstone::live {
+namespace {
+
+std::atomic<bool> stop_asked{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
+
+/// Ctrl-C asks for an end while it lives. More of them ask for no more: `timeout` and some shells send two.
+class StopOnSignal {
+ public:
+  StopOnSignal() {
+    stop_asked.store(false);
+    struct sigaction action {};
+    action.sa_handler = [](int) { stop_asked.store(true, std::memory_order_relaxed); };
+    sigaction(SIGINT, &action, &interrupt_before_);
+    sigaction(SIGTERM, &action, &end_before_);
+  }
+  ~StopOnSignal() {
+    sigaction(SIGINT, &interrupt_before_, nullptr);
+    sigaction(SIGTERM, &end_before_, nullptr);
+  }
+  StopOnSignal(const StopOnSignal&) = delete;
+  StopOnSignal& operator=(const StopOnSignal&) = delete;
+
+ private:
+  struct sigaction interrupt_before_ {};
+  struct sigaction end_before_ {};
+};
+
+}  // namespace
+
+int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const std::string& command) {
+  const scene::Scene scene = options.load();
+  if (std::vector<scene::Fault> faults = fast::unsupported(scene); !faults.empty()) {
+    throw scene::InputError(std::move(faults));
+  }
+  const std::filesystem::path folder = options.folder(scene, "live");
+  scene::prepare_result_folder(folder);
+  scene::Manifest manifest = scene::make_manifest(scene, command);
+  manifest.entries.emplace_back("device", name_of(live.device));
+  if (!live.log.empty()) manifest.entries.emplace_back("log", live.log.string());
+
+  const scene::Stopwatch watch;
+  fast::ProgressLine progress(options.quiet);
+  const StopOnSignal guard;
+  const LiveResult result = run_live(
+      scene, live, folder, stop_asked, [&](const std::string& text) { progress.show(text); },
+      [](const std::string& warning) { std::cerr << "warning: " << warning << '\n'; });
+  progress.finish();
+  manifest.times.push_back(watch.read("live"));
+  scene::write_summary(folder / "summary.json", figures(result, live));
+  scene::write_manifest(folder / "manifest.json", manifest);
+  std::cout << summary_text(result) << "Results: " << folder.string() << '\n';
+  if (result.interrupted) return fast::interrupted;
+  return result.replay && !result.replay->equal() ? fast::answer_is_no : fast::done;
+}
+
+void add_live_verb(CLI::App& app, fast::VerbOptions& options, LiveOptions& live, int& exit_code) {
+  const std::string program = app.get_name();
+  CLI::App* verb = fast::add_verb(
+      app, "live", "the real-time pipeline in the wall clock, driven by a device", options,
+      [&options, &live, program] { return live_verb(options, live, program + " live"); }, exit_code);
+  verb->add_option("--device", live.device, "scripted: the track; replay: a log; hand: a virtual hand on the track")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, DeviceKind>{
+          {"scripted", DeviceKind::scripted}, {"replay", DeviceKind::replay}, {"hand", DeviceKind::hand}}))
+      ->default_str("scripted");
+  verb->add_option("--seconds", live.seconds, "length (default the track's or the log's; 10 for hand)");
+  verb->add_option("--rate", live.rate_hz, "ticks per second, 1 to 10000 (default 1000, or the log's)");
+  verb->add_option("--log", live.log, "replay: live.csv of an earlier run");
+  verb->add_option("--processor", live.scheduling.processor, "for the loop's thread (default the last allowed)");
+  verb->add_option("--out", options.out, "result folder (default out/<scene>-live)");
+  verb->footer("Example:\n  " + program + " live meshes/scenes/ball-on-cube-press.toml --device hand --seconds 10");
+}
+
+}  // namespace touchstone::live

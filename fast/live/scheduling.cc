@@ -1,0 +1,87 @@
+#include "fast/live/scheduling.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace touchstone::live {
+namespace {
+
+/// The last processor of the set; -1 where it is empty.
+int last_of(const cpu_set_t& set) {
+  for (int cpu = CPU_SETSIZE - 1; cpu >= 0; --cpu) {
+    if (CPU_ISSET(static_cast<std::size_t>(cpu), &set)) return cpu;
+  }
+  return -1;
+}
+
+}  // namespace
+
+std::string Scheduling::text() const {
+  return (fifo ? "SCHED_FIFO " + std::to_string(priority) : std::string("SCHED_OTHER")) +
+         (locked ? ", memory locked" : ", memory not locked") +
+         (pinned ? ", on processor " + std::to_string(processor) : ", on any processor");
+}
+
+Scheduling schedule_this_thread(const SchedulingWish& wish) {
+  Scheduling granted;
+  const auto refused = [&](const std::string& what, int error, const std::string& advice) {
+    granted.warnings.push_back(what + " refused (" + std::strerror(error) + "): " + advice);
+  };
+
+  if (mlockall(MCL_CURRENT) == 0) {
+    granted.locked = true;
+  } else {
+    refused("locked memory", errno, "a page fault may delay a tick; raise the memlock limit");
+  }
+
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) {
+    // Interrupts and the kernel's own work prefer the first.
+    const int processor = wish.processor.value_or(last_of(allowed));
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    if (processor >= 0 && processor < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(processor), &one);
+    const int error = pthread_setaffinity_np(pthread_self(), sizeof one, &one);
+    if (error == 0) {
+      granted.pinned = true;
+      granted.processor = processor;
+    } else {
+      refused("processor " + std::to_string(processor), error,
+              "the loop may move between processors; choose one that this process may use");
+    }
+  } else {
+    refused("a processor of its own", errno, "the loop may move between processors");
+  }
+
+  sched_param parameter{};
+  parameter.sched_priority = wish.priority;
+  const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
+  if (error == 0) {
+    granted.fifo = true;
+    granted.priority = wish.priority;
+  } else {
+    // Ordinary threads are woken up to 50 us late on purpose, to wake several at once.
+    prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+    refused("SCHED_FIFO", error, "other work will delay ticks; raise the rtprio limit");
+  }
+  return granted;
+}
+
+void release_memory() noexcept { munlockall(); }
+
+void block_signals() noexcept {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
+}  // namespace touchstone::live
