@@ -77,7 +77,7 @@ TEST(SceneFile, EveryFaultNamesItsPlaceAndWhatWasExpected) {
   EXPECT_THAT(message_for("\"box\"", "\"bax\""),
               HasSubstr("a.toml:2:9: body.shape = \"bax\"; expected \"box\" or \"sphere\""));
   EXPECT_THAT(message_for("[body]\n", "[body]\nradius_m = 0.1\n"),
-              HasSubstr("body.radius_m: only applies where body.shape = \"sphere\""));
+              HasSubstr("body.radius_m: only applies with body.shape = \"sphere\""));
   EXPECT_THAT(message_for("[body]\n", "[body\n"), AllOf(StartsWith("a.toml:1:6: "), HasSubstr("not valid TOML")));
   EXPECT_THAT(message_for("[tool]", "[tol]"), HasSubstr("unknown key \"tol\"; did you mean \"tool\"?"));
   EXPECT_EQ(message_for("position_m = [0.0, 0.0, 0.065]", "position_m = [0.0, 0.0, 0.065]\nspeed = 3"),
@@ -215,7 +215,8 @@ TEST(Fields, EveryDefaultIsInItsOwnRange) {
   for (const auto& field : scene_fields()) {
     EXPECT_TRUE(keys.insert(field.key).second) << field.key;
     EXPECT_FALSE(field.doc.empty()) << field.key;
-    // A unit is part of the key's name, so that a file cannot be misread.
+    // A unit is part of the key's name, so that a file cannot be misread. The unit of K hangs on beta.
+    if (field.key == "contact.friction.K") continue;
     EXPECT_TRUE(field.unit.empty() || field.key.find('_') != std::string_view::npos) << field.key;
   }
 }
