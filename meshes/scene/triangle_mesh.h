@@ -32,4 +32,11 @@ struct TriangleMesh {
 [[nodiscard]] std::optional<TriangleMesh> read_triangle_mesh(const std::filesystem::path& file, double unit_m,
                                                              std::vector<Fault>& faults);
 
+/// Binary STL, coordinates divided by unit_m. @throws InputError when the file cannot be written
+void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file, double unit_m);
+
+/// OBJ text with shared vertices, coordinates divided by unit_m and rounded to 1e-5 of that unit.
+/// @throws InputError when the file cannot be written
+void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, double unit_m);
+
 }  // namespace touchstone::scene
