@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 namespace touchstone::fast {
 namespace {
@@ -52,6 +53,7 @@ InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, co
       points.ny_T[k] = tool.ny_T[i];
       points.nz_T[k] = tool.nz_T[i];
       points.area_m2[k] = tool.area_m2[i];
+      points.depth_m[k] = -rest.signed_distance_m;
       points.sample[k] = static_cast<std::int32_t>(i);
     }
   }
@@ -132,8 +134,22 @@ std::array<double**, columns> columns_of(RegionPoints& p) noexcept {
 
 void RegionPoints::move(int from, int to) noexcept {
   const auto i = static_cast<std::size_t>(from), k = static_cast<std::size_t>(to);
-  for (double* column : {x_W_m, y_W_m, z_W_m, x_T_m, y_T_m, z_T_m, nx_T, ny_T, nz_T, area_m2}) column[k] = column[i];
+  for (double* column : {x_W_m, y_W_m, z_W_m, x_T_m, y_T_m, z_T_m, nx_T, ny_T, nz_T, area_m2, depth_m})
+    column[k] = column[i];
   sample[k] = sample[i];
+}
+
+void RegionPoints::reorder(std::span<const std::int32_t> order, double* scratch) noexcept {
+  const auto through_scratch = [&](auto* column) {
+    for (std::size_t k = 0; k < order.size(); ++k)
+      scratch[k] = static_cast<double>(column[static_cast<std::size_t>(order[k])]);
+    for (std::size_t k = 0; k < order.size(); ++k)
+      column[k] = static_cast<std::remove_reference_t<decltype(*column)>>(scratch[k]);
+  };
+  for (double* column : {x_W_m, y_W_m, z_W_m, x_T_m, y_T_m, z_T_m, nx_T, ny_T, nz_T, area_m2, depth_m})
+    through_scratch(column);
+  through_scratch(sample);
+  count = static_cast<int>(order.size());
 }
 
 RegionPoints RegionPoints::slice(int begin, int size) const noexcept {

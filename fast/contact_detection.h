@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace touchstone::fast {
@@ -26,7 +27,7 @@ struct RegionPoints {
   double *nx_T = nullptr, *ny_T = nullptr, *nz_T = nullptr;     ///< outward normal n_i of the tool
   double* area_m2 = nullptr;                                    ///< A_i
   double* cos_theta = nullptr;                                  ///< n_i . d, >= 0
-  double* depth_m = nullptr;                                    ///< d_i, along d from the rest surface
+  double* depth_m = nullptr;                                    ///< d_i, along d from the rest surface; as found: to it
   double* share = nullptr;                                      ///< m_i / m
   std::int32_t* sample = nullptr;                               ///< of ToolSamples
 
@@ -34,6 +35,9 @@ struct RegionPoints {
   [[nodiscard]] scene::Vec3 p_T_m(std::size_t i) const noexcept { return {x_T_m[i], y_T_m[i], z_T_m[i]}; }
   /// Copies point `from` to the place `to`, as far as detection has filled it.
   void move(int from, int to) noexcept;
+  /// Puts point order[k] at place k, for all k; as far as detection has filled them. Points not named are gone.
+  /// @param scratch room for as many numbers as `order` holds
+  void reorder(std::span<const std::int32_t> order, double* scratch) noexcept;
   /// The points [begin, begin + size) of this window.
   [[nodiscard]] RegionPoints slice(int begin, int size) const noexcept;
 };
