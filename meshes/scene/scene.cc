@@ -4,22 +4,64 @@
 
 namespace touchstone::scene {
 
+bool Body::flat_bottom() const noexcept {
+  return shape == BodyShape::box || (shape == BodyShape::revolution && scene::flat_bottom(profile));
+}
+
+std::unique_ptr<const Shape> solid_shape(const Solid& solid, const Vec3& center_m) {
+  switch (solid.shape) {
+    case BodyShape::box:
+      return std::make_unique<Box>(center_m, solid.size_m);
+    case BodyShape::sphere:
+      return std::make_unique<Sphere>(center_m, solid.radius_m);
+    case BodyShape::ellipsoid:
+      return std::make_unique<Ellipsoid>(center_m, solid.semi_axes_m);
+    case BodyShape::revolution: {
+      const double middle_m = 0.5 * (solid.profile.rz_m.front().y() + solid.profile.rz_m.back().y());
+      return std::make_unique<Revolution>(solid.profile, center_m - Vec3(0.0, 0.0, middle_m));
+    }
+  }
+  return nullptr;
+}
+
 std::unique_ptr<const Shape> body_shape(const Body& body) {
   switch (body.shape) {
     case BodyShape::box:
-      return std::make_unique<Box>(Vec3(0.0, 0.0, 0.5 * body.size_m.z()), body.size_m);
+      return solid_shape(body, Vec3(0.0, 0.0, 0.5 * body.size_m.z()));
     case BodyShape::sphere:
-      return std::make_unique<Sphere>(Vec3(0.0, 0.0, body.radius_m), body.radius_m);
+      return solid_shape(body, Vec3(0.0, 0.0, body.radius_m));
+    case BodyShape::ellipsoid:
+      return solid_shape(body, Vec3(0.0, 0.0, body.semi_axes_m.z()));
+    case BodyShape::revolution:
+      // Not through the centre: the bottom is at zero exactly.
+      return std::make_unique<Revolution>(body.profile, Vec3(0.0, 0.0, -body.profile.rz_m.front().y()));
   }
   return nullptr;
 }
 
 std::unique_ptr<const Shape> tool_shape(const Tool& tool) {
+  const Vec3 center_T_m = -tool.mass_center_m.value_or(Vec3::Zero());
   switch (tool.shape) {
     case ToolShape::sphere:
-      return std::make_unique<Sphere>(Vec3::Zero(), tool.radius_m);
+      return std::make_unique<Sphere>(center_T_m, tool.radius_m);
+    case ToolShape::capsule:
+      return std::make_unique<Revolution>(capsule_profile(tool.radius_m, tool.length_m), center_T_m);
+    case ToolShape::cylinder:
+      return std::make_unique<Revolution>(cylinder_profile(tool.radius_m, tool.length_m, tool.edge_radius_m),
+                                          center_T_m);
+    case ToolShape::box:
+      return std::make_unique<Box>(center_T_m, tool.size_m);
+    case ToolShape::mesh:
+      return nullptr;
   }
   return nullptr;
+}
+
+TriangleMesh tool_mesh(const Tool& tool) {
+  TriangleMesh mesh = *tool.mesh;
+  const Vec3 center_m = tool.mass_center_m ? *tool.mass_center_m : mesh.centroid_m();
+  mesh.points_m.colwise() -= center_m;
+  return mesh;
 }
 
 Pose pose_at(const std::vector<Waypoint>& track, double time_s) {
@@ -40,11 +82,6 @@ std::vector<double> instants_s(const Scene& scene) {
     times.push_back(begin_s + (end_s - begin_s) * i / (scene.compare.instants - 1));
   }
   return times;
-}
-
-double rest_depth_m(const Shape& body, const Tool& tool, const Pose& pose) {
-  // A ball's deepest point lies along the gradient at its centre, so this is exact for a convex body.
-  return std::max(0.0, tool.radius_m - body.signed_distance_m(pose.position_m));
 }
 
 }  // namespace touchstone::scene

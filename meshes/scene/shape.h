@@ -4,6 +4,7 @@
 
 #include "scene/frames.h"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -28,6 +29,8 @@ struct SurfaceQuery {
   int patch;                 ///< patch that holds the closest point
 };
 
+struct Surface;
+
 /// A closed convex surface made of smooth patches, each parametrised over (u, v) in [0,1]^2.
 /// Immutable; every query is noexcept and free of heap use, so a real-time step may call it.
 class Shape {
@@ -44,6 +47,8 @@ class Shape {
   [[nodiscard]] virtual double area_m2() const noexcept = 0;
   [[nodiscard]] virtual double volume_m3() const noexcept = 0;
   [[nodiscard]] virtual Bounds bounds() const noexcept = 0;
+  /// The shape's own pattern of triangles, see surface.h.
+  [[nodiscard]] virtual Surface tessellated(int triangles) const = 0;
 };
 
 /// Box with edges along the axes; patches 0..5 are the faces -x, +x, -y, +y, -z, +z.
@@ -58,6 +63,7 @@ class Box final : public Shape {
   [[nodiscard]] double area_m2() const noexcept override;
   [[nodiscard]] double volume_m3() const noexcept override;
   [[nodiscard]] Bounds bounds() const noexcept override;
+  [[nodiscard]] Surface tessellated(int triangles) const override;
   [[nodiscard]] const Vec3& center_m() const noexcept { return center_m_; }
   [[nodiscard]] const Vec3& half_m() const noexcept { return half_m_; }
 
@@ -78,6 +84,7 @@ class Sphere final : public Shape {
   [[nodiscard]] double area_m2() const noexcept override;
   [[nodiscard]] double volume_m3() const noexcept override;
   [[nodiscard]] Bounds bounds() const noexcept override;
+  [[nodiscard]] Surface tessellated(int triangles) const override;
   [[nodiscard]] const Vec3& center_m() const noexcept { return center_m_; }
   [[nodiscard]] double radius_m() const noexcept { return radius_m_; }
 
@@ -87,6 +94,8 @@ class Sphere final : public Shape {
 };
 
 /// Ellipsoid with its axes along x, y, z; patches as on a sphere, each octant the sphere's stretched by the semi-axes.
+/// From a point on the middle plane that is equally near to two sides, the closest point is the one at larger
+/// coordinates; from the centre it is the end of the shortest axis (of equal ones the last).
 class Ellipsoid final : public Shape {
  public:
   /// @param semi_axes_m each > 0; equal ones are allowed
@@ -98,11 +107,18 @@ class Ellipsoid final : public Shape {
   [[nodiscard]] double area_m2() const noexcept override;
   [[nodiscard]] double volume_m3() const noexcept override;
   [[nodiscard]] Bounds bounds() const noexcept override;
+  [[nodiscard]] Surface tessellated(int triangles) const override;
   [[nodiscard]] const Vec3& center_m() const noexcept { return center_m_; }
   [[nodiscard]] const Vec3& semi_axes_m() const noexcept { return semi_axes_m_; }
 
  private:
+  /// Closest surface point, each coordinate divided by its semi-axis. @param local_m from the centre
+  [[nodiscard]] Vec3 closest_on_unit_sphere(const Vec3& local_m) const noexcept;
+
   Vec3 center_m_, semi_axes_m_;
+  std::array<int, 3> longest_first_{0, 1, 2};
+  Vec3 excess_;  ///< (a_i / a_min)^2 - 1, longest axis first
+  double area_m2_;
 };
 
 }  // namespace touchstone::scene

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/shape.h"
+#include "scene/triangle_mesh.h"
 
 #include <array>
 #include <cstdint>
@@ -23,8 +24,19 @@ struct Surface {
 };
 
 /// Triangles of nearly equal size; the count is the nearest the shape's regular pattern allows
-/// (box: two per cell of a grid on each face; sphere: n^2 per octant).
+/// (box: two per cell of a grid on each face; sphere and ellipsoid: n^2 per octant; revolution: bands between rings of
+/// vertices, whose number follows the radius). Where patches meet, their vertices coincide. Vertices run row by row, so
+/// that along a row the neighbours stand at equal distances in the order.
 /// @param triangles wished number, at least 8
 [[nodiscard]] Surface tessellate(const Shape& shape, int triangles);
+
+struct Tool;
+
+/// A mesh as a surface of one patch, for drawing: every triangle has three vertices of its own with the triangle's
+/// normal, so edges stay sharp.
+[[nodiscard]] Surface surface_of(const TriangleMesh& mesh);
+
+/// Any tool's surface in the tool frame. @param triangles wished number; a mesh tool keeps its own
+[[nodiscard]] Surface tool_surface(const Tool& tool, int triangles);
 
 }  // namespace touchstone::scene

@@ -15,7 +15,7 @@ namespace touchstone::scene {
 /// A closed surface of triangles, counter-clockwise seen from outside, without duplicate or unused vertices. It may
 /// have several closed pieces and need not be convex.
 struct TriangleMesh {
-  Eigen::Matrix3Xd points_m;                           ///< one column per vertex
+  Eigen::Matrix3Xd points_m;  ///< one column per vertex
   std::vector<std::array<std::int32_t, 3>> triangles;
 
   [[nodiscard]] double area_m2() const;
@@ -31,5 +31,12 @@ struct TriangleMesh {
 /// @returns nothing when there were faults
 [[nodiscard]] std::optional<TriangleMesh> read_triangle_mesh(const std::filesystem::path& file, double unit_m,
                                                              std::vector<Fault>& faults);
+
+/// Binary STL, coordinates divided by unit_m. @throws InputError when the file cannot be written
+void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file, double unit_m);
+
+/// OBJ text with shared vertices, coordinates divided by unit_m and rounded to 1e-5 of that unit.
+/// @throws InputError when the file cannot be written
+void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, double unit_m);
 
 }  // namespace touchstone::scene

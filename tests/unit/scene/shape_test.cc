@@ -1,4 +1,4 @@
-#include "scene/shape.h"
+#include "unit/scene/shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +11,12 @@ namespace {
 const Box box(Vec3(0.1, -0.2, 0.3), Vec3(0.06, 0.04, 0.08));
 const Sphere sphere(Vec3(-0.1, 0.2, 0.05), 0.03);
 
-class EveryShape : public testing::TestWithParam<const Shape*> {};
-INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape, testing::Values<const Shape*>(&box, &sphere),
-                         [](const auto& shape) { return shape.index == 0 ? "Box" : "Sphere"; });
+class EveryShape : public testing::TestWithParam<test::NamedShape> {};
+INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape, testing::ValuesIn(test::every_shape()),
+                         [](const auto& shape) { return shape.param.name; });
 
 TEST_P(EveryShape, PatchPointsLieOnTheSurfaceWithTheQueriesNormal) {
-  const Shape& shape = *GetParam();
+  const Shape& shape = *GetParam().shape;
   for (int patch = 0; patch < shape.patch_count(); ++patch) {
     for (double u : {0.1, 0.5, 0.8}) {
       for (double v : {0.2, 0.5, 0.7}) {
@@ -35,7 +35,7 @@ TEST_P(EveryShape, PatchPointsLieOnTheSurfaceWithTheQueriesNormal) {
 
 TEST_P(EveryShape, PatchesCoverTheArea) {
   // Midpoint rule over (u, v) with |x_u cross x_v| by central differences; second order in the step.
-  const Shape& shape = *GetParam();
+  const Shape& shape = *GetParam().shape;
   constexpr int n = 64;
   double area_m2 = 0.0;
   for (int patch = 0; patch < shape.patch_count(); ++patch) {
@@ -52,7 +52,7 @@ TEST_P(EveryShape, PatchesCoverTheArea) {
 }
 
 TEST_P(EveryShape, DistanceIsExactInsideAndOutside) {
-  const Shape& shape = *GetParam();
+  const Shape& shape = *GetParam().shape;
   std::mt19937 random(1);
   const Bounds b = shape.bounds();
   const Vec3 size = b.upper_m - b.lower_m;

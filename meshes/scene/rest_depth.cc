@@ -1,0 +1,192 @@
+// The depth of a tool below the rest surface: the least signed distance of a convex body over the tool.
+#include "scene/scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchstone::scene {
+namespace {
+
+/// A convex function's value at a place, with a subgradient.
+template <int N>
+struct Sample {
+  double value;
+  Eigen::Matrix<double, N, 1> gradient;
+};
+
+/// Where a place stands to the region searched: the nearest place of the region, how far off, and the direction
+/// from it; off_m <= 0 in the region.
+template <int N>
+struct Reach {
+  double off_m;
+  Eigen::Matrix<double, N, 1> nearest, normal;
+};
+
+/// Least value of a convex function over a convex region, by cuts through a shrinking ellipsoid that holds it
+/// (deep cuts, Bland, Goldfarb and Todd 1981): it needs no smoothness and gives a lower bound to stop by.
+/// @param radius_m of a ball about `center` that holds the region
+/// @param enough a lower bound that ends the search: nothing below matters
+template <int N, class Function, class Region>
+double least_value(Eigen::Matrix<double, N, 1> center, double radius_m, double tolerance_m, double enough,
+                   const Function& function, const Region& region) {
+  using Place = Eigen::Matrix<double, N, 1>;
+  Eigen::Matrix<double, N, N> P = radius_m * radius_m * Eigen::Matrix<double, N, N>::Identity();
+  double best = INFINITY, bound = -INFINITY;
+  for (int iteration = 0; iteration < 2000; ++iteration) {
+    const Sample<N> here = function(center);
+    const Reach<N> reach = region(center);
+    const bool feasible = reach.off_m <= 0.0;
+    best = std::min(best, feasible ? here.value : function(reach.nearest).value);
+    // A convex function lies above its tangent, in the whole ellipsoid.
+    bound = std::max(bound, here.value - std::sqrt(std::max(0.0, here.gradient.dot(P * here.gradient))));
+    if (best - bound <= tolerance_m || bound >= enough) break;
+    const Place cut = feasible ? here.gradient : reach.normal;
+    const double width = std::sqrt(std::max(0.0, cut.dot(P * cut)));
+    const double depth = (feasible ? here.value - best : reach.off_m) / width;
+    // Nothing of the region is left that could be better.
+    if (!(depth < 1.0)) break;
+    const Place step = P * cut / width;
+    constexpr double n = N;
+    center -= (1.0 + n * depth) / (n + 1.0) * step;
+    P -= 2.0 * (1.0 + n * depth) / ((n + 1.0) * (1.0 + depth)) * step * step.transpose();
+    P *= n * n * (1.0 - depth * depth) / (n * n - 1.0);
+    P = (0.5 * (P + P.transpose())).eval();
+  }
+  return best;
+}
+
+double least_over_convex(const Shape& body, const Shape& tool, const Pose& pose, double tolerance_m) {
+  const Bounds bounds = tool.bounds();
+  const Eigen::Quaterniond into_tool = pose.orientation.conjugate();
+  const Vec3 center_W_m = pose.orientation * Vec3(0.5 * (bounds.lower_m + bounds.upper_m)) + pose.position_m;
+  const double radius_m = 0.5 * (bounds.upper_m - bounds.lower_m).norm();
+  if (body.signed_distance_m(center_W_m) >= radius_m) return 0.0;
+  return least_value<3>(
+      center_W_m, radius_m, tolerance_m, 0.0,
+      [&](const Vec3& p_W_m) {
+        const SurfaceQuery q = body.query(p_W_m);
+        return Sample<3>{q.signed_distance_m, q.normal};
+      },
+      [&](const Vec3& p_W_m) {
+        const SurfaceQuery q = tool.query(into_tool * (p_W_m - pose.position_m));
+        return Reach<3>{q.signed_distance_m, pose.orientation * q.point_m + pose.position_m,
+                        pose.orientation * q.normal};
+      });
+}
+
+/// Along a segment the distance is convex: its slope changes sign once.
+double least_over_segment(const Shape& body, const Vec3& from_m, const Vec3& to_m) {
+  const Vec3 way_m = to_m - from_m;
+  double low = 0.0, high = 1.0;
+  double best = std::min(body.signed_distance_m(from_m), body.signed_distance_m(to_m));
+  for (int iteration = 0; iteration < 50; ++iteration) {
+    const double middle = 0.5 * (low + high);
+    const SurfaceQuery q = body.query(from_m + middle * way_m);
+    best = std::min(best, q.signed_distance_m);
+    (q.normal.dot(way_m) > 0.0 ? high : low) = middle;
+  }
+  return best;
+}
+
+/// In a triangle's plane, coordinates along two edges at right angles.
+double least_over_triangle(const Shape& body, const std::array<Vec3, 3>& corner_m, double tolerance_m) {
+  using Vec2 = Eigen::Vector2d;
+  const Vec3 x = (corner_m[1] - corner_m[0]).normalized();
+  const Vec3 across = corner_m[2] - corner_m[0];
+  const Vec3 y = (across - across.dot(x) * x).normalized();
+  std::array<Vec2, 3> place;
+  for (std::size_t k = 0; k < 3; ++k) {
+    place[k] = Vec2((corner_m[k] - corner_m[0]).dot(x), (corner_m[k] - corner_m[0]).dot(y));
+  }
+  const Vec2 center = (place[0] + place[1] + place[2]) / 3.0;
+  double radius_m = 0.0;
+  for (const Vec2& p : place) radius_m = std::max(radius_m, (p - center).norm());
+  return least_value<2>(
+      center, radius_m, tolerance_m, INFINITY,
+      [&](const Vec2& p) {
+        const SurfaceQuery q = body.query(corner_m[0] + p.x() * x + p.y() * y);
+        return Sample<2>{q.signed_distance_m, Vec2(q.normal.dot(x), q.normal.dot(y))};
+      },
+      [&](const Vec2& p) {
+        Reach<2> reach{0.0, p, Vec2::Zero()};
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Vec2 edge = place[(k + 1) % 3] - place[k];
+          const Vec2 out = Vec2(edge.y(), -edge.x()).normalized();
+          const double off_m = (p - place[k]).dot(out);
+          if (off_m <= reach.off_m) continue;
+          reach.off_m = off_m;
+          reach.normal = out;
+          const double along = std::clamp((p - place[k]).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+          reach.nearest = place[k] + along * edge;
+        }
+        return reach;
+      });
+}
+
+/// Triangles whose corners' tangents rule out anything lower are passed over.
+double least_over_mesh(const Shape& body, const TriangleMesh& mesh, const Pose& pose, double tolerance_m) {
+  const Eigen::Matrix3Xd points_m = (pose.orientation.toRotationMatrix() * mesh.points_m).colwise() + pose.position_m;
+  std::vector<SurfaceQuery> at(static_cast<std::size_t>(points_m.cols()));
+  double best = 0.0;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    at[i] = body.query(points_m.col(static_cast<Eigen::Index>(i)));
+    best = std::min(best, at[i].signed_distance_m);
+  }
+  struct Candidate {
+    double bound_m;
+    std::array<std::int32_t, 3> triangle;
+  };
+  std::vector<Candidate> candidates;
+  for (const auto& triangle : mesh.triangles) {
+    double bound_m = -INFINITY;
+    for (const std::int32_t i : triangle) {
+      const SurfaceQuery& q = at[static_cast<std::size_t>(i)];
+      double falls_m = 0.0;
+      for (const std::int32_t j : triangle) {
+        falls_m = std::min(falls_m, q.normal.dot(points_m.col(j) - points_m.col(i)));
+      }
+      bound_m = std::max(bound_m, q.signed_distance_m + falls_m);
+    }
+    if (bound_m < best - tolerance_m) candidates.push_back({bound_m, triangle});
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.bound_m < b.bound_m; });
+  for (const auto& [bound_m, triangle] : candidates) {
+    if (bound_m >= best - tolerance_m) break;
+    const auto corner = [&](std::size_t k) { return Vec3(points_m.col(triangle[k])); };
+    best = std::min(best, least_over_triangle(body, {corner(0), corner(1), corner(2)}, tolerance_m));
+  }
+  return best;
+}
+
+}  // namespace
+
+double rest_depth_m(const Shape& body, const Tool& tool, const Pose& pose) {
+  const Bounds bounds = body.bounds();
+  const double tolerance_m = 1e-8 * (bounds.upper_m - bounds.lower_m).norm();
+  double least_m = 0.0;
+  switch (tool.shape) {
+    case ToolShape::sphere:
+    case ToolShape::capsule: {
+      // A ball's deepest point lies along the gradient at its centre.
+      const Vec3 center_T_m = -tool.mass_center_m.value_or(Vec3::Zero());
+      const Vec3 half_T_m(0.0, 0.0, tool.shape == ToolShape::capsule ? 0.5 * tool.length_m : 0.0);
+      const auto to_world = [&](const Vec3& p_T_m) { return Vec3(pose.orientation * p_T_m + pose.position_m); };
+      const double line_m = tool.shape == ToolShape::sphere ? body.signed_distance_m(to_world(center_T_m))
+                                                            : least_over_segment(body, to_world(center_T_m - half_T_m),
+                                                                                 to_world(center_T_m + half_T_m));
+      least_m = line_m - tool.radius_m;
+      break;
+    }
+    case ToolShape::cylinder:
+    case ToolShape::box:
+      least_m = least_over_convex(body, *tool_shape(tool), pose, tolerance_m);
+      break;
+    case ToolShape::mesh:
+      least_m = least_over_mesh(body, tool_mesh(tool), pose, tolerance_m);
+      break;
+  }
+  return std::max(0.0, -least_m);
+}
+
+}  // namespace touchstone::scene
