@@ -3,18 +3,6 @@
 namespace touchstone::fast {
 namespace {
 
-Detection detection_of(const scene::Body& body, const scene::Shape& shape) {
-  switch (body.shape) {
-    case scene::BodyShape::box:
-      return detection_for(static_cast<const scene::Box&>(shape));
-    case scene::BodyShape::sphere:
-      return detection_for(static_cast<const scene::Sphere&>(shape));
-    default:
-      break;
-  }
-  return {};
-}
-
 ToolSamples samples_of(const scene::Scene& scene) {
   switch (scene.tool.shape) {
     case scene::ToolShape::sphere:
@@ -25,17 +13,18 @@ ToolSamples samples_of(const scene::Scene& scene) {
   return {};
 }
 
-Formulas formulas_of(const scene::Scene& scene) {
+Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
   const scene::FastSettings& fast = scene.fast;
+  const SplitForce split_force = split_force_of(fast.formulation, skeleton);
   Formulas formulas;
   switch (fast.formulation) {
     case scene::Formulation::published:
-      formulas = {distribute_mass_published, resolve_friction_published, split_force_published, interpolate_published,
-                  apply_local_factor_published};
+      formulas = {distribute_mass_published, resolve_friction_published,   split_force,
+                  interpolate_published,     apply_local_factor_published, several_regions_published};
       break;
     case scene::Formulation::corrected:
-      formulas = {distribute_mass_corrected, resolve_friction_corrected, split_force_corrected, interpolate_corrected,
-                  apply_local_factor_corrected};
+      formulas = {distribute_mass_corrected, resolve_friction_corrected,   split_force,
+                  interpolate_corrected,     apply_local_factor_corrected, several_regions_corrected};
       break;
   }
   if (!scene.contact.friction) formulas.resolve_friction = nullptr;
@@ -47,7 +36,7 @@ Formulas formulas_of(const scene::Scene& scene) {
 
 FastModel::FastModel(const scene::Scene& scene)
     : body(scene::body_shape(scene.body)),
-      detection(detection_of(scene.body, *body)),
+      detection(detection_for(scene.body.shape)),
       tool(samples_of(scene)),
       law(scene.contact),
       friction(scene.contact.friction ? std::optional<FrictionLaw>(*scene.contact.friction) : std::nullopt),
@@ -57,8 +46,10 @@ FastModel::FastModel(const scene::Scene& scene)
       surface(scene::tessellate(*body, scene.fast.triangles)),
       rest(surface_patches(surface, *anchors)),
       normals(normal_stencils(surface)),
-      formulas(formulas_of(scene)),
-      max_regions(scene.tool.convex() ? 1 : scene.fast.max_regions) {}
+      formulas(formulas_of(scene, skeleton)),
+      max_regions(scene.tool.convex() ? 1 : scene.fast.max_regions) {
+  if (max_regions > 1) clusters = std::make_unique<const ClusterGrid>(cluster_grid(tool, scene.fast.r_th_m));
+}
 
 std::size_t FastModel::memory_bytes() const noexcept {
   const auto vertices = static_cast<std::size_t>(surface.vertex_count());

@@ -5,11 +5,13 @@
 #include "fast/beam_skeleton.h"
 #include "fast/contact_detection.h"
 #include "fast/contact_law.h"
+#include "fast/contact_regions.h"
 #include "fast/friction.h"
 #include "fast/interpolation.h"
 #include "fast/local_factor.h"
 #include "fast/mass_distribution.h"
 #include "fast/normals.h"
+#include "fast/region_shapes.h"
 #include "fast/surface_patches.h"
 #include "fast/tool_samples.h"
 #include "scene/scene.h"
@@ -27,6 +29,8 @@ struct Formulas {
   SplitForce split_force = nullptr;
   Interpolate interpolate = nullptr;
   ApplyLocalFactor apply_local_factor = nullptr;  ///< null where C_n = 0: there is no such stage
+  SeveralRegions several;                         ///< only asked where the model has several regions
+  [[nodiscard]] bool local_factor() const noexcept { return apply_local_factor != nullptr; }
 };
 
 /// The constant part of the fast model.
@@ -47,7 +51,8 @@ struct FastModel {
   SurfacePatches rest;
   NormalStencils normals;
   Formulas formulas;
-  int max_regions = 1;  ///< capacity; 1 for a convex tool
+  std::unique_ptr<const ClusterGrid> clusters;  ///< null where the model has one region
+  int max_regions = 1;                          ///< capacity; 1 for a convex tool
 
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };

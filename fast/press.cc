@@ -31,7 +31,7 @@ Vec3 entry_direction(const FastModel& model, const Motion& motion, const InsideS
       const double s = 0.5 * (apart + touching);
       const Pose between{(1.0 - s) * motion.before.position_m + s * motion.pose.position_m,
                          motion.before.orientation.slerp(s, motion.pose.orientation)};
-      RegionPoints points = state.store.window();
+      RegionPoints points = state.probe.window();
       const InsideSummary here =
           model.detection.find_inside(*model.body, model.tool, placement(between), 0.0, 1, points);
       if (points.count > 0) {

@@ -1,5 +1,7 @@
 #include "fast/state.h"
 
+#include "fast/several_regions.h"
+
 #include <algorithm>
 
 namespace touchstone::fast {
@@ -22,8 +24,12 @@ void ContactRegion::clear() noexcept {
 
 FastState::FastState(const FastModel& model)
     : store(model.tool.count()),
+      probe(tool_leaf_size),
       regions(static_cast<std::size_t>(model.max_regions), ContactRegion(model.skeleton.anchor_m.size())),
-      field(model.rest) {}
+      field(model.rest),
+      several(model.max_regions > 1 ? std::make_unique<SeveralRegionsState>(model) : nullptr) {}
+
+FastState::~FastState() = default;
 
 bool FastState::in_contact() const noexcept {
   return std::any_of(regions.begin(), regions.begin() + region_count,
@@ -31,7 +37,7 @@ bool FastState::in_contact() const noexcept {
 }
 
 std::size_t FastState::memory_bytes() const noexcept {
-  return sizeof(FastState) + store.memory_bytes() + field.memory_bytes() +
+  return sizeof(FastState) + (several ? several->memory_bytes() : 0) + store.memory_bytes() + field.memory_bytes() +
          regions.size() * (sizeof(ContactRegion) + 2 * regions[0].ends.force_n.size() * sizeof(Vec3));
 }
 

@@ -9,6 +9,7 @@
 #include "fast/stage_clock.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace touchstone::fast {
@@ -16,15 +17,18 @@ namespace touchstone::fast {
 /// What went other than planned in a step: bits, ok for none. The answer is finite in every case.
 enum class StepStatus : std::uint32_t {
   ok = 0,
-  not_finite = 1u << 0,      ///< the pose was not a finite placement; the last good answer was held
-  depth_limited = 1u << 1,   ///< deeper than depth_limit_rel of the body's thickness; press less deep
-  law_saturated = 1u << 2,   ///< past the peak of a softening law; raise contact.k3_n_per_m3 or press less deep
-  anchors_limited = 1u << 3  ///< an anchor point outran the contact and was held back; raise fast.s_c_m2
+  not_finite = 1u << 0,       ///< the pose was not a finite placement; the last good answer was held
+  depth_limited = 1u << 1,    ///< deeper than depth_limit_rel of the body's thickness; press less deep
+  law_saturated = 1u << 2,    ///< past the peak of a softening law; raise contact.k3_n_per_m3 or press less deep
+  anchors_limited = 1u << 3,  ///< an anchor point outran the contact and was held back; raise fast.s_c_m2
+  regions_full = 1u << 4      ///< more contact regions than fast.max_regions; the newest were left out
 };
 [[nodiscard]] constexpr StepStatus operator|(StepStatus a, StepStatus b) noexcept {
   return static_cast<StepStatus>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
 }
 constexpr StepStatus& operator|=(StepStatus& a, StepStatus b) noexcept { return a = a | b; }
+
+struct SeveralRegionsState;
 
 /// A contact region, kept from tick to tick.
 struct ContactRegion {
@@ -51,15 +55,18 @@ struct ContactRegion {
 /// The changing part of the fast model.
 struct FastState {
   explicit FastState(const FastModel& model);
+  ~FastState();
 
   PointStore store;
+  PointStore probe;                    ///< for looking at poses between two ticks
   std::vector<ContactRegion> regions;  ///< by creation; the first `region_count` are active
   int region_count = 0;
   SurfaceField field;
-  StageClock* clock = nullptr;  ///< laps at the end of every stage, where somebody wants to know
-  bool deformed = false;        ///< field differs from rest
-  bool placed = false;          ///< `pose` holds a good pose
-  scene::Pose pose;             ///< last good pose, its orientation of unit length
+  std::unique_ptr<SeveralRegionsState> several;  ///< null where the model has one region
+  StageClock* clock = nullptr;                   ///< laps at the end of every stage, where somebody wants to know
+  bool deformed = false;                         ///< field differs from rest
+  bool placed = false;                           ///< `pose` holds a good pose
+  scene::Pose pose;                              ///< last good pose, its orientation of unit length
 
   void lap(Stage stage) noexcept {
     if (clock != nullptr) clock->lap(stage);

@@ -1,6 +1,7 @@
 #include "fast/step.h"
 
 #include "fast/press.h"
+#include "fast/several_regions.h"
 
 #include <cmath>
 #if defined(__SSE__)
@@ -38,7 +39,7 @@ StepStatus press_one_region(const FastModel& model, const Motion& motion, FastSt
   const int all = model.tool.count();
   ContactRegion& region = state.regions[0];
   RegionPoints points = state.store.window();
-  InsideSummary inside = model.detection.find_inside(*model.body, model.tool, motion.at, 0.0, all, points);
+  const InsideSummary inside = model.detection.find_inside(*model.body, model.tool, motion.at, 0.0, all, points);
   if (points.count == 0) {
     if (region.active) region.clear();
     state.region_count = 0;
@@ -50,7 +51,6 @@ StepStatus press_one_region(const FastModel& model, const Motion& motion, FastSt
     region.active = true;
     state.region_count = 1;
     region.d = entry_direction(model, motion, inside, state);
-    inside = model.detection.find_inside(*model.body, model.tool, motion.at, 0.0, all, points);
   } else {
     region.d = next_direction(region, inside);
   }
@@ -64,7 +64,8 @@ StepStatus step_force(const FastModel& model, const Pose& pose_asked, FastState&
   if (!finite(pose_asked)) return StepStatus::not_finite;
   const Pose pose{pose_asked.position_m, pose_asked.orientation.normalized()};
   const Motion motion{pose, placement(pose), state.placed ? state.pose : pose, !state.placed};
-  const StepStatus status = press_one_region(model, motion, state);
+  const StepStatus status =
+      state.several == nullptr ? press_one_region(model, motion, state) : press_several_regions(model, motion, state);
   state.pose = pose;
   state.placed = true;
   return status;
@@ -80,6 +81,8 @@ StepStatus step_shape(const FastModel& model, FastState& state) noexcept {
     return StepStatus::ok;
   }
   [[maybe_unused]] const FlushTinyNumbers flush;
+  state.deformed = true;
+  if (state.several != nullptr) return shape_several_regions(model, state);
   ContactRegion& region = state.regions[0];
   const Vec3 force_on_body_n = -region.force.force_n;
   model.formulas.split_force(model.skeleton, region.origin.p0_W_m, force_on_body_n, region.displacement_m, region.ends);
@@ -93,7 +96,6 @@ StepStatus step_shape(const FastModel& model, FastState& state) noexcept {
   }
   update_normals(model.normals, model.rest, state.field);
   state.lap(Stage::normals);
-  state.deformed = true;
   return region.ends.limited ? StepStatus::anchors_limited : StepStatus::ok;
 }
 

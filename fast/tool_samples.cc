@@ -11,8 +11,6 @@ namespace {
 
 using scene::Vec3;
 
-constexpr std::int32_t leaf_size = 8;
-
 /// Splits the samples at the median of their longest side until a leaf is small enough.
 class TreeBuilder {
  public:
@@ -42,7 +40,7 @@ class TreeBuilder {
     ball.radius_m *= 1.0 + 1e-12;
     ball.begin = begin;
     ball.end = end;
-    ball.leaf = end - begin <= leaf_size;
+    ball.leaf = end - begin <= tool_leaf_size;
     const std::size_t self = tree_.size();
     tree_.push_back(ball);
     if (!ball.leaf) {

@@ -10,6 +10,9 @@
 
 namespace touchstone::fast {
 
+/// Samples in a leaf of the tree, at most.
+inline constexpr std::int32_t tool_leaf_size = 8;
+
 /// A ball around the samples [begin, end) in tool coordinates. Nodes stand in depth-first order: the first child of
 /// an inner node follows it, and `next` is the node to visit when this one's samples are done with.
 struct SampleBall {
