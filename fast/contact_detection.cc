@@ -29,8 +29,7 @@ InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, co
   const auto nodes = static_cast<std::int32_t>(tool.tree.size());
   for (std::int32_t node = 0; node < nodes && count < limit;) {
     const SampleBall& ball = tool.tree[static_cast<std::size_t>(node)];
-    // Not ">": a centre at NaN distance is passed over too.
-    if (!(body.signed_distance_m(at.R_WT * ball.center_T_m + at.origin_W_m) <= ball.radius_m + margin_m)) {
+    if (!may_touch(body, at.R_WT * ball.center_T_m + at.origin_W_m, ball.radius_m + margin_m)) {
       node = ball.next;
       continue;
     }
@@ -39,6 +38,7 @@ InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, co
     for (auto i = static_cast<std::size_t>(ball.begin); i < static_cast<std::size_t>(ball.end); ++i) {
       const Vec3 p_T(tool.x_T_m[i], tool.y_T_m[i], tool.z_T_m[i]);
       const Vec3 p_W = at.R_WT * p_T + at.origin_W_m;
+      if (surely_beyond(body, p_W, margin_m)) continue;
       const RestDistance rest = rest_distance(body, p_W);
       if (!(rest.signed_distance_m < margin_m)) continue;
       if (rest.signed_distance_m < 0.0) add(summary, rest, tool.area_m2[i]);
@@ -174,8 +174,19 @@ RegionPoints PointStore::window() noexcept {
   return points;
 }
 
-Detection detection_for(const scene::Box&) noexcept { return detection_of<scene::Box>; }
-Detection detection_for(const scene::Sphere&) noexcept { return detection_of<scene::Sphere>; }
+Detection detection_for(scene::BodyShape shape) noexcept {
+  switch (shape) {
+    case scene::BodyShape::box:
+      return detection_of<scene::Box>;
+    case scene::BodyShape::sphere:
+      return detection_of<scene::Sphere>;
+    case scene::BodyShape::ellipsoid:
+      return detection_of<scene::Ellipsoid>;
+    case scene::BodyShape::revolution:
+      return detection_of<scene::Revolution>;
+  }
+  return {};
+}
 
 Vec3 direction_from(const InsideSummary& inside, const Vec3& otherwise) noexcept {
   const double length = inside.normal_sum.norm();

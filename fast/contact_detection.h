@@ -4,7 +4,7 @@
 
 #include "fast/tool_samples.h"
 #include "scene/frames.h"
-#include "scene/shape.h"
+#include "scene/scene.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -99,8 +99,14 @@ struct Detection {
   MeasureDepths measure_depths = nullptr;
   ExitDistance exit_distance_m = nullptr;
 };
-[[nodiscard]] Detection detection_for(const scene::Box& body) noexcept;
-[[nodiscard]] Detection detection_for(const scene::Sphere& body) noexcept;
+/// For bodies of that shape, as scene::body_shape makes them.
+[[nodiscard]] Detection detection_for(scene::BodyShape shape) noexcept;
+[[nodiscard]] inline Detection detection_for(const scene::Box&) noexcept {
+  return detection_for(scene::BodyShape::box);
+}
+[[nodiscard]] inline Detection detection_for(const scene::Sphere&) noexcept {
+  return detection_for(scene::BodyShape::sphere);
+}
 
 /// Direction of deformation the rest surface asks for: against the mean of its normals.
 /// Falls back on `otherwise` where the normals cancel (a tool around the middle of the body).

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
+#include <string>
 
 namespace touchstone::fast {
 namespace {
@@ -18,9 +20,7 @@ Placement placement(const scene::Pose& pose) { return {pose.orientation.toRotati
 struct Case {
   scene::Scene scene;
   std::unique_ptr<const scene::Shape> body = scene::body_shape(scene.body);
-  Detection detection = scene.body.shape == scene::BodyShape::box
-                            ? detection_for(static_cast<const scene::Box&>(*body))
-                            : detection_for(static_cast<const scene::Sphere&>(*body));
+  Detection detection = detection_for(scene.body.shape);
   ToolSamples tool = sample_tool(scene::Sphere(Vec3::Zero(), scene.tool.radius_m), scene.fast.tool_samples);
   test::OwnedPoints points{tool.count()};
 };
@@ -35,9 +35,18 @@ std::vector<Vec3> inside_by_force(const Case& c, const scene::Pose& pose) {
   return inside;
 }
 
+scene::Scene scene_with(scene::BodyShape shape) {
+  scene::Scene scene = shape == scene::BodyShape::box ? test::ball_on_cube() : test::ball_on_sphere();
+  scene.body.shape = shape;
+  scene.body.semi_axes_m = Vec3(0.035, 0.025, 0.030);
+  // A post with a flat bottom, a sloping side and a dome.
+  scene.body.profile = {{{0.0, 0.0}, {0.030, 0.0}, {0.025, 0.040}, {0.0, 0.055}}, {0.0, 0.0, 0.085 / 3.0}};
+  return scene;
+}
+
 class ContactDetection : public testing::TestWithParam<scene::BodyShape> {
  protected:
-  Case c{GetParam() == scene::BodyShape::box ? test::ball_on_cube() : test::ball_on_sphere()};
+  Case c{scene_with(GetParam())};
 };
 
 TEST_P(ContactDetection, FindsExactlyTheSamplesInside) {
@@ -93,8 +102,14 @@ TEST_P(ContactDetection, LimitStopsTheSearchEarly) {
   EXPECT_LE(c.points.count, 8);
 }
 
-INSTANTIATE_TEST_SUITE_P(Bodies, ContactDetection, testing::Values(scene::BodyShape::box, scene::BodyShape::sphere),
-                         [](const auto& test) { return test.param == scene::BodyShape::box ? "Box" : "Sphere"; });
+std::string name_of(const testing::TestParamInfo<scene::BodyShape>& info) {
+  const std::array names{"Box", "Sphere", "Ellipsoid", "Revolution"};
+  return names[static_cast<std::size_t>(info.param)];
+}
+INSTANTIATE_TEST_SUITE_P(Bodies, ContactDetection,
+                         testing::Values(scene::BodyShape::box, scene::BodyShape::sphere, scene::BodyShape::ellipsoid,
+                                         scene::BodyShape::revolution),
+                         name_of);
 
 TEST(ContactDepths, AreMeasuredAlongTheGivenDirection) {
   Case c{test::ball_on_cube()};
