@@ -1,20 +1,3 @@
-<<<<<<< HEAD
-// Points against a deformed body without a deformed mesh (sections III and VI): what lies at x on the deformed body
-// lay at x - u(c) on the body at rest, c the rest surface's point nearest to that.
-#pragma once
-
-#include "fast/contact_detection.h"
-
-namespace touchstone::fast {
-
-/// Keeps the points inside the rest surface, in their order.
-inline void keep_inside(const scene::Shape& body, RegionPoints& points) noexcept {
-  int kept = 0;
-  for (int i = 0; i < points.count; ++i) {
-    if (!(body.signed_distance_m(points.p_W_m(static_cast<std::size_t>(i))) < 0.0)) continue;
-    if (kept != i) points.move(i, kept);
-    ++kept;
-=======
 // Contact with the already deformed body (section VI): a later region sees Shape_{i-1}, the body under the regions
 // before it. Instead of a distance to that shape, which changes every tick, its points are taken back to the body at
 // rest.
@@ -36,20 +19,23 @@ struct PulledBack {
 /// Two steps to the rest point c whose displaced place y(c) = c + u(c) is closest to p. First x' = p - u(c(x')),
 /// started from p, with c(x) the closest rest point: p then stands over y(c) along the rest normal. On a slope of the
 /// deformed surface that is not the shortest way, so the second step is a Newton step along the slope, from u around c.
-/// @param displacement_at Vec3 (int patch, const Vec3& rest_point_m) noexcept: u of a rest point [m]; also asked up to
-///   1e-4 of the body's size beyond a patch's border
+/// @param displacement_at Vec3 (const scene::SurfaceQuery&) noexcept: u of a rest point [m], world; also asked up to 1e-4
+///   of the body's size beyond a patch's border
 template <class DisplacementAt>
 [[nodiscard]] PulledBack pulled_back(const scene::Shape& shape, double size_m, const DisplacementAt& displacement_at,
                                      const scene::Vec3& p_W_m) noexcept {
   using scene::Vec3;
   const scene::SurfaceQuery start = shape.query(p_W_m);
-  const scene::SurfaceQuery over = shape.query(p_W_m - displacement_at(start.patch, start.point_m));
+  const scene::SurfaceQuery over = shape.query(p_W_m - displacement_at(start));
 
   const double step_m = 1e-4 * size_m;
-  const Vec3 u_m = displacement_at(over.patch, over.point_m);
+  const Vec3 u_m = displacement_at(over);
+  const auto u_beside_m = [&](const Vec3& t) {
+    return displacement_at(scene::SurfaceQuery{0.0, over.point_m + step_m * t, over.normal, over.patch});
+  };
   const Vec3 t1 = over.normal.unitOrthogonal(), t2 = over.normal.cross(t1);
-  const Vec3 y1 = t1 + (displacement_at(over.patch, over.point_m + step_m * t1) - u_m) / step_m;
-  const Vec3 y2 = t2 + (displacement_at(over.patch, over.point_m + step_m * t2) - u_m) / step_m;
+  const Vec3 y1 = t1 + (u_beside_m(t1) - u_m) / step_m;
+  const Vec3 y2 = t2 + (u_beside_m(t2) - u_m) / step_m;
   const Vec3 off_m = p_W_m - over.point_m - u_m;
   const double a11 = y1.squaredNorm(), a12 = y1.dot(y2), a22 = y2.squaredNorm(), b1 = y1.dot(off_m), b2 = y2.dot(off_m);
   const double determinant = a11 * a22 - a12 * a12;
@@ -61,7 +47,7 @@ template <class DisplacementAt>
   normal /= area;
   const Vec3 along_m = ((a22 * b1 - a12 * b2) * t1 + (a11 * b2 - a12 * b1) * t2) / determinant;
   const scene::SurfaceQuery closest = shape.query(over.point_m + along_m);
-  const Vec3 rest_off_m = p_W_m - closest.point_m - displacement_at(closest.patch, closest.point_m);
+  const Vec3 rest_off_m = p_W_m - closest.point_m - displacement_at(closest);
   const double distance_m = rest_off_m.dot(normal);
   return {closest.point_m + distance_m * closest.normal, distance_m};
 }
@@ -83,29 +69,8 @@ void pull_back(const scene::Shape& shape, const DisplacementAt& displacement_at,
     points.y_W_m[k] = back.x_m.y();
     points.z_W_m[k] = back.x_m.z();
     points.depth_m[k] = -back.signed_distance_m;
->>>>>>> detection
   }
   points.count = kept;
 }
 
-<<<<<<< HEAD
-/// Puts every point where the body's rest shape has what the point meets on the deformed body, and keeps the inside
-/// ones. A fixed-point iteration: a dimple of 4 mm leaves 41 um after one turn and 7 to 11 um after two.
-/// @param displacement scene::SurfaceQuery -> scene::Vec3 [m], world, noexcept
-template <class Displacement>
-void pull_back(const scene::Shape& body, const Displacement& displacement, RegionPoints& points) noexcept {
-  constexpr int turns = 2;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
-    const scene::Vec3 p_W_m = points.p_W_m(i);
-    scene::Vec3 at_rest_m = p_W_m;
-    for (int turn = 0; turn < turns; ++turn) at_rest_m = p_W_m - displacement(body.query(at_rest_m));
-    points.x_W_m[i] = at_rest_m.x();
-    points.y_W_m[i] = at_rest_m.y();
-    points.z_W_m[i] = at_rest_m.z();
-  }
-  keep_inside(body, points);
-}
-
-=======
->>>>>>> detection
 }  // namespace touchstone::fast
