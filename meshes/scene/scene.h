@@ -171,7 +171,10 @@ struct Scene {
 [[nodiscard]] std::vector<double> instants_s(const Scene& scene);
 
 /// How far the tool reaches below the rest surface [m]: the largest -signed_distance over the tool, to 1e-7 of the
-/// body's size; zero when apart. The one depth both sides quote. Not for a real-time step.
+/// body's size; zero when apart. A ball counts from its centre, and a capsule from its axis: the radius less the signed
+/// distance there, which is the way to part them; it differs from the former only across an edge of the body, where it
+/// is measured along the diagonal. Of a mesh the surface counts, not the space within. The one depth both sides quote.
+/// Not for a real-time step: 2 to 80 us, for a mesh of 6000 triangles up to 3 ms.
 [[nodiscard]] double rest_depth_m(const Shape& body, const Tool& tool, const Pose& pose);
 
 }  // namespace touchstone::scene

@@ -1,5 +1,7 @@
 #include "scene/triangle_mesh.h"
 
+#include "scene/mesh_checks.h"
+
 namespace touchstone::scene {
 
 double TriangleMesh::area_m2() const {
@@ -37,5 +39,37 @@ Vec3 TriangleMesh::centroid_m() const {
 }
 
 Bounds TriangleMesh::bounds() const { return {points_m.rowwise().minCoeff(), points_m.rowwise().maxCoeff()}; }
+
+std::optional<TriangleMesh> read_triangle_mesh(const std::filesystem::path& file, double unit_m,
+                                               std::vector<Fault>& faults) {
+  const auto refuse = [&](const std::string& message) {
+    faults.push_back({file.string(), 0, 0, message});
+    return std::nullopt;
+  };
+  RawMesh raw;
+  try {
+    raw = welded(read_mesh_file(file));
+  } catch (const InputError& error) {
+    faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+    return std::nullopt;
+  }
+  // Places in faults are in the file's own unit, as its author sees them.
+  std::vector<MeshPiece> pieces;
+  if (const auto fault = orient_outwards(raw, pieces)) return refuse(*fault);
+  if (const auto place = self_intersection(raw)) {
+    return refuse("the surface cuts or touches itself near " + place_text(*place));
+  }
+  if (const auto place = nested_piece(raw, pieces)) {
+    return refuse("the piece at " + place_text(*place) +
+                  " lies inside another; cavities are not supported, leave it out");
+  }
+  TriangleMesh mesh;
+  mesh.points_m.resize(3, static_cast<Eigen::Index>(raw.points.size()));
+  for (std::size_t i = 0; i < raw.points.size(); ++i) {
+    mesh.points_m.col(static_cast<Eigen::Index>(i)) = unit_m * raw.points[i];
+  }
+  mesh.triangles = std::move(raw.triangles);
+  return mesh;
+}
 
 }  // namespace touchstone::scene

@@ -1,3 +1,4 @@
+#include "scene/surface.h"
 #include "unit/scene/shapes.h"
 
 #include <gtest/gtest.h>
@@ -70,6 +71,93 @@ TEST_P(EveryShape, DistanceIsExactInsideAndOutside) {
       EXPECT_GE((other.point_m - p).norm(), std::abs(q.signed_distance_m) - 1e-14);
     }
   }
+}
+
+TEST_P(EveryShape, NormalIsTheGradientOfTheDistance) {
+  // The Eikonal property comes with it: the gradient has unit length.
+  const Shape& shape = *GetParam().shape;
+  std::mt19937 random(4);
+  const Bounds b = shape.bounds();
+  const Vec3 size = b.upper_m - b.lower_m;
+  std::uniform_real_distribution<double> spread(-0.5, 1.5);
+  int ridges = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 p = b.lower_m + size.cwiseProduct(Vec3(spread(random), spread(random), spread(random)));
+    constexpr double step_m = 1e-7;
+    Vec3 gradient;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 e = step_m * Vec3::Unit(axis);
+      gradient[axis] = (shape.signed_distance_m(p + e) - shape.signed_distance_m(p - e)) / (2.0 * step_m);
+    }
+    // Inside, the distance has ridges where two surface points are equally near; few places lie so close to one.
+    if ((gradient - shape.query(p).normal).norm() > 1e-5) ++ridges;
+  }
+  EXPECT_LE(ridges, 3);
+}
+
+TEST_P(EveryShape, DistanceIsThatOfManySurfacePoints) {
+  const Shape& shape = *GetParam().shape;
+  const Surface fine = tessellate(shape, 20000);
+  // Of a vertex to its neighbours.
+  double spacing_m = 0.0;
+  for (const auto& [a, b, c] : fine.triangles) {
+    spacing_m = std::max({spacing_m, (fine.points_m.col(a) - fine.points_m.col(b)).norm(),
+                          (fine.points_m.col(b) - fine.points_m.col(c)).norm(),
+                          (fine.points_m.col(c) - fine.points_m.col(a)).norm()});
+  }
+  std::mt19937 random(6);
+  const Bounds b = shape.bounds();
+  const Vec3 size = b.upper_m - b.lower_m, center = 0.5 * (b.upper_m + b.lower_m);
+  std::uniform_real_distribution<double> spread(-0.7, 0.7);
+  for (int i = 0; i < 200; ++i) {
+    Vec3 p = center + size.cwiseProduct(Vec3(spread(random), spread(random), spread(random)));
+    // Some on the axis and on planes of symmetry.
+    for (int axis = 0; axis < 3; ++axis) {
+      if (i % 8 >> axis & 1) p[axis] = center[axis];
+    }
+    const double nearest_m = (fine.points_m.colwise() - p).colwise().norm().minCoeff();
+    const double d = std::abs(shape.signed_distance_m(p));
+    EXPECT_LE(d, nearest_m + 1e-15);
+    EXPECT_GE(d, nearest_m - spacing_m);
+    if (d > 0.01) {
+      EXPECT_GE(d, nearest_m - spacing_m * spacing_m / d);
+    }
+    // A bounding box tells outside; the shape's own centre is inside.
+    if (((p - b.lower_m).array() < 0.0).any() || ((b.upper_m - p).array() < 0.0).any()) {
+      EXPECT_GT(shape.signed_distance_m(p), 0.0);
+    }
+  }
+  EXPECT_LT(shape.signed_distance_m(center), 0.0);
+}
+
+TEST_P(EveryShape, CurvaturesAreThoseOfFiniteDifferences) {
+  // The shape operator dn from normals at neighbouring closest points, along two tangents.
+  const Shape& shape = *GetParam().shape;
+  for (int patch = 0; patch < shape.patch_count(); ++patch) {
+    for (double u : {0.15, 0.6}) {
+      for (double v : {0.3, 0.7}) {
+        const SurfacePoint p = shape.at(patch, u, v);
+        const Vec3 first = p.normal.unitOrthogonal(), second = p.normal.cross(first);
+        constexpr double step_m = 1e-5;
+        Eigen::Matrix2d bend;
+        for (int k = 0; k < 2; ++k) {
+          const Vec3 along = k == 0 ? first : second;
+          const Vec3 change =
+              (shape.query(p.point_m + step_m * along).normal - shape.query(p.point_m - step_m * along).normal) /
+              (2.0 * step_m);
+          bend.col(k) = Eigen::Vector2d(change.dot(first), change.dot(second));
+        }
+        const double mean = 0.5 * bend.trace();
+        const double half_gap = std::sqrt(std::max(0.0, mean * mean - bend.determinant()));
+        EXPECT_NEAR(p.curvature_max_per_m, mean + half_gap, 1e-2 + 1e-3 * p.curvature_max_per_m) << patch;
+        EXPECT_NEAR(p.curvature_min_per_m, mean - half_gap, 1e-2 + 1e-3 * p.curvature_max_per_m) << patch;
+      }
+    }
+  }
+}
+
+TEST(EveryRevolution, HasASoundProfile) {
+  for (const auto& [name, profile] : test::profiles()) EXPECT_TRUE(profile_faults(profile).empty()) << name;
 }
 
 TEST(Sphere, HasItsCurvatureEverywhereAndABoxNone) {

@@ -30,11 +30,12 @@ TEST(RestDepth, IsTheBallsDeepestPoint) {
   const Box box(Vec3(0, 0, 0.03), Vec3(0.06, 0.06, 0.06));
   Tool tool;
   tool.radius_m = 0.01;
-  EXPECT_NEAR(rest_depth_m(box, tool, {Vec3(0, 0, 0.065), {}}), 0.005, 1e-15);
-  EXPECT_EQ(rest_depth_m(box, tool, {Vec3(0, 0, 0.0701), {}}), 0.0);
+  EXPECT_NEAR(rest_depth_m(box, tool, {Vec3(0, 0, 0.065), Eigen::Quaterniond::Identity()}), 0.005, 1e-15);
+  EXPECT_EQ(rest_depth_m(box, tool, {Vec3(0, 0, 0.0701), Eigen::Quaterniond::Identity()}), 0.0);
   // Over an edge the depth is measured along the diagonal.
   const double beyond = 0.003 / std::sqrt(2.0);
-  EXPECT_NEAR(rest_depth_m(box, tool, {Vec3(0.03 + beyond, 0, 0.06 + beyond), {}}), 0.007, 1e-15);
+  EXPECT_NEAR(rest_depth_m(box, tool, {Vec3(0.03 + beyond, 0, 0.06 + beyond), Eigen::Quaterniond::Identity()}), 0.007,
+              1e-15);
 }
 
 }  // namespace
