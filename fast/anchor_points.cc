@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 namespace touchstone::fast {
 namespace {
@@ -9,6 +11,35 @@ namespace {
 using scene::Vec3;
 
 constexpr int bottom_face = 4;
+
+/// The one of the found anchor points that lies at a patch's corner.
+const FoundAnchor& nearest(const std::vector<FoundAnchor>& found, const Vec3& corner_m) {
+  return *std::min_element(found.begin(), found.end(), [&](const FoundAnchor& a, const FoundAnchor& b) {
+    return (a.point_m - corner_m).squaredNorm() < (b.point_m - corner_m).squaredNorm();
+  });
+}
+
+/// The way along the chord of a quarter circle, seen from its centre in direction (c, s).
+double chord_part(double c, double s) noexcept { return c + s > 0.0 ? s / (c + s) : 0.0; }
+
+/// Where an ellipse with these semi-axes is divided into equal lengths between its two vertices: the parameter's
+/// cosine and sine.
+Eigen::Vector2d middle_of_quarter(double a, double b) {
+  if (a == b) return Eigen::Vector2d::Constant(std::numbers::sqrt2 / 2.0);
+  constexpr int steps = 20000;
+  constexpr double step = 0.5 * std::numbers::pi / steps;
+  const auto speed = [&](int i) {
+    const double t = (i + 0.5) * step;
+    return std::hypot(a * std::sin(t), b * std::cos(t));
+  };
+  double whole = 0.0;
+  for (int i = 0; i < steps; ++i) whole += speed(i);
+  double way = 0.0;
+  int i = 0;
+  while (way + speed(i) < 0.5 * whole) way += speed(i++);
+  const double t = (i + (0.5 * whole - way) / speed(i)) * step;
+  return {std::cos(t), std::sin(t)};
+}
 
 /// The two axes spanning a face of a box.
 struct FaceAxes {
@@ -21,11 +52,20 @@ FaceAxes face_axes(int patch) noexcept {
 
 }  // namespace
 
+bool AnchorPoints::first_between_its_anchors(int) const { return true; }
+
+void AnchorPoints::add(const Vec3& point_m, bool held, AnchorReason reason) {
+  points_m_.push_back(point_m);
+  held_.push_back(held);
+  reasons_.push_back(reason);
+}
+
 BoxAnchors::BoxAnchors(const scene::Box& box) : box_(box) {
+  const std::vector<FoundAnchor> found = find_anchor_points(box);
   for (int i = 0; i < 8; ++i) {
     const Vec3 sign(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0);
-    points_m_.push_back(box.center_m() + sign.cwiseProduct(box.half_m()));
-    held_.push_back((i & 4) == 0);
+    const Vec3 corner_m = box.center_m() + sign.cwiseProduct(box.half_m());
+    add(corner_m, (i & 4) == 0, nearest(found, corner_m).reason);
   }
   for (int patch = 0; patch < box.patch_count(); ++patch) {
     const int origin = patch % 2 == 1 ? 1 << patch / 2 : 0;
@@ -39,7 +79,7 @@ std::vector<int> BoxAnchors::around(int patch) const {
   return {corner[0], corner[1], corner[3], corner[2]};
 }
 
-Vec3 BoxAnchors::halfway_m(int i, int j) const {
+Vec3 BoxAnchors::halfway_m(int, int i, int j) const {
   // Two corners of one face: the straight line between them lies on it.
   return 0.5 * (points_m_[static_cast<std::size_t>(i)] + points_m_[static_cast<std::size_t>(j)]);
 }
@@ -55,33 +95,45 @@ PatchPlace BoxAnchors::at(int patch, const Vec3& p_m) const noexcept {
   return at;
 }
 
-SphereAnchors::SphereAnchors(const scene::Sphere& sphere, double support_height_m)
-    : sphere_(sphere), support_height_m_(support_height_m) {
+EllipsoidAnchors::EllipsoidAnchors(const scene::Sphere& sphere, double support_height_m)
+    : EllipsoidAnchors(sphere, sphere.center_m(), Vec3::Constant(sphere.radius_m()), support_height_m) {}
+
+EllipsoidAnchors::EllipsoidAnchors(const scene::Ellipsoid& ellipsoid, double support_height_m)
+    : EllipsoidAnchors(ellipsoid, ellipsoid.center_m(), ellipsoid.semi_axes_m(), support_height_m) {}
+
+EllipsoidAnchors::EllipsoidAnchors(const scene::Shape& shape, const Vec3& center_m, const Vec3& semi_axes_m,
+                                   double support_height_m)
+    : center_m_(center_m), semi_axes_m_(semi_axes_m), support_height_m_(support_height_m) {
+  const std::vector<FoundAnchor> found = find_anchor_points(shape);
   for (int i = 0; i < 6; ++i) {
     Vec3 out = Vec3::Zero();
-    out[i / 2] = i % 2 == 0 ? sphere.radius_m() : -sphere.radius_m();
-    points_m_.push_back(sphere.center_m() + out);
+    out[i / 2] = i % 2 == 0 ? semi_axes_m[i / 2] : -semi_axes_m[i / 2];
     // The lowest point is held even where the support has no height.
-    held_.push_back(i == 5);
+    add(center_m + out, i == 5, nearest(found, center_m + out).reason);
   }
-  for (int patch = 0; patch < sphere.patch_count(); ++patch) {
+  for (int patch = 0; patch < shape.patch_count(); ++patch) {
     const int x = patch & 1 ? 1 : 0, y = patch & 2 ? 3 : 2, z = patch & 4 ? 5 : 4;
     patches_.push_back({x, y, z, x});
   }
 }
 
-std::vector<int> SphereAnchors::around(int patch) const {
+std::vector<int> EllipsoidAnchors::around(int patch) const {
   const auto& corner = patches_[static_cast<std::size_t>(patch)];
   return {corner[0], corner[1], corner[2]};
 }
 
-Vec3 SphereAnchors::halfway_m(int i, int j) const {
-  const Vec3 between = points_m_[static_cast<std::size_t>(i)] + points_m_[static_cast<std::size_t>(j)];
-  return sphere_.center_m() + sphere_.radius_m() * (between - 2.0 * sphere_.center_m()).normalized();
+Vec3 EllipsoidAnchors::halfway_m(int, int i, int j) const {
+  // The section through both is a plane of symmetry, so its ellipse is the shortest curve.
+  const int a = i / 2, b = j / 2;
+  const Eigen::Vector2d middle = middle_of_quarter(semi_axes_m_[a], semi_axes_m_[b]);
+  Vec3 out = Vec3::Zero();
+  out[a] = (i % 2 == 0 ? 1.0 : -1.0) * semi_axes_m_[a] * middle.x();
+  out[b] = (j % 2 == 0 ? 1.0 : -1.0) * semi_axes_m_[b] * middle.y();
+  return center_m_ + out;
 }
 
-PatchPlace SphereAnchors::at(int patch, const Vec3& p_m) const noexcept {
-  const Vec3 out = (p_m - sphere_.center_m()).cwiseAbs();
+PatchPlace EllipsoidAnchors::at(int patch, const Vec3& p_m) const noexcept {
+  const Vec3 out = (p_m - center_m_).cwiseAbs().cwiseQuotient(semi_axes_m_);
   const Vec3 barycentric = out / out.sum();
   PatchPlace at;
   if ((patch & 4) == 0) {
@@ -90,14 +142,256 @@ PatchPlace SphereAnchors::at(int patch, const Vec3& p_m) const noexcept {
     return at;
   }
   const double height_m = p_m.z() - support_height_m_;
-  const double equator_m = sphere_.center_m().z() - support_height_m_;
+  const double equator_m = center_m_.z() - support_height_m_;
   const double ramp = std::clamp(height_m / equator_m, 0.0, 1.0);
   const double equator = barycentric.x() + barycentric.y();
   at.weight = {0.0, 0.0, 1.0, 0.0};
   if (ramp > 0.0 && equator > 0.0) {
     at.weight = {ramp * barycentric.x() / equator, ramp * barycentric.y() / equator, 1.0 - ramp, 0.0};
-    // The patch's edges are its three sides and the support's circle.
+    // The patch's edges are its three sides and the support's ring.
     at.edge = {barycentric.x(), barycentric.y(), barycentric.z(), ramp};
+  }
+  return at;
+}
+
+RevolutionAnchors::RevolutionAnchors(const scene::Revolution& revolution, double support_height_m)
+    : revolution_(revolution),
+      // A flat bottom is held as a face, not by its height.
+      support_height_m_(revolution.flat_bottom() ? -std::numeric_limits<double>::infinity() : support_height_m) {
+  const int pieces = revolution.piece_count();
+  parts_.resize(static_cast<std::size_t>(pieces));
+  for (int k = 0; k < pieces; ++k) {
+    parts_[static_cast<std::size_t>(k)].arc_begin_m = length_m_;
+    length_m_ += revolution.piece(k).length_m;
+  }
+  // Corner k of the profile is the lower end of piece k, the last one the upper pole.
+  std::vector<bool> circle(static_cast<std::size_t>(pieces) + 1, false);
+  std::vector<AnchorReason> reason(circle.size(), AnchorReason::sphere_axis);
+  find_circles(circle, reason);
+
+  std::vector<int> anchor_of_corner(circle.size(), -1);
+  const bool bottom_cap = revolution.piece(0).whole, top_cap = revolution.piece(pieces - 1).whole;
+  for (int corner = 0; corner <= pieces; ++corner) {
+    const auto c = static_cast<std::size_t>(corner);
+    const bool pole = (corner == 0 && !bottom_cap) || (corner == pieces && !top_cap);
+    if (!pole && !circle[c]) continue;
+    anchor_of_corner[c] = static_cast<int>(points_m_.size());
+    const bool held = at_or_below_support(height_m(corner)) || corner == 0 || (corner == 1 && bottom_cap);
+    const double arc_m = corner == pieces ? length_m_ : parts_[c].arc_begin_m;
+    for (int quarter = 0; quarter < (pole ? 1 : 4); ++quarter) {
+      add(on_surface_m(arc_m, pole ? 0.0 : quarter), held, reason[c]);
+      anchor_arc_m_.push_back(arc_m);
+      anchor_quarter_.push_back(pole ? -1 : quarter);
+    }
+  }
+  place_bands(anchor_of_corner);
+
+  for (int patch = 0; patch < revolution.patch_count(); ++patch) {
+    const Part& part = parts_[static_cast<std::size_t>(revolution.piece_of(patch))];
+    const int q = revolution.quadrant_of(patch), next = (q + 1) % 4;
+    switch (part.kind) {
+      case Kind::band:
+        patches_.push_back({part.low + q, part.low + next, part.high + q, part.high + next});
+        break;
+      case Kind::sector_down:
+        patches_.push_back({part.high + q, part.high + next, part.low, part.high + q});
+        break;
+      case Kind::sector_up:
+        patches_.push_back({part.low + q, part.low + next, part.high, part.low + q});
+        break;
+      case Kind::cap: {
+        const int rim = std::max(part.low, part.high);
+        patches_.push_back({rim, rim + 1, rim + 2, rim + 3});
+        break;
+      }
+    }
+  }
+}
+
+void RevolutionAnchors::find_circles(std::vector<bool>& circle, std::vector<AnchorReason>& reason) const {
+  const auto poles = circle.size() - 1;
+  bool any = false;
+  reason.front() = AnchorReason::support;
+  for (const CurveAnchor& found : profile_anchors(revolution_)) {
+    // Pieces are lines and arcs: what the rule finds lies at their ends.
+    const auto corner = static_cast<std::size_t>(found.piece) + (found.s > 0.5 ? 1 : 0);
+    reason[corner] = found.reason;
+    if (corner > 0 && corner < poles) any = circle[corner] = true;
+  }
+  if (any) return;
+  for (std::size_t corner = 1; corner < poles; ++corner) circle[corner] = true;
+}
+
+double RevolutionAnchors::height_m(int corner) const noexcept {
+  const int pieces = revolution_.piece_count();
+  const double z_m = corner < pieces ? revolution_.piece(corner).start_m.y() : revolution_.piece(corner - 1).end_m.y();
+  return revolution_.offset_m().z() + z_m;
+}
+
+bool RevolutionAnchors::at_or_below_support(double height_m) const noexcept {
+  // A circle at the support's height up to rounding is on it.
+  return height_m <= support_height_m_ + 1e-9 * length_m_;
+}
+
+void RevolutionAnchors::place_bands(const std::vector<int>& anchor_of_corner) {
+  const int pieces = revolution_.piece_count();
+  const auto ends_a_band = [&](int corner) {
+    return corner == 0 || corner == pieces || anchor_of_corner[static_cast<std::size_t>(corner)] >= 0;
+  };
+  const auto corner_arc_m = [&](int corner) {
+    return corner == pieces ? length_m_ : parts_[static_cast<std::size_t>(corner)].arc_begin_m;
+  };
+  for (int k = 0; k < pieces; ++k) {
+    Part& part = parts_[static_cast<std::size_t>(k)];
+    int low = k, high = k + 1;
+    while (!ends_a_band(low)) --low;
+    while (!ends_a_band(high)) ++high;
+    part.first_piece = low;
+    part.low = anchor_of_corner[static_cast<std::size_t>(low)];
+    part.high = anchor_of_corner[static_cast<std::size_t>(high)];
+    part.kind = part.low < 0 || part.high < 0 ? Kind::cap
+                : low == 0                    ? Kind::sector_down
+                : high == pieces              ? Kind::sector_up
+                                              : Kind::band;
+    part.low_m = corner_arc_m(low);
+    part.high_m = corner_arc_m(high);
+    part.top_m = height_m(k + 1);
+    part.band_top_m = height_m(high);
+    part.held = at_or_below_support(part.top_m) || (k == 0 && revolution_.flat_bottom());
+    part.crosses = !part.held && at_or_below_support(height_m(k));
+    part.band_crosses = !at_or_below_support(part.band_top_m) && at_or_below_support(height_m(low));
+    part.rim_m = revolution_.piece(k).length_m;
+    if (part.crosses) part.rim_m = length_m_ - arc_at_height_m(k, support_height_m_);
+    part.band_rim_m = part.high_m - part.low_m;
+  }
+}
+
+double RevolutionAnchors::arc_m(int piece, const Eigen::Vector2d& rz_m) const noexcept {
+  const scene::RevolutionPiece& p = revolution_.piece(piece);
+  double s;
+  if (p.straight()) {
+    s = (rz_m - p.start_m).dot(p.end_m - p.start_m) / (p.length_m * p.length_m);
+  } else {
+    const Eigen::Vector2d out = rz_m - p.center_m;
+    s = (std::atan2(out.y(), out.x()) - p.start_angle) / (p.end_angle - p.start_angle);
+  }
+  return parts_[static_cast<std::size_t>(piece)].arc_begin_m + std::clamp(s, 0.0, 1.0) * p.length_m;
+}
+
+double RevolutionAnchors::arc_at_height_m(int piece, double height_m) const {
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < 60; ++i) {
+    const double s = 0.5 * (low + high);
+    (revolution_.offset_m().z() + revolution_.meridian(piece, s).rz_m.y() < height_m ? low : high) = s;
+  }
+  return parts_[static_cast<std::size_t>(piece)].arc_begin_m + high * revolution_.piece(piece).length_m;
+}
+
+Vec3 RevolutionAnchors::on_surface_m(double arc_m, double quarters) const {
+  int piece = 0;
+  while (piece + 1 < revolution_.piece_count() && parts_[static_cast<std::size_t>(piece) + 1].arc_begin_m <= arc_m) {
+    ++piece;
+  }
+  const double s = (arc_m - parts_[static_cast<std::size_t>(piece)].arc_begin_m) / revolution_.piece(piece).length_m;
+  const Eigen::Vector2d rz = revolution_.meridian(piece, arc_m == length_m_ ? 1.0 : s).rz_m;
+  const auto whole = static_cast<int>(quarters);
+  const double angle = 0.5 * std::numbers::pi * (quarters - whole);
+  Vec3 out(rz.x() * std::cos(angle), rz.x() * std::sin(angle), rz.y());
+  for (int turn = 0; turn < whole; ++turn) out = Vec3(-out.y(), out.x(), out.z());
+  return revolution_.offset_m() + out;
+}
+
+std::vector<int> RevolutionAnchors::around(int patch) const {
+  const auto& corner = patches_[static_cast<std::size_t>(patch)];
+  switch (parts_[static_cast<std::size_t>(revolution_.piece_of(patch))].kind) {
+    case Kind::band:
+      return {corner[0], corner[1], corner[3], corner[2]};
+    case Kind::cap:
+      return {corner[0], corner[1], corner[2], corner[3]};
+    default:
+      return {corner[0], corner[1], corner[2]};
+  }
+}
+
+bool RevolutionAnchors::first_between_its_anchors(int patch) const {
+  const int piece = revolution_.piece_of(patch);
+  const Part& part = parts_[static_cast<std::size_t>(piece)];
+  // A cap counts once, whether its first piece has one patch or four.
+  return piece == part.first_piece && (part.kind != Kind::cap || revolution_.quadrant_of(patch) <= 0);
+}
+
+Vec3 RevolutionAnchors::halfway_m(int patch, int i, int j) const {
+  const Part& part = parts_[static_cast<std::size_t>(revolution_.piece_of(patch))];
+  const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+  const int qi = anchor_quarter_[a], qj = anchor_quarter_[b];
+  if (part.kind == Kind::cap) {
+    // Opposite points are joined over the axis, neighbours by what lies above their chord.
+    if ((qi - qj) % 2 == 0) return on_surface_m(part.low < 0 ? 0.0 : length_m_, 0.0);
+    return revolution_.query(0.5 * (points_m_[a] + points_m_[b])).point_m;
+  }
+  double quarters = 0.5 * (qi + qj);
+  if (qi < 0 || qj < 0) quarters = std::max(qi, qj);
+  if (std::abs(qi - qj) == 3 && qi >= 0 && qj >= 0) quarters = 3.5;
+  return on_surface_m(0.5 * (anchor_arc_m_[a] + anchor_arc_m_[b]), quarters);
+}
+
+PatchPlace RevolutionAnchors::at(int patch, const Vec3& p_m) const noexcept {
+  const int piece = revolution_.piece_of(patch), quadrant = revolution_.quadrant_of(patch);
+  const Part& part = parts_[static_cast<std::size_t>(piece)];
+  const Vec3 local_m = p_m - revolution_.offset_m();
+  const double r_m = std::hypot(local_m.x(), local_m.y());
+  const double along_m = arc_m(piece, {r_m, local_m.z()});
+  const double over_support_m = p_m.z() - support_height_m_;
+  const double x = r_m > 0.0 ? local_m.x() / r_m : 1.0, y = r_m > 0.0 ? local_m.y() / r_m : 0.0;
+
+  // phi' within the quadrant; a whole cap has no quadrant.
+  const double c = quadrant == 0 ? x : quadrant == 1 ? y : quadrant == 2 ? -x : -y;
+  const double s = quadrant == 0 ? y : quadrant == 1 ? -x : quadrant == 2 ? -y : x;
+  const double phi = chord_part(std::max(c, 0.0), std::max(s, 0.0));
+  // Square coordinates in the diamond of a cap's four points.
+  const auto square = [&](double t) {
+    const double a = t * x / (std::abs(x) + std::abs(y)), b = t * y / (std::abs(x) + std::abs(y));
+    return Eigen::Vector2d(std::clamp(0.5 * (1.0 + a + b), 0.0, 1.0), std::clamp(0.5 * (1.0 - a + b), 0.0, 1.0));
+  };
+  // From the cap's pole, at the bottom or at the top.
+  const double from_pole_m = part.low < 0 ? along_m : length_m_ - along_m;
+
+  PatchPlace at;
+  double band = std::clamp((along_m - part.low_m) / (part.high_m - part.low_m), 0.0, 1.0);
+  if (part.band_crosses) band = std::clamp(over_support_m / (part.band_top_m - support_height_m_), 0.0, 1.0);
+  switch (part.kind) {
+    case Kind::band:
+      at.weight = {(1.0 - band) * (1.0 - phi), (1.0 - band) * phi, band * (1.0 - phi), band * phi};
+      break;
+    case Kind::sector_down:
+      at.weight = {band * (1.0 - phi), band * phi, 1.0 - band, 0.0};
+      break;
+    case Kind::sector_up:
+      at.weight = {(1.0 - band) * (1.0 - phi), (1.0 - band) * phi, band, 0.0};
+      break;
+    case Kind::cap: {
+      const Eigen::Vector2d uv = square(std::min(1.0, from_pole_m / part.band_rim_m));
+      const double u = uv.x(), v = uv.y();
+      at.weight = {u * (1.0 - v), u * v, (1.0 - u) * v, (1.0 - u) * (1.0 - v)};
+      break;
+    }
+  }
+
+  if (part.held || (part.crosses && over_support_m <= 0.0)) return at;
+  if (quadrant < 0) {
+    const Eigen::Vector2d uv = square(std::min(1.0, from_pole_m / part.rim_m));
+    at.edge = {uv.x(), 1.0 - uv.x(), uv.y(), 1.0 - uv.y()};
+    return at;
+  }
+  const double up = std::clamp((along_m - part.arc_begin_m) / revolution_.piece(piece).length_m, 0.0, 1.0);
+  const double rise = part.crosses ? std::min(1.0, over_support_m / (part.top_m - support_height_m_)) : up;
+  const bool ends_below = piece == 0, ends_above = piece + 1 == revolution_.piece_count();
+  if (ends_below) {
+    at.edge = {up * (1.0 - phi), up * phi, 1.0 - up, part.crosses ? rise : 1.0};
+  } else if (ends_above) {
+    at.edge = {(1.0 - up) * (1.0 - phi), (1.0 - up) * phi, rise, 1.0};
+  } else {
+    at.edge = {phi, 1.0 - phi, rise, 1.0 - (part.crosses ? rise : up)};
   }
   return at;
 }
@@ -107,9 +401,11 @@ std::unique_ptr<const AnchorPoints> anchor_points(const scene::Body& body, const
     case scene::BodyShape::box:
       return std::make_unique<BoxAnchors>(static_cast<const scene::Box&>(shape));
     case scene::BodyShape::sphere:
-      return std::make_unique<SphereAnchors>(static_cast<const scene::Sphere&>(shape), body.support_height_m);
-    default:
-      break;
+      return std::make_unique<EllipsoidAnchors>(static_cast<const scene::Sphere&>(shape), body.support_height_m);
+    case scene::BodyShape::ellipsoid:
+      return std::make_unique<EllipsoidAnchors>(static_cast<const scene::Ellipsoid&>(shape), body.support_height_m);
+    case scene::BodyShape::revolution:
+      return std::make_unique<RevolutionAnchors>(static_cast<const scene::Revolution&>(shape), body.support_height_m);
   }
   return nullptr;
 }

@@ -1,6 +1,7 @@
 // Anchor points of a body and the surface patches between them, sections V-A and V-E.
 #pragma once
 
+#include "fast/anchor_rule.h"
 #include "scene/scene.h"
 
 #include <array>
@@ -30,6 +31,8 @@ class AnchorPoints {
   virtual ~AnchorPoints() = default;
   /// Anchor points on the rest surface [m].
   [[nodiscard]] const std::vector<scene::Vec3>& points_m() const noexcept { return points_m_; }
+  /// Why each is one.
+  [[nodiscard]] const std::vector<AnchorReason>& reasons() const noexcept { return reasons_; }
   /// True for an anchor point on held surface: it never moves.
   [[nodiscard]] const std::vector<bool>& held() const noexcept { return held_; }
   /// Per patch of the shape, its anchor points in the order of PatchPlace::weight. A patch with fewer than four
@@ -37,13 +40,19 @@ class AnchorPoints {
   [[nodiscard]] const std::vector<std::array<int, patch_corners_max>>& patches() const noexcept { return patches_; }
   /// A patch's anchor points in the order in which they stand around it.
   [[nodiscard]] virtual std::vector<int> around(int patch) const = 0;
-  /// Centre of the shortest curve on the surface between two anchor points of one patch [m], appendix IV.
-  [[nodiscard]] virtual scene::Vec3 halfway_m(int i, int j) const = 0;
+  /// False for a patch that goes on where another one ends, between the same anchor points.
+  [[nodiscard]] virtual bool first_between_its_anchors(int patch) const;
+  /// Centre of the shortest curve on a patch between two of its anchor points [m], appendix IV.
+  [[nodiscard]] virtual scene::Vec3 halfway_m(int patch, int i, int j) const = 0;
   /// @param p_m a point of the rest surface on that patch
   [[nodiscard]] virtual PatchPlace at(int patch, const scene::Vec3& p_m) const noexcept = 0;
 
  protected:
+  /// Adds an anchor point that the rule has found, at its exact place.
+  void add(const scene::Vec3& point_m, bool held, AnchorReason reason);
+
   std::vector<scene::Vec3> points_m_;
+  std::vector<AnchorReason> reasons_;
   std::vector<bool> held_;
   std::vector<std::array<int, patch_corners_max>> patches_;
 };
@@ -55,30 +64,92 @@ class BoxAnchors final : public AnchorPoints {
   /// Anchor i has bit 0 set at +x, bit 1 at +y, bit 2 at +z. The bottom face is held.
   explicit BoxAnchors(const scene::Box& box);
   [[nodiscard]] std::vector<int> around(int patch) const override;
-  [[nodiscard]] scene::Vec3 halfway_m(int i, int j) const override;
+  [[nodiscard]] scene::Vec3 halfway_m(int patch, int i, int j) const override;
   [[nodiscard]] PatchPlace at(int patch, const scene::Vec3& p_m) const noexcept override;
 
  private:
   scene::Box box_;
 };
 
-/// A sphere: the six points on the axes through its centre, in the order +x, -x, +y, -y, +z, -z. Octants are
-/// barycentric in the flat triangle of their anchors, seen from the centre. Below the equator the held circle takes
-/// the place of the held pole: the displacement is that of the equator, falling linearly in height to zero at the
-/// support, and zero below it.
-class SphereAnchors final : public AnchorPoints {
+/// An ellipsoid or a sphere: the six ends of its axes, in the order +x, -x, +y, -y, +z, -z. Octants are barycentric in
+/// |x_k / a_k|: on a sphere, in the flat triangle of their anchors seen from the centre. Below the equator the held
+/// ring takes the place of the held pole: the displacement is that of the equator, falling linearly in height to zero
+/// at the support, and zero below it.
+class EllipsoidAnchors final : public AnchorPoints {
  public:
-  /// @param support_height_m surface below this height is held; less than the radius
-  SphereAnchors(const scene::Sphere& sphere, double support_height_m);
+  /// @param support_height_m surface below this height is held; less than that of the centre
+  EllipsoidAnchors(const scene::Sphere& sphere, double support_height_m);
+  EllipsoidAnchors(const scene::Ellipsoid& ellipsoid, double support_height_m);
   [[nodiscard]] std::vector<int> around(int patch) const override;
-  [[nodiscard]] scene::Vec3 halfway_m(int i, int j) const override;
+  [[nodiscard]] scene::Vec3 halfway_m(int patch, int i, int j) const override;
   [[nodiscard]] PatchPlace at(int patch, const scene::Vec3& p_m) const noexcept override;
 
  private:
-  scene::Sphere sphere_;
+  EllipsoidAnchors(const scene::Shape& shape, const scene::Vec3& center_m, const scene::Vec3& semi_axes_m,
+                   double support_height_m);
+
+  scene::Vec3 center_m_, semi_axes_m_;
   double support_height_m_;
 };
 
+/// A surface of revolution: four points per anchor circle, on +x, +y, -x, -y from the axis, from the bottom up, and its
+/// tips. A body that stands on a dome also has its lowest point, which the support holds.
+///
+/// The pieces of the profile between two circles, or a circle and the axis, make a band. s is the arc length along it,
+/// phi' = sin phi / (sin phi + cos phi) the way along the chord of a quadrant. Displacements are linear in both, on a
+/// band and on a sector that ends in a tip or a held pole. A cap without an anchor point on the axis is one patch over
+/// all four points of its rim: with t the arc length from the axis over that of the rim, a = t cos phi / (|cos phi| +
+/// |sin phi|) and b = t sin phi / (...) lie in a diamond whose corners are the points, and weights are bilinear in it.
+/// Where a band crosses the support's height the height over it, from 0 to 1 at the band's upper end, stands for s: the
+/// displacement falls linearly to zero there, and below it all is held.
+///
+/// Where the rule finds no circle, as on a sphere written as a profile, the profile's corners take their place: the
+/// sphere's upper pole would lie inside a patch.
+class RevolutionAnchors final : public AnchorPoints {
+ public:
+  /// @param support_height_m surface below this height is held; a flat bottom is held with its rim, and only it
+  RevolutionAnchors(const scene::Revolution& revolution, double support_height_m);
+  [[nodiscard]] std::vector<int> around(int patch) const override;
+  [[nodiscard]] bool first_between_its_anchors(int patch) const override;
+  [[nodiscard]] scene::Vec3 halfway_m(int patch, int i, int j) const override;
+  [[nodiscard]] PatchPlace at(int patch, const scene::Vec3& p_m) const noexcept override;
+
+ private:
+  enum class Kind { band, sector_up, sector_down, cap };  ///< a sector by where its pole is
+  /// A piece of the profile in its band. Arc lengths from the bottom, heights in the world frame.
+  struct Part {
+    Kind kind = Kind::band;
+    int first_piece = 0;               ///< of the band
+    int low = -1, high = -1;           ///< first anchor point of the band's lower and upper end
+    double arc_begin_m = 0.0;          ///< of the piece
+    double low_m = 0.0, high_m = 0.0;  ///< of the band, along the arc
+    double top_m = 0.0;                ///< height of the piece's upper end
+    double band_top_m = 0.0;           ///< height of the band's
+    bool held = false;                 ///< all of the piece
+    bool crosses = false;              ///< the support's height lies within the piece
+    bool band_crosses = false;         ///< or within the band
+    double rim_m = 0.0;                ///< cap: arc length from the axis to the piece's rim, or to the support
+    double band_rim_m = 0.0;           ///< the same of the band
+  };
+  void find_circles(std::vector<bool>& circle, std::vector<AnchorReason>& reason) const;
+  void place_bands(const std::vector<int>& anchor_of_corner);
+  [[nodiscard]] double height_m(int corner) const noexcept;
+  [[nodiscard]] bool at_or_below_support(double height_m) const noexcept;
+  /// Arc length from the bottom of a point on a piece, by its place (r, z) without the offset.
+  [[nodiscard]] double arc_m(int piece, const Eigen::Vector2d& rz_m) const noexcept;
+  [[nodiscard]] double arc_at_height_m(int piece, double height_m) const;
+  /// @param quarters azimuth in right angles
+  [[nodiscard]] scene::Vec3 on_surface_m(double arc_m, double quarters) const;
+
+  scene::Revolution revolution_;
+  double support_height_m_;
+  double length_m_ = 0.0;  ///< of the profile
+  std::vector<Part> parts_;
+  std::vector<double> anchor_arc_m_;  ///< where each anchor point lies on the profile
+  std::vector<int> anchor_quarter_;   ///< its azimuth in right angles; -1 on the axis
+};
+
+/// By the rule of section V-A.
 [[nodiscard]] std::unique_ptr<const AnchorPoints> anchor_points(const scene::Body& body, const scene::Shape& shape);
 
 }  // namespace touchstone::fast

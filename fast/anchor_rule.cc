@@ -70,8 +70,7 @@ class CurveRule {
   void joint(int k) {
     const CurvePiece &before = pieces_[static_cast<std::size_t>(k)], &after = pieces_[static_cast<std::size_t>(k) + 1];
     const CurvePiece::Point end = before.at(1.0), begin = after.at(0.0);
-    if (std::acos(std::clamp(end.normal.dot(begin.normal), -1.0, 1.0)) > smooth_turn &&
-        (end.normal - begin.normal).norm() > smooth_turn) {
+    if ((end.normal - begin.normal).norm() > smooth_turn) {
       found_.push_back({k, 1.0, AnchorReason::profile_corner});
       return;
     }
@@ -313,6 +312,7 @@ std::vector<FoundAnchor> stationary_points(const scene::Shape& shape, const Curv
   const double steepest = *std::max_element(steepness.begin(), steepness.end());
 
   std::vector<FoundAnchor> found;
+  std::vector<Vec3> circles;
   for (std::size_t i = 0; i < points_m.size(); ++i) {
     bool lowest = true;
     for (std::size_t j = 0; j < points_m.size() && lowest; ++j) {
@@ -345,6 +345,11 @@ std::vector<FoundAnchor> stationary_points(const scene::Shape& shape, const Curv
       const Vec3 along = bend.eigenvectors()(0, small) * p.t1 + bend.eigenvectors()(1, small) * p.t2;
       if (field.gradient(field.place(p.point_m + 0.2 * size_m * along)).norm() <= 1e-2 * steepest) {
         const Vec3 plane_normal = p.normal.cross(along).normalized();
+        // Every point of the curve leads here; it counts once.
+        const bool known = std::any_of(circles.begin(), circles.end(),
+                                       [&](const Vec3& other) { return std::abs(other.dot(plane_normal)) > 0.99; });
+        if (known) continue;
+        circles.push_back(plane_normal);
         for (const Vec3& point_m : on_two_axes(shape, center_m, plane_normal, p.point_m - center_m, size_m)) {
           add(found, {point_m, by_strong}, 1e-2 * size_m);
         }

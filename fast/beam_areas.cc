@@ -34,6 +34,7 @@ AreaTriangles area_triangles(const AnchorPoints& anchors) {
   AreaTriangles triangles;
   triangles.anchors = anchors.points_m().size();
   for (int patch = 0; patch < static_cast<int>(anchors.patches().size()); ++patch) {
+    if (!anchors.first_between_its_anchors(patch)) continue;
     const std::vector<int> around = anchors.around(patch);
     const std::size_t corners = around.size();
     for (std::size_t i = 0; i < corners; ++i) {

@@ -12,6 +12,9 @@ using scene::Vec3;
 
 /// A length this part shorter than another is taken as equal: more than rounding, less than any step.
 constexpr double rounding_rel = 1e-12;
+/// A sliding tool goes on sliding while its stretch is short of the sliding one by no more than this part. On a curved
+/// body samples come into the region and leave it, and D_n jumps by some 0.3 %: more than a slow tool moves in a tick.
+constexpr double slack_rel = 0.05;
 /// Depths below this [m] are no contact, and vectors shorter than this have no direction: ratios of them may overflow.
 constexpr double smallest = 1e-100;
 
@@ -48,6 +51,10 @@ FrictionLaw::FrictionLaw(const scene::Friction& friction) noexcept
 
 double FrictionLaw::limit_n(double normal_n) const noexcept { return K_ * std::pow(normal_n, beta_); }
 
+Vec3 material_step_m(const Placement& before, const Placement& now, const Vec3& arm_m) noexcept {
+  return arm_m - before.R_WT * (now.R_WT.transpose() * arm_m) + (now.origin_W_m - before.origin_W_m);
+}
+
 double sliding_stretch_m(const FrictionLaw& friction, const DuffingLaw& law, double normal_depth_m) noexcept {
   const double D_n = normal_depth_m, farthest = friction.mu_D() * D_n;
   if (!(D_n > smallest) || farthest == 0.0 || friction.K() == 0.0) return 0.0;
@@ -83,18 +90,19 @@ Vec3 resolve_friction_corrected(const FrictionLaw& friction, const DuffingLaw& l
 
   double longest = 0.0;
   if (state.sliding) {
-    // Stuck again where the limit, on its way to where it is now, would have run ahead of the stretch.
     longest = sliding_stretch_m(friction, law, D_n);
     const double before = state.stretch_m.norm();
-    const double drive = before > 0.0 ? step.dot(state.stretch_m) / before : step.norm();
-    state.sliding = drive >= longest - before - rounding_rel * longest;
+    const double drive = before > 0.0 ? step.dot(state.stretch_m) / before : 0.0;
+    // While the limit falls, a way back slower than it leaves the tool sliding.
+    const bool turns_back = drive < std::min(0.0, longest - before) - rounding_rel * longest;
+    state.sliding = !turns_back && reach >= (1.0 - slack_rel) * longest;
   }
   if (!state.sliding) {
     const double s = law.secant_n_per_m(std::hypot(D_n, reach));
     state.sliding = s * reach > friction.limit_n(s * D_n);
     if (state.sliding) longest = sliding_stretch_m(friction, law, D_n);
   }
-  state.stretch_m = state.sliding ? scaled_to(trial, longest) : trial;
+  state.stretch_m = state.sliding && reach > longest ? scaled_to(trial, longest) : trial;
 
   const Vec3 displacement_m = D_n * d + state.stretch_m;
   const double D = displacement_m.norm(), s = law.secant_n_per_m(D);

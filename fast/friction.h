@@ -32,15 +32,22 @@ struct FrictionState {
   scene::Vec3 stretch_m = scene::Vec3::Zero();
   scene::Vec3 motion = scene::Vec3::Zero();  ///< published: unit direction of the last tangential step; zero before it
   scene::Vec3 d = scene::Vec3::Zero();       ///< what the others are at right angles to; zero before the first tick
-  bool sliding = false;                      ///< the tool moved over the surface in the last tick
+  bool sliding = false;                      ///< not stuck
 };
+
+/// Way of the tool's material point at p from one placement to the next [m], world: the step that drives the friction,
+/// with p at the load centre. The force acts there, so that what it does over this way is the tool's work, turning
+/// included, and a ball that rolls does not slip.
+/// @param arm_m p about the tool's mass centre in its placement `now`, world axes
+[[nodiscard]] scene::Vec3 material_step_m(const Placement& before, const Placement& now,
+                                          const scene::Vec3& arm_m) noexcept;
 
 /// Friction of one tick, as a stage between region_force and the equivalent point contact.
 /// @param law the contact law at the region's size
 /// @param R_WT rotation from tool to world
 /// @param d unit direction of deformation without skew, against the rest surface's normal, world
-/// @param step_m way of the tool's material point at the contact's centre since the last tick, world; zero in the tick
-///   the region comes into being. Only its part at right angles to d counts, the rest is in the depths
+/// @param step_m material_step_m at the load centre since the last tick; zero in the tick the region comes into being.
+///   Only its part at right angles to d counts, the rest is in the depths
 /// @param force in: region_force of these points; out: with friction
 /// @returns D of the equivalent point contact, world
 using ResolveFriction = scene::Vec3 (*)(const FrictionLaw&, const DuffingLaw& law, const scene::Mat3& R_WT,
@@ -66,9 +73,9 @@ using ResolveFriction = scene::Vec3 (*)(const FrictionLaw&, const DuffingLaw& la
 /// Errata E4 and E5. One potential U(|D|) with D = D_n d + D_t and D_n the equivalent depth of the force without
 /// friction: F_c = -f(|D|) D / |D|, so that F_t / F_n = D_t / D_n. The tangential step stretches the contact. While
 /// stuck F_t may rise to f_max; beyond it the tool slips: D_t is shortened to F_t = min(mu_D F_n, f_max) in its own
-/// direction, with F_n as it then is, and p0 follows. A sliding tool is stuck again once the step no longer drives the
-/// stretch against that length. The stored stretch only ever shrinks by slipping, so no closed path gives the tool
-/// energy, and a pause changes nothing.
+/// direction, with F_n as it then is, and p0 follows. A sliding tool is stuck again once the step turns back against
+/// the stretch, or the trial falls short of that length by more than 5 %, as when it is pressed harder. The stored
+/// stretch only ever shrinks by slipping, so no closed path gives the tool energy, and a pause changes nothing.
 [[nodiscard]] scene::Vec3 resolve_friction_corrected(const FrictionLaw&, const DuffingLaw& law, const scene::Mat3& R_WT,
                                                      const scene::Vec3& d, const RegionPoints&,
                                                      const scene::Vec3& step_m, RegionForce& force,

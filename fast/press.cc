@@ -10,14 +10,6 @@ using scene::Vec3;
 /// region keeps its direction.
 constexpr double direction_kept_rel = 0.25;
 
-/// Way of the tool's material point at the contact's load centre since the last tick [m].
-Vec3 contact_step_m(const Motion& motion, const RegionForce& force) noexcept {
-  const Vec3 now_m = motion.at.origin_W_m + force.load_center_m;
-  const Placement before = placement(motion.before);
-  const Vec3 before_m = before.R_WT * (motion.at.R_WT.transpose() * force.load_center_m) + before.origin_W_m;
-  return now_m - before_m;
-}
-
 }  // namespace
 
 Placement placement(const Pose& pose) noexcept { return {pose.orientation.toRotationMatrix(), pose.position_m}; }
@@ -73,7 +65,8 @@ StepStatus press(const FastModel& model, const Motion& motion, bool created, Con
     return status;
   }
   state.lap(Stage::force);
-  const Vec3 step_m = created ? Vec3(Vec3::Zero()) : contact_step_m(motion, region.force);
+  const Vec3 step_m =
+      created ? Vec3(Vec3::Zero()) : material_step_m(placement(motion.before), motion.at, region.force.load_center_m);
   region.displacement_m = model.formulas.resolve_friction(*model.friction, law, motion.at.R_WT, region.d, region.points,
                                                           step_m, region.force, region.friction);
   // The contact has been dragged from where it began.

@@ -15,66 +15,23 @@ namespace {
 using scene::Vec3;
 
 /// The columns in the order in which they are written.
+// clang-format off
 enum Column : std::size_t {
-  time_s,
-  tick,
-  sequence,
-  tool_x,
-  tool_y,
-  tool_z,
-  tool_qw,
-  tool_qx,
-  tool_qy,
-  tool_qz,
-  force_x,
-  force_y,
-  force_z,
-  torque_x,
-  torque_y,
-  torque_z,
-  model_force_x,
-  model_force_y,
-  model_force_z,
-  model_torque_x,
-  model_torque_y,
-  model_torque_z,
-  buttons,
-  status,
-  flags,
-  lateness,
-  force_time,
-  shape_time,
+  time_s, tick, sequence,
+  tool_x, tool_y, tool_z, tool_qw, tool_qx, tool_qy, tool_qz,
+  force_x, force_y, force_z, torque_x, torque_y, torque_z,
+  model_force_x, model_force_y, model_force_z, model_torque_x, model_torque_y, model_torque_z,
+  buttons, status, flags, lateness, force_time, shape_time,
   column_count
-};  // clang-format keeps its own mind about this list
+};
 
-constexpr std::array<std::string_view, column_count> column_names = {"time_s",
-                                                                     "tick",
-                                                                     "sequence",
-                                                                     "tool_x_m",
-                                                                     "tool_y_m",
-                                                                     "tool_z_m",
-                                                                     "tool_qw",
-                                                                     "tool_qx",
-                                                                     "tool_qy",
-                                                                     "tool_qz",
-                                                                     "force_x_n",
-                                                                     "force_y_n",
-                                                                     "force_z_n",
-                                                                     "torque_x_nm",
-                                                                     "torque_y_nm",
-                                                                     "torque_z_nm",
-                                                                     "model_force_x_n",
-                                                                     "model_force_y_n",
-                                                                     "model_force_z_n",
-                                                                     "model_torque_x_nm",
-                                                                     "model_torque_y_nm",
-                                                                     "model_torque_z_nm",
-                                                                     "buttons",
-                                                                     "status",
-                                                                     "flags",
-                                                                     "lateness_us",
-                                                                     "force_us",
-                                                                     "shape_us"};
+constexpr std::array<std::string_view, column_count> column_names = {
+  "time_s", "tick", "sequence",
+  "tool_x_m", "tool_y_m", "tool_z_m", "tool_qw", "tool_qx", "tool_qy", "tool_qz",
+  "force_x_n", "force_y_n", "force_z_n", "torque_x_nm", "torque_y_nm", "torque_z_nm",
+  "model_force_x_n", "model_force_y_n", "model_force_z_n", "model_torque_x_nm", "model_torque_y_nm", "model_torque_z_nm",
+  "buttons", "status", "flags", "lateness_us", "force_us", "shape_us"};
+// clang-format on
 
 constexpr std::int64_t counters_max = std::int64_t{1} << 53;  // whole in a double
 

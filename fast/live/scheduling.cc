@@ -40,26 +40,6 @@ Scheduling schedule_this_thread(const SchedulingWish& wish) {
     refused("locked memory", errno, "a page fault may delay a tick; raise the memlock limit");
   }
 
-  cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) {
-    // Interrupts and the kernel's own work prefer the first.
-    const int processor = wish.processor.value_or(last_of(allowed));
-    cpu_set_t one;
-    CPU_ZERO(&one);
-    if (processor >= 0 && processor < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(processor), &one);
-    const int error = pthread_setaffinity_np(pthread_self(), sizeof one, &one);
-    if (error == 0) {
-      granted.pinned = true;
-      granted.processor = processor;
-    } else {
-      refused("processor " + std::to_string(processor), error,
-              "the loop may move between processors; choose one that this process may use");
-    }
-  } else {
-    refused("a processor of its own", errno, "the loop may move between processors");
-  }
-
   sched_param parameter{};
   parameter.sched_priority = wish.priority;
   const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
@@ -70,6 +50,29 @@ Scheduling schedule_this_thread(const SchedulingWish& wish) {
     // Ordinary threads are woken up to 50 us late on purpose, to wake several at once.
     prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
     refused("SCHED_FIFO", error, "other work will delay ticks; raise the rtprio limit");
+  }
+
+  // An ordinary thread is better off where it can go out of the way of others.
+  if (granted.fifo || wish.processor) {
+    cpu_set_t allowed;
+    CPU_ZERO(&allowed);
+    if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) {
+      // Interrupts and the kernel's own work prefer the first.
+      const int processor = wish.processor.value_or(last_of(allowed));
+      cpu_set_t one;
+      CPU_ZERO(&one);
+      if (processor >= 0 && processor < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(processor), &one);
+      const int refusal = pthread_setaffinity_np(pthread_self(), sizeof one, &one);
+      if (refusal == 0) {
+        granted.pinned = true;
+        granted.processor = processor;
+      } else {
+        refused("processor " + std::to_string(processor), refusal,
+                "the loop may move between processors; choose one that this process may use");
+      }
+    } else {
+      refused("a processor of its own", errno, "the loop may move between processors");
+    }
   }
   return granted;
 }

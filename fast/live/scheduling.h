@@ -10,7 +10,7 @@ namespace touchstone::live {
 /// What is asked for.
 struct SchedulingWish {
   int priority = 50;             ///< of SCHED_FIFO
-  std::optional<int> processor;  ///< absent: the last one this process may use
+  std::optional<int> processor;  ///< absent: the last one this process may use, where SCHED_FIFO is granted
 };
 
 /// What came of it.

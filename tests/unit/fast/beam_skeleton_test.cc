@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <random>
+#include <tuple>
 
 namespace touchstone::fast {
 namespace {
@@ -158,7 +159,8 @@ TEST(SplitForce, SurvivesItsDegenerateCases) {
                                       {"across the force", top, down, Vec3(0.001, 0.0, 0.0)},
                                       {"tiny", top, 1e-300 * down, 1e-300 * down},
                                       {"on the support", Vec3(0.0, 0.0, 0.0), -down, -0.001 * down}};
-  for (const SplitForce split : {split_force_published, split_force_corrected}) {
+  for (const SplitForce split :
+       {split_force_published, split_force_corrected, split_force_in_parts_published, split_force_in_parts_corrected}) {
     for (const Contact& contact : contacts) {
       for (double s_c = 1e-9; s_c <= 1e3; s_c *= 10.0) {
         Cube cube;
@@ -187,13 +189,160 @@ TEST(SplitForce, CoplanarBeamsCarryAForceAcrossTheirPlane) {
 }
 
 TEST(SplitForce, AnchorPointsNeverOutrunTheContact) {
-  for (const SplitForce split : {split_force_published, split_force_corrected}) {
+  for (const SplitForce split :
+       {split_force_published, split_force_corrected, split_force_in_parts_published, split_force_in_parts_corrected}) {
     Cube cube;
     for (double& s_i : cube.skeleton.area_m2) s_i *= 1e-6;
     split(cube.skeleton, Vec3(0.004, 0.01, 0.06), Vec3(0.0, 0.0, -5.0), Vec3(0.0, 0.0, -0.002), cube.ends);
     EXPECT_TRUE(cube.ends.limited);
     EXPECT_NEAR(cube.ends.displacement_m[7].norm(), 0.002, 1e-15);
   }
+}
+
+/// The cube with balls of another material in it.
+scene::Scene with_balls(std::initializer_list<std::tuple<Vec3, double, double>> center_radius_modulus) {
+  scene::Scene scene = test::ball_on_cube();
+  for (const auto& [center_m, radius_m, youngs_modulus_pa] : center_radius_modulus) {
+    scene::Inclusion inclusion;
+    inclusion.shape = scene::BodyShape::sphere;
+    inclusion.radius_m = radius_m;
+    inclusion.center_m = center_m;
+    inclusion.material = {youngs_modulus_pa, 0.33};
+    scene.body.inclusions.push_back(inclusion);
+  }
+  return scene;
+}
+
+TEST(SplitForceInParts, IsChosenOnlyWhereThereAreInclusions) {
+  const Cube cube;
+  EXPECT_EQ(split_force_of(scene::Formulation::corrected, cube.skeleton), split_force_corrected);
+  EXPECT_EQ(split_force_of(scene::Formulation::published, cube.skeleton), split_force_published);
+  const BeamSkeleton parts = beam_skeleton(cube.anchors, with_balls({{Vec3(0, 0, 0.03), 0.01, 33.77e3}}));
+  EXPECT_EQ(split_force_of(scene::Formulation::corrected, parts), split_force_in_parts_corrected);
+  EXPECT_EQ(split_force_of(scene::Formulation::published, parts), split_force_in_parts_published);
+}
+
+TEST(SplitForceInParts, AnInclusionOfTheBodysOwnMaterialChangesNothing) {
+  Cube cube;
+  const BeamSkeleton parts = beam_skeleton(
+      cube.anchors, with_balls({{Vec3(-0.01, 0.004, 0.04), 0.012, 3.0e6}, {Vec3(0.015, 0.0, 0.02), 0.006, 3.0e6}}));
+  const Vec3 p0(0.011, -0.006, 0.06), F(0.4, 0.2, -3.0), D(0.0005, 0.0, -0.004);
+  BeamEnds ends(8);
+  const std::pair<SplitForce, SplitForce> both[] = {{split_force_corrected, split_force_in_parts_corrected},
+                                                    {split_force_published, split_force_in_parts_published}};
+  for (const auto& [plain, in_parts] : both) {
+    plain(cube.skeleton, p0, F, D, cube.ends);
+    in_parts(parts, p0, F, D, ends);
+    for (std::size_t i = 0; i < 8; ++i) {
+      EXPECT_LT((ends.force_n[i] - cube.ends.force_n[i]).norm(), 1e-12);
+      EXPECT_LT((ends.displacement_m[i] - cube.ends.displacement_m[i]).norm(), 1e-15);
+    }
+  }
+}
+
+TEST(SplitForceInParts, BalancesAndFollowsEachBeamsOwnStiffness) {
+  Cube cube;
+  // On beams to the bottom and, under the pressed-in top, to a free corner.
+  const Vec3 p0(0.004, -0.003, 0.05), F(0.2, 0.1, -3.0);
+  const BeamSkeleton parts = beam_skeleton(cube.anchors, with_balls({{Vec3(-0.013, -0.0165, 0.025), 0.008, 33.77e3},
+                                                                     {Vec3(0.017, 0.0135, 0.054), 0.004, 5.0e7}}));
+  BeamEnds ends(8);
+  split_force_in_parts_corrected(parts, p0, F, Vec3(0.0, 0.0, -0.02), ends);
+  ASSERT_FALSE(ends.limited);
+  EXPECT_LT((sum(ends.force_n) - F).norm(), 1e-12);
+  int cut = 0, free_cut = 0;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const BeamSegments segments =
+        cut_beam(parts.inclusions, parts.anchor_m[i], p0, {cube.length_m(i, p0), 3.0e6, parts.area_m2[i]});
+    cut += segments.count > 1 ? 1 : 0;
+    free_cut += segments.count > 1 && !parts.held[i] ? 1 : 0;
+    const Vec3 x = (p0 - parts.anchor_m[i]).normalized();
+    const Vec3 F_x = ends.force_n[i].dot(x) * x, F_y = ends.force_n[i] - F_x;
+    if (!parts.held[i]) {
+      // The beam released at the anchor and held at the contact: x from the anchor.
+      const Vec3 expected =
+          F_x * axial_compliance_m_per_n(segments.all()) + F_y * released_bending_compliance_m_per_n(segments.all());
+      EXPECT_LT((ends.displacement_m[i] - expected).norm(), 1e-12 * expected.norm());
+    }
+  }
+  EXPECT_GE(cut, 2);
+  EXPECT_GE(free_cut, 1);
+}
+
+TEST(SplitForceInParts, EveryRatioOfModuliStaysFiniteAndBalanced) {
+  Cube cube;
+  for (double ratio = 1e-6; ratio <= 1e6; ratio *= 10.0) {
+    const BeamSkeleton parts = beam_skeleton(cube.anchors, with_balls({{Vec3(-0.01, 0.0, 0.04), 0.015, ratio * 3e6},
+                                                                       {Vec3(0.02, 0.0, 0.02), 0.009, 3e6 / ratio}}));
+    for (const Vec3& p0 : {Vec3(0.0, 0.0, 0.06), Vec3(-0.02, 0.025, 0.06), Vec3(0.03, 0.03, 0.06)}) {
+      const Vec3 F(0.3, -0.2, -4.0), D(0.0, 0.0, -0.003);
+      for (const SplitForce split : {split_force_in_parts_published, split_force_in_parts_corrected}) {
+        split(parts, p0, F, D, cube.ends);
+        for (std::size_t i = 0; i < 8; ++i) {
+          EXPECT_TRUE(cube.ends.force_n[i].allFinite()) << ratio;
+          EXPECT_TRUE(cube.ends.displacement_m[i].allFinite()) << ratio;
+          EXPECT_LE(cube.ends.displacement_m[i].norm(), D.norm() * (1.0 + 1e-12)) << ratio;
+        }
+        if (split == static_cast<SplitForce>(split_force_in_parts_corrected)) {
+          EXPECT_LT((sum(cube.ends.force_n) - F).norm(), 1e-7 * F.norm()) << ratio;
+        }
+      }
+    }
+  }
+}
+
+TEST(SplitForceInParts, ASoftBallLeansTheShapeOnlyInTheCorrectedForm) {
+  // An ellipsoid pressed on its top, as in the paper's Fig. 18, with a soft ball on the beam to -x.
+  scene::Scene scene = with_balls({{Vec3(-0.015, 0.0, 0.038), 0.008, 33.77e3}});
+  scene.body.shape = scene::BodyShape::ellipsoid;
+  scene.body.semi_axes_m = Vec3(0.04, 0.025, 0.025);
+  scene.body.support_height_m = 0.005;
+  const auto shape = scene::body_shape(scene.body);
+  const auto anchors = anchor_points(scene.body, *shape);
+  const Vec3 p0(0.0, 0.0, 0.05), F(0.0, 0.0, -3.0), D(0.0, 0.0, -0.01);
+  BeamEnds ends(6);
+  const auto soft_over_other = [&](SplitForce split) {
+    split(beam_skeleton(*anchors, scene), p0, F, D, ends);
+    EXPECT_FALSE(ends.limited);
+    EXPECT_LT(ends.displacement_m[1].z(), 0.0);
+    return ends.displacement_m[1].z() / ends.displacement_m[0].z();  // at -x over at +x
+  };
+  // On the contact's half of its beam the ball counts most by its distance from the anchor: deeper on the soft side.
+  EXPECT_GT(soft_over_other(split_force_in_parts_corrected), 1.2);
+  // As printed both ends of a beam have one compliance, which the split takes out again.
+  EXPECT_NEAR(soft_over_other(split_force_in_parts_published), 1.0, 1e-9);
+  // On the anchor's half it is the other way round.
+  scene.body.inclusions[0].radius_m = 0.006;
+  scene.body.inclusions[0].center_m = Vec3(-0.028, 0.0, 0.029);
+  EXPECT_LT(soft_over_other(split_force_in_parts_corrected), 0.8);
+}
+
+TEST(SkeletonView, AtRestIsTheSkeletonItself) {
+  Cube cube;
+  const SkeletonView view = cube.skeleton;
+  EXPECT_EQ(view.anchor_m.data(), cube.skeleton.anchor_m.data());
+  EXPECT_EQ(view.area_m2.data(), cube.skeleton.area_m2.data());
+}
+
+TEST(CurrentEnds, BeamsOfLaterRegionsEndOnTheDeformedSurface) {
+  Cube cube;
+  CurrentEnds current(cube.skeleton);
+  std::vector<Vec3> u(8, Vec3::Zero());
+  current.update(cube.skeleton, u);
+  EXPECT_EQ(current.anchor_m, cube.skeleton.anchor_m);
+  EXPECT_EQ(current.area_m2, cube.skeleton.area_m2);
+  u[7] = Vec3(0.004, 0.003, -0.01);
+  current.update(cube.skeleton, u);
+  double total = 0.0;
+  for (const double s_i : current.area_m2) total += s_i;
+  EXPECT_NEAR(total, cube.skeleton.s_c_m2, 1e-18);
+  EXPECT_NE(current.area_m2[7], cube.skeleton.area_m2[7]);
+  const Vec3 p0(0.01, 0.0, 0.058), F(0.0, 0.0, -3.0), D(0.0, 0.0, -0.01);
+  split_force_corrected(current.view(cube.skeleton), p0, F, D, cube.ends);
+  EXPECT_LT((sum(cube.ends.force_n) - F).norm(), 1e-12);
+  const Vec3 x = p0 - (cube.skeleton.anchor_m[7] + u[7]);
+  EXPECT_LT((cube.ends.beam[7].x - x.normalized()).norm(), 1e-15);
+  EXPECT_NEAR(cube.ends.beam[7].axial_n_per_m, 3.0e6 * current.area_m2[7] / x.norm(), 1e-6);
 }
 
 }  // namespace
