@@ -23,7 +23,7 @@ using scene::Vec3;
 /// answer.
 constexpr double unit_m = 1.0;
 
-/// Of the stress per rate of strain, over the modulus: below this Bullet's bodies fly apart with steps of 1 ms.
+/// Stress per rate of strain over the modulus. With a tenth of it Bullet's rubber flies apart at steps of 1 ms.
 constexpr double damping_s = 0.01;
 
 btVector3 to_bullet(const Vec3& v_m) {

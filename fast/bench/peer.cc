@@ -17,10 +17,10 @@ namespace touchstone::bench {
 double PeerResult::over_step() const noexcept { return valid() ? ratio(step.wall.p50_us, our_step_us) : not_measured; }
 
 std::vector<PeerSetting> peer_settings() {
-  return {{"rubber.implicit", 3.0e6, true},
-          {"rubber.explicit", 3.0e6, false},
-          {"soft.implicit", 3.0e4, true},
-          {"soft.explicit", 3.0e4, false}};
+  return {{"rubber.implicit", 3.0e6, 0.45, true},
+          {"rubber.explicit", 3.0e6, 0.45, false},
+          {"pvc.implicit", 33.77e3, 0.33, true},
+          {"pvc.explicit", 33.77e3, 0.33, false}};
 }
 
 const PeerResult* fastest(const std::vector<PeerResult>& peers, const std::string& size, const std::string& begins) {
@@ -68,13 +68,15 @@ class OurStep {
   std::int64_t tick_ = 0;
 };
 
-PeerResult measure_setting(const std::string& size, const PeerSetting& setting, int ticks) {
+PeerResult measure_setting(const std::string& size, const PeerSetting& setting, bool quick) {
   constexpr double pressed_m = 0.0025, sway_m = 0.0002;
   constexpr int approach = 40;
+  const int ticks = quick || size != "1k" ? 12 : 40;
   OurStep ours({scene::BodyShape::box, size, 1});
   BulletScene bullet;
   bullet.cells = static_cast<int>(std::lround(std::sqrt(ours.triangles() / 12.0)));
   bullet.youngs_modulus_pa = setting.youngs_modulus_pa;
+  bullet.poissons_ratio = setting.poissons_ratio;
   bullet.implicit = setting.implicit;
   BulletPeer peer(bullet);
   PeerResult result;
@@ -87,9 +89,12 @@ PeerResult measure_setting(const std::string& size, const PeerSetting& setting, 
     result.depth_m = depth_m;
     peer.step(peer.top_node_m() + scene::Vec3(0, 0, bullet.ball_radius_m - depth_m));
   };
-  for (int k = 1; k <= approach; ++k) press(pressed_m * k / approach);
+  result.sound = true;
+  for (int k = 1; k <= approach && result.sound; ++k) {
+    press(pressed_m * k / approach);
+    result.sound = peer.sound();
+  }
   std::vector<double> step_us, cpu_us;
-  result.sound = peer.sound();
   int touching_ticks = 0;
   bool pierced = false;
   for (int k = 0; k < ticks && result.sound; ++k) {
@@ -118,11 +123,10 @@ std::string peer_version() { return bullet_version(); }
 
 std::vector<PeerResult> measure_peer(const std::string& size, const std::vector<PeerSetting>& settings, bool quick,
                                      const std::function<void(const std::string&)>& progress) {
-  const int ticks = quick ? 12 : 40;
   std::vector<PeerResult> results;
   for (const PeerSetting& setting : settings) {
     progress("bullet/" + size + "/" + setting.name);
-    results.push_back(measure_setting(size, setting, ticks));
+    results.push_back(measure_setting(size, setting, quick));
   }
   return results;
 }

@@ -12,7 +12,7 @@ namespace touchstone::bench {
 /// What Bullet was asked to compute.
 struct PeerSetting {
   std::string name;  ///< such as "rubber.implicit"
-  double youngs_modulus_pa = 0.0;
+  double youngs_modulus_pa = 0.0, poissons_ratio = 0.0;
   bool implicit = true;
 };
 
@@ -33,7 +33,8 @@ struct PeerResult {
   [[nodiscard]] double over_step() const noexcept;
 };
 
-/// The rubber of the scene, and a body a hundred times softer, on which explicit steps of 1 ms hold.
+/// The paper's rubber, as near to incompressible as Bullet goes, and its PVC, a hundred times softer, which lets
+/// explicit steps of 1 ms hold.
 [[nodiscard]] std::vector<PeerSetting> peer_settings();
 
 /// The fastest valid one of a size whose name begins so; null where there is none.
