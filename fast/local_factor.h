@@ -18,6 +18,14 @@ struct RegionSize {
   double area_m2 = 0.0;  ///< A, RegionExtent::area_m2
 };
 
+/// What the factor of one region has in common at every vertex, in single precision.
+struct FactorTerms {
+  float C_n, C_r_m, inverse_C_r_per_m, inverse_r_R_per_m;
+  float inverse_reach_per_m;  ///< 1 / (r_R + C_r)
+  float area_part;            ///< share of the displacement that the region's size leaves
+  float rim_m;                ///< contact points are nearer
+};
+
 /// As printed, with the natural logarithm:
 /// w'_p = (1 + C_n ln((r + C_r) / (r_R + C_r))) / (1 + ln n) for a noncontact point at distance r from p0 inside R, n
 /// at least 1. Contact points, r <= sqrt(A / pi), keep their displacement. Errata E16: jumps at r_R, hangs on the

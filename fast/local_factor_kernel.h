@@ -6,14 +6,6 @@
 
 namespace touchstone::fast {
 
-/// What is the same at every vertex.
-struct FactorTerms {
-  float C_n, C_r_m, inverse_C_r_per_m, inverse_r_R_per_m;
-  float inverse_reach_per_m;  ///< 1 / (r_R + C_r)
-  float area_part;            ///< share of the displacement that the region's size leaves
-  float rim_m;                ///< contact points are nearer
-};
-
 /// local_factor_published
 struct FactorPublished {
   [[nodiscard]] static FactorTerms terms(const LocalConstants&, const RegionSize&) noexcept;

@@ -3,16 +3,6 @@
 namespace touchstone::fast {
 namespace {
 
-ToolSamples samples_of(const scene::Scene& scene) {
-  switch (scene.tool.shape) {
-    case scene::ToolShape::sphere:
-      return sample_tool(scene::Sphere(scene::Vec3::Zero(), scene.tool.radius_m), scene.fast.tool_samples);
-    default:
-      break;
-  }
-  return {};
-}
-
 Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
   const scene::FastSettings& fast = scene.fast;
   const SplitForce split_force = split_force_of(fast.formulation, skeleton);
@@ -37,7 +27,7 @@ Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
 FastModel::FastModel(const scene::Scene& scene)
     : body(scene::body_shape(scene.body)),
       detection(detection_for(scene.body.shape)),
-      tool(samples_of(scene)),
+      tool(sample_tool(scene.tool, scene.fast.tool_samples)),
       law(scene.contact),
       friction(scene.contact.friction ? std::optional<FrictionLaw>(*scene.contact.friction) : std::nullopt),
       anchors(anchor_points(scene.body, *body)),

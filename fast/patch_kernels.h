@@ -28,12 +28,19 @@ inline constexpr std::size_t corners_max = patch_corners_max;
 /// The hat over the star of a point of a patch: 1 there, falling linearly along every ray to 0 on the patch's edges.
 class Hat {
  public:
-  Hat(const SurfacePatches& rest, const PatchPlace& top) noexcept {
+  Hat(const SurfacePatches& rest, const PatchPlace& top) noexcept : Hat(rest, inverse_edges(top)) {}
+  /// @param inverse of the top's inverse_edges()
+  Hat(const SurfacePatches& rest, const std::array<double, corners_max>& inverse) noexcept {
     for (std::size_t k = 0; k < corners_max; ++k) {
       edge_[k] = rest.edge[k].data();
-      // The top on an edge: the hat has no width on that side.
-      inverse_[k] = static_cast<float>(1.0 / std::max(top.edge[k], 1e-9));
+      inverse_[k] = static_cast<float>(inverse[k]);
     }
+  }
+  [[nodiscard]] static std::array<double, corners_max> inverse_edges(const PatchPlace& top) noexcept {
+    std::array<double, corners_max> inverse;
+    // The top on an edge: the hat has no width on that side.
+    for (std::size_t k = 0; k < corners_max; ++k) inverse[k] = 1.0 / std::max(top.edge[k], 1e-9);
+    return inverse;
   }
   [[nodiscard]] TOUCHSTONE_INLINE float operator()(std::size_t v) const noexcept {
     const float e0 = edge_[0][v] * inverse_[0], e1 = edge_[1][v] * inverse_[1];

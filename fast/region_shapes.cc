@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 namespace touchstone::fast {
@@ -15,28 +16,29 @@ using scene::Vec3;
 /// Least part of a hat that must be a region's own. Two regions a part s of the patch apart leave about 4 s.
 constexpr double pivot_min = 1.0 / 32.0;
 
-/// Vertices of one block on their way through a pass.
-using Lane = std::array<float, block_vertices>;
+using Lane = ShapeStack::Lane;
 using Lane3 = std::array<Lane, 3>;
 
-/// The hat over `top` at another place of the same patch.
-double hat_at(const PatchPlace& top, const PatchPlace& place) noexcept {
-  double height = place.edge[0] / std::max(top.edge[0], 1e-9);
-  for (std::size_t k = 1; k < corners_max; ++k) height = std::min(height, place.edge[k] / std::max(top.edge[k], 1e-9));
-  return height;
-}
+/// As many numbers as a wide register holds.
+using Several [[gnu::vector_size(32)]] = float;
+constexpr std::size_t lanes_at_once = sizeof(Several) / sizeof(float);
 
 bool on_patch(const ShapeStack& stack, std::size_t k, std::size_t patch) noexcept {
   return stack.takes_part[k] && static_cast<std::size_t>(stack.region[k].contact.patch) == patch;
 }
 
+/// h_k at a place of the patch that holds p0_k.
+double hat_at(const ShapeStack& stack, std::size_t k, const PatchPlace& place) noexcept {
+  const std::array<double, corners_max>& inverse = stack.inverse_edge[k];
+  return std::min(std::min(place.edge[0] * inverse[0], place.edge[1] * inverse[1]),
+                  std::min(place.edge[2] * inverse[2], place.edge[3] * inverse[3]));
+}
+
 /// h_k(p0_j)
 double hat_at_contact(const ShapeStack& stack, std::size_t k, std::size_t j) noexcept {
-  if (k == j) return 1.0;
-  const ContactPoint& top = stack.region[k].contact;
-  return on_patch(stack, j, static_cast<std::size_t>(top.patch)) && stack.takes_part[k]
-             ? hat_at(top.place, stack.region[j].contact.place)
-             : 0.0;
+  const ContactPoint& at = stack.region[j].contact;
+  return stack.takes_part[j] && on_patch(stack, k, static_cast<std::size_t>(at.patch)) ? hat_at(stack, k, at.place)
+                                                                                       : 0.0;
 }
 
 double at_place(const std::array<double, corners_max>& corner, const PatchPlace& place) noexcept {
@@ -61,6 +63,7 @@ void grow(const RegionShape& region, ShapeStack& stack) noexcept {
   const std::size_t i = stack.count++, n = stack.capacity;
   stack.region[i] = region;
   stack.takes_part[i] = region.contact.displacement_m.squaredNorm() > 0.0 && !region.contact.place.held();
+  stack.inverse_edge[i] = Hat::inverse_edges(region.contact.place);
   std::vector<double>& a = stack.factor;
   for (std::size_t k = 0; k < i; ++k) {
     double below = hat_at_contact(stack, k, i), above = hat_at_contact(stack, i, k);
@@ -106,7 +109,10 @@ void add_corrected(const SurfacePatches& rest, const RegionShape& region, ShapeS
     solve(stack);
     for (std::size_t j = 0; j <= last; ++j) c_m[j][axis] = stack.right[j];
   }
-  for (std::size_t j = 0; j <= last; ++j) stack.vector_total_m[j] += c_m[j];
+  for (std::size_t j = 0; j <= last; ++j) {
+    stack.vector_total_m[j] += c_m[j];
+    stack.vector_c_short_m[last * stack.capacity + j] = c_m[j].cast<float>();
+  }
   for (std::size_t k = 0; k < stack.anchor_total_m.size(); ++k) {
     stack.anchor_total_m[k] += region.anchor_displacement_m[k];
   }
@@ -146,12 +152,33 @@ void add_published(const SurfacePatches& rest, const RegionShape& region, ShapeS
   }
 }
 
-/// Adds a hat times `rise` to a lane over the block.
-TOUCHSTONE_INLINE void add_hat(const Hat& hat, std::size_t begin, std::size_t count, float rise, Lane& lane) noexcept {
-  for (std::size_t v = 0; v < count; ++v) lane[v] += hat(begin + v) * rise;
+/// Heights of the hats from `first` to `last` over one block of their patch.
+TOUCHSTONE_INLINE void raise_hats(const SurfacePatches& rest, std::size_t first, std::size_t last, std::size_t p,
+                                  const VertexBlock& block, ShapeStack& stack) noexcept {
+  const auto begin = static_cast<std::size_t>(block.begin), count = static_cast<std::size_t>(block.end) - begin;
+  for (std::size_t k = first; k <= last; ++k) {
+    if (!on_patch(stack, k, p)) continue;
+    const Hat hat(rest, stack.inverse_edge[k]);
+    float* height = stack.height[k].data();
+#pragma GCC ivdep
+    for (std::size_t v = 0; v < count; ++v) height[v] = hat(begin + v);
+  }
 }
 
-/// u_i over one block and at one point, as printed.
+/// The weights of the corners over one block.
+TOUCHSTONE_INLINE void take_weights(const SurfacePatches& rest, const VertexBlock& block, ShapeStack& stack) noexcept {
+  for (std::size_t k = 0; k < corners_max; ++k) {
+    std::copy(rest.weight[k].begin() + block.begin, rest.weight[k].begin() + block.end, stack.corner_weight[k].begin());
+  }
+}
+
+/// lane += by * other
+TOUCHSTONE_INLINE void add(float by, const float* other, std::size_t count, Lane& lane) noexcept {
+#pragma GCC ivdep
+  for (std::size_t v = 0; v < count; ++v) lane[v] += by * other[v];
+}
+
+/// u_i over one block, its hats raised, and at one point, as printed.
 struct Published {
   using Factor = FactorPublished;
   static constexpr auto factor = local_factor_published;
@@ -163,19 +190,20 @@ struct Published {
     const auto begin = static_cast<std::size_t>(block.begin), count = static_cast<std::size_t>(block.end) - begin;
     Lane length, angle;
     const Weighted length_at(rest, here.length_m), angle_at(rest, here.angle_rad);
-    for (std::size_t v = 0; v < count; ++v) {
-      length[v] = length_at(begin + v);
-      angle[v] = angle_at(begin + v);
-    }
+#pragma GCC ivdep
+    for (std::size_t v = 0; v < count; ++v) length[v] = length_at(begin + v);
+#pragma GCC ivdep
+    for (std::size_t v = 0; v < count; ++v) angle[v] = angle_at(begin + v);
     for (std::size_t k = 0; k <= i; ++k) {
       if (!on_patch(stack, k, p)) continue;
-      const Hat hat(rest, stack.region[k].contact.place);
-      add_hat(hat, begin, count, static_cast<float>(stack.length_c_m[i * stack.capacity + k]), length);
-      add_hat(hat, begin, count, static_cast<float>(stack.angle_c_rad[i * stack.capacity + k]), angle);
+      const float* height = stack.height[k].data();
+      add(static_cast<float>(stack.length_c_m[i * stack.capacity + k]), height, count, length);
+      add(static_cast<float>(stack.angle_c_rad[i * stack.capacity + k]), height, count, angle);
     }
     const Eigen::Vector3f toward = here.toward.cast<float>();
     const float *nx = rest.normal[0].data() + begin, *ny = rest.normal[1].data() + begin;
     const float* nz = rest.normal[2].data() + begin;
+#pragma GCC ivdep
     for (std::size_t v = 0; v < count; ++v) {
       const Turned u = turned(length[v], angle[v], toward, nx[v], ny[v], nz[v]);
       out[0][v] = u.x;
@@ -191,7 +219,7 @@ struct Published {
     double length_m = at_place(here.length_m, place), angle_rad = at_place(here.angle_rad, place);
     for (std::size_t k = 0; k <= i; ++k) {
       if (!on_patch(stack, k, p)) continue;
-      const double height = hat_at(stack.region[k].contact.place, place);
+      const double height = hat_at(stack, k, place);
       length_m += height * stack.length_c_m[i * stack.capacity + k];
       angle_rad += height * stack.angle_c_rad[i * stack.capacity + k];
     }
@@ -218,24 +246,30 @@ struct Corrected {
   static constexpr auto room = local_room_corrected;
 
   TOUCHSTONE_INLINE static void increment(const SurfacePatches& rest, const ShapeStack& stack, std::size_t i,
-                                          std::size_t p, const VertexBlock& block, Lane3& out) noexcept {
-    const auto begin = static_cast<std::size_t>(block.begin), count = static_cast<std::size_t>(block.end) - begin;
-    const auto u = corner_displacements(rest.patches[p], stack.region[i].anchor_displacement_m);
-    for (int axis = 0; axis < 3; ++axis) {
-      const Weighted weighted(rest, {u[0][axis], u[1][axis], u[2][axis], u[3][axis]});
-      Lane& lane = out[static_cast<std::size_t>(axis)];
-      for (std::size_t v = 0; v < count; ++v) lane[v] = weighted(begin + v);
+                                          std::size_t p, const VertexBlock&, Lane3& out) noexcept {
+    const Patch& patch = rest.patches[p];
+    std::array<Eigen::Vector3f, corners_max> corner;
+    for (std::size_t k = 0; k < patch.corners; ++k) {
+      corner[k] = stack.region[i].anchor_displacement_m[static_cast<std::size_t>(patch.anchor[k])].cast<float>();
     }
-    for (std::size_t k = 0; k <= i; ++k) {
-      if (!on_patch(stack, k, p)) continue;
-      const Hat hat(rest, stack.region[k].contact.place);
-      const Eigen::Vector3f c_m = stack.vector_c_m[i * stack.capacity + k].cast<float>();
-      for (std::size_t v = 0; v < count; ++v) {
-        const float height = hat(begin + v);
-        out[0][v] += height * c_m.x();
-        out[1][v] += height * c_m.y();
-        out[2][v] += height * c_m.z();
+    const Eigen::Vector3f* c_m = stack.vector_c_short_m.data() + i * stack.capacity;
+    // Whole lanes, their sums in registers; a lane's last places may be idle.
+    for (std::size_t v = 0; v < block_vertices; v += lanes_at_once) {
+      Several x{}, y{}, z{};
+      const auto add_vector = [&](const Eigen::Vector3f& by_m, const Lane& share) __attribute__((always_inline)) {
+        Several s;
+        std::memcpy(&s, share.data() + v, sizeof s);
+        x += s * by_m.x();
+        y += s * by_m.y();
+        z += s * by_m.z();
+      };
+      for (std::size_t k = 0; k < patch.corners; ++k) add_vector(corner[k], stack.corner_weight[k]);
+      for (std::size_t k = 0; k <= i; ++k) {
+        if (on_patch(stack, k, p)) add_vector(c_m[k], stack.height[k]);
       }
+      std::memcpy(out[0].data() + v, &x, sizeof x);
+      std::memcpy(out[1].data() + v, &y, sizeof y);
+      std::memcpy(out[2].data() + v, &z, sizeof z);
     }
   }
 
@@ -245,7 +279,7 @@ struct Corrected {
     Vec3 u_m = vector_at(rest, stack.region[i].anchor_displacement_m, p, place);
     for (std::size_t k = 0; k <= i; ++k) {
       if (!on_patch(stack, k, p)) continue;
-      u_m += hat_at(stack.region[k].contact.place, place) * stack.vector_c_m[i * stack.capacity + k];
+      u_m += hat_at(stack, k, place) * stack.vector_c_m[i * stack.capacity + k];
     }
     return u_m;
   }
@@ -255,33 +289,34 @@ struct Corrected {
     const auto p = static_cast<std::size_t>(at.patch);
     Vec3 u_m = vector_at(rest, stack.anchor_total_m, p, place);
     for (std::size_t k = 0; k < stack.count; ++k) {
-      if (on_patch(stack, k, p)) u_m += hat_at(stack.region[k].contact.place, place) * stack.vector_total_m[k];
+      if (on_patch(stack, k, p)) u_m += hat_at(stack, k, place) * stack.vector_total_m[k];
     }
     return u_m;
   }
 };
 
 TOUCHSTONE_WIDE_LOOPS
-void interpolate_several_published(const SurfacePatches& rest, const ShapeStack& stack, SurfaceField& field) noexcept {
-  for (auto& column : field.displacement_m) std::fill(column.begin(), column.end(), 0.0f);
-  Lane3 u;
-  for (std::size_t i = 0; i < stack.count; ++i) {
-    for (std::size_t p = 0; p < rest.patches.size(); ++p) {
-      for (std::int32_t b = rest.patches[p].first_block; b < rest.patches[p].last_block; ++b) {
-        const VertexBlock& block = rest.blocks[static_cast<std::size_t>(b)];
+void interpolate_several_published(const SurfacePatches& rest, ShapeStack& stack, SurfaceField& field) noexcept {
+  Lane3 u, sum;
+  for (std::size_t p = 0; p < rest.patches.size(); ++p) {
+    for (std::int32_t b = rest.patches[p].first_block; b < rest.patches[p].last_block; ++b) {
+      const VertexBlock& block = rest.blocks[static_cast<std::size_t>(b)];
+      const auto begin = static_cast<std::size_t>(block.begin), count = static_cast<std::size_t>(block.end) - begin;
+      for (Lane& lane : sum) std::fill(lane.begin(), lane.end(), 0.0f);
+      for (std::size_t i = 0; i < stack.count; ++i) {
+        raise_hats(rest, i, i, p, block, stack);
         Published::increment(rest, stack, i, p, block, u);
-        const auto begin = static_cast<std::size_t>(block.begin), count = static_cast<std::size_t>(block.end) - begin;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          float* out = field.displacement_m[axis].data() + begin;
-          for (std::size_t v = 0; v < count; ++v) out[v] += u[axis][v];
-        }
+        for (std::size_t axis = 0; axis < 3; ++axis) add(1.0f, u[axis].data(), count, sum[axis]);
+      }
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::copy_n(sum[axis].data(), count, field.displacement_m[axis].data() + begin);
       }
     }
   }
 }
 
 TOUCHSTONE_WIDE_LOOPS
-void interpolate_several_corrected(const SurfacePatches& rest, const ShapeStack& stack, SurfaceField& field) noexcept {
+void interpolate_several_corrected(const SurfacePatches& rest, ShapeStack& stack, SurfaceField& field) noexcept {
   // Without a contact point: that of the whole stack has a hat per region.
   interpolate_corrected(rest, stack.anchor_total_m, ContactPoint{}, field);
   float *x = field.displacement_m[0].data(), *y = field.displacement_m[1].data(), *z = field.displacement_m[2].data();
@@ -289,7 +324,7 @@ void interpolate_several_corrected(const SurfacePatches& rest, const ShapeStack&
     if (!stack.takes_part[k]) continue;
     const ContactPoint& contact = stack.region[k].contact;
     const Patch& patch = rest.patches[static_cast<std::size_t>(contact.patch)];
-    const Hat hat(rest, contact.place);
+    const Hat hat(rest, stack.inverse_edge[k]);
     const Eigen::Vector3f rise = stack.vector_total_m[k].cast<float>();
     const auto begin = static_cast<std::size_t>(patch.begin), end = static_cast<std::size_t>(patch.end);
     // Columns never overlap.
@@ -303,78 +338,98 @@ void interpolate_several_corrected(const SurfacePatches& rest, const ShapeStack&
   }
 }
 
-/// Where a region's local factor is at work: its terms and single precision place.
-struct Reach {
-  FactorTerms terms;
-  Eigen::Vector3f p0_m;
-};
-template <class Formulation>
-Reach reach(const LocalConstants& local, const RegionShape& region) noexcept {
-  return {Formulation::Factor::terms(local, region.size), region.p0_W_m.cast<float>()};
-}
-
-TOUCHSTONE_INLINE float distance_m(const SurfacePatches& rest, std::size_t v, const Eigen::Vector3f& p_m) noexcept {
-  const float dx = rest.rest_W_m[0][v] - p_m.x(), dy = rest.rest_W_m[1][v] - p_m.y();
-  const float dz = rest.rest_W_m[2][v] - p_m.z();
-  return std::sqrt(dx * dx + dy * dy + dz * dz);
-}
-
-/// Adds (w_i - 1) u_i over one block.
-template <class Formulation>
-TOUCHSTONE_INLINE void apply_to_block(const SurfacePatches& rest, const LocalConstants& local, const ShapeStack& stack,
-                                      std::size_t i, const Reach& own, std::size_t p, const VertexBlock& block,
-                                      SurfaceField& field) noexcept {
-  const auto begin = static_cast<std::size_t>(block.begin), count = static_cast<std::size_t>(block.end) - begin;
-  const auto r_R_m = static_cast<float>(local.r_R_m);
-  Lane change;
-  for (std::size_t v = 0; v < count; ++v) {
-    const float r_m = distance_m(rest, begin + v, own.p0_m), inside = Formulation::Factor::at(own.terms, r_m) - 1.0f;
-    change[v] = r_m < r_R_m ? inside : 0.0f;
+/// Distances of the block's rest points to a point.
+TOUCHSTONE_INLINE void distances_m(const SurfacePatches& rest, const VertexBlock& block, const Eigen::Vector3f& p_m,
+                                   Lane& r_m) noexcept {
+  const float *x = rest.rest_W_m[0].data() + block.begin, *y = rest.rest_W_m[1].data() + block.begin;
+  const float* z = rest.rest_W_m[2].data() + block.begin;
+  const float px = p_m.x(), py = p_m.y(), pz = p_m.z();
+  const std::int32_t count = block.end - block.begin;
+#pragma GCC ivdep
+  for (std::int32_t v = 0; v < count; ++v) {
+    const float dx = x[v] - px, dy = y[v] - py, dz = z[v] - pz;
+    r_m[static_cast<std::size_t>(v)] = std::sqrt(dx * dx + dy * dy + dz * dz);
   }
-  for (std::size_t k = 0; k < i; ++k) {
-    if (!stack.takes_part[k]) continue;
-    const Reach earlier = reach<Formulation>(local, stack.region[k]);
-    const float rim_m = earlier.terms.rim_m + earlier.terms.C_r_m;
-    if (block.distance2_m2(earlier.p0_m) > rim_m * rim_m) continue;
-    for (std::size_t v = 0; v < count; ++v) {
-      change[v] *= Formulation::Factor::room(earlier.terms, distance_m(rest, begin + v, earlier.p0_m));
+}
+
+/// Adds the sum of (w_i - 1) u_i over one block, i the near regions.
+template <class Formulation>
+TOUCHSTONE_INLINE void apply_to_block(const SurfacePatches& rest, float r_R_m, std::size_t p, const VertexBlock& block,
+                                      ShapeStack& stack, SurfaceField& field) noexcept {
+  using Factor = typename Formulation::Factor;
+  const auto begin = static_cast<std::size_t>(block.begin), count = static_cast<std::size_t>(block.end) - begin;
+  // What the hats and the contact points of the regions before this one are here.
+  std::size_t known = 0;
+  take_weights(rest, block, stack);
+  Lane r_m{}, change, room;
+  room.fill(1.0f);
+  Lane3 u{}, sum{};
+  for (const std::size_t i : stack.near) {
+    const ShapeStack::Reach& own = stack.reach[i];
+    if (block.distance2_m2(own.p0_W_m) >= r_R_m * r_R_m) continue;
+    raise_hats(rest, known, i, p, block, stack);
+    for (std::size_t k = known == 0 ? 0 : known - 1; k < i; ++k) {
+      if (!stack.takes_part[k]) continue;
+      const ShapeStack::Reach& earlier = stack.reach[k];
+      const float rim_m = earlier.terms.rim_m + earlier.terms.C_r_m;
+      if (block.distance2_m2(earlier.p0_W_m) > rim_m * rim_m) continue;
+      distances_m(rest, block, earlier.p0_W_m, r_m);
+      const FactorTerms terms = earlier.terms;
+      for (std::size_t v = 0; v < room.size(); ++v) room[v] *= Factor::room(terms, r_m[v]);
+    }
+    known = i + 1;
+    distances_m(rest, block, own.p0_W_m, r_m);
+    const FactorTerms terms = own.terms;
+    for (std::size_t v = 0; v < change.size(); ++v) {
+      const float inside = (Factor::at(terms, r_m[v]) - 1.0f) * room[v];
+      change[v] = r_m[v] < r_R_m ? inside : 0.0f;
+    }
+    Formulation::increment(rest, stack, i, p, block, u);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t v = 0; v < change.size(); ++v) sum[axis][v] += change[v] * u[axis][v];
     }
   }
-  Lane3 u;
-  Formulation::increment(rest, stack, i, p, block, u);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     float* out = field.displacement_m[axis].data() + begin;
-    for (std::size_t v = 0; v < count; ++v) out[v] += change[v] * u[axis][v];
+#pragma GCC ivdep
+    for (std::size_t v = 0; v < count; ++v) out[v] += sum[axis][v];
   }
 }
 
 template <class Formulation>
-TOUCHSTONE_INLINE void apply_factors(const SurfacePatches& rest, const LocalConstants& local, const ShapeStack& stack,
+TOUCHSTONE_INLINE void apply_factors(const SurfacePatches& rest, const LocalConstants& local, ShapeStack& stack,
                                      SurfaceField& field) noexcept {
   for (std::size_t i = 0; i < stack.count; ++i) {
     const RegionShape& region = stack.region[i];
-    const Reach own = reach<Formulation>(local, region);
-    const auto r_R_m2 = static_cast<float>(local.r_R_m * local.r_R_m);
-    for (std::size_t p = 0; p < rest.patches.size(); ++p) {
-      const Patch& patch = rest.patches[p];
-      if ((patch.center_W_m - region.p0_W_m).norm() > patch.radius_m + local.r_R_m) continue;
-      for (std::int32_t b = patch.first_block; b < patch.last_block; ++b) {
-        const VertexBlock& block = rest.blocks[static_cast<std::size_t>(b)];
-        if (block.distance2_m2(own.p0_m) >= r_R_m2) continue;
-        apply_to_block<Formulation>(rest, local, stack, i, own, p, block, field);
-      }
+    stack.reach[i] = {Formulation::Factor::terms(local, region.size), region.p0_W_m.cast<float>()};
+  }
+  for (std::size_t p = 0; p < rest.patches.size(); ++p) {
+    const Patch& patch = rest.patches[p];
+    // Never beyond the capacity it was given.
+    stack.near.clear();
+    for (std::size_t i = 0; i < stack.count; ++i) {
+      if ((patch.center_W_m - stack.region[i].p0_W_m).norm() <= patch.radius_m + local.r_R_m) stack.near.push_back(i);
+    }
+    if (stack.near.empty()) continue;
+    const auto r_R_m = static_cast<float>(local.r_R_m);
+    for (std::int32_t b = patch.first_block; b < patch.last_block; ++b) {
+      const VertexBlock& block = rest.blocks[static_cast<std::size_t>(b)];
+      const bool reached = std::any_of(stack.near.begin(), stack.near.end(), [&](std::size_t i) {
+        return block.distance2_m2(stack.reach[i].p0_W_m) < r_R_m * r_R_m;
+      });
+      if (reached) apply_to_block<Formulation>(rest, r_R_m, p, block, stack, field);
     }
   }
 }
 
 TOUCHSTONE_WIDE_LOOPS
-void apply_local_factors_published(const SurfacePatches& rest, const LocalConstants& local, const ShapeStack& stack,
+void apply_local_factors_published(const SurfacePatches& rest, const LocalConstants& local, ShapeStack& stack,
                                    SurfaceField& field) noexcept {
   apply_factors<Published>(rest, local, stack, field);
 }
 
 TOUCHSTONE_WIDE_LOOPS
-void apply_local_factors_corrected(const SurfacePatches& rest, const LocalConstants& local, const ShapeStack& stack,
+void apply_local_factors_corrected(const SurfacePatches& rest, const LocalConstants& local, ShapeStack& stack,
                                    SurfaceField& field) noexcept {
   apply_factors<Corrected>(rest, local, stack, field);
 }
@@ -406,13 +461,19 @@ ShapeStack::ShapeStack(const SurfacePatches& rest, const AnchorPoints& anchors, 
       region(capacity),
       takes_part(capacity, false),
       factor(capacity * capacity, 0.0),
+      inverse_edge(capacity),
       right(capacity, 0.0),
       vector_c_m(capacity * capacity, Vec3(Vec3::Zero())),
+      vector_c_short_m(capacity * capacity),
       vector_total_m(capacity, Vec3(Vec3::Zero())),
       anchor_total_m(anchors.points_m().size(), Vec3(Vec3::Zero())),
       length_c_m(capacity * capacity, 0.0),
       angle_c_rad(capacity * capacity, 0.0),
-      printed(capacity * rest.patches.size()) {}
+      printed(capacity * rest.patches.size()),
+      height(capacity),
+      reach(capacity) {
+  near.reserve(capacity);
+}
 
 void ShapeStack::clear() noexcept {
   count = 0;
@@ -421,9 +482,11 @@ void ShapeStack::clear() noexcept {
 }
 
 std::size_t ShapeStack::memory_bytes() const noexcept {
-  return sizeof(ShapeStack) + capacity * (sizeof(RegionShape) + sizeof(Vec3) + sizeof(double)) +
-         capacity * capacity * (sizeof(Vec3) + 3 * sizeof(double)) + anchor_total_m.size() * sizeof(Vec3) +
-         printed.size() * sizeof(Printed);
+  return sizeof(ShapeStack) +
+         capacity * (sizeof(RegionShape) + sizeof(Vec3) + 5 * sizeof(double) + sizeof(Lane) + sizeof(Reach) +
+                     sizeof(std::size_t)) +
+         capacity * capacity * (sizeof(Vec3) + sizeof(Eigen::Vector3f) + 3 * sizeof(double)) +
+         anchor_total_m.size() * sizeof(Vec3) + printed.size() * sizeof(Printed);
 }
 
 const SeveralRegions several_regions_published{add_published, interpolate_several_published,

@@ -6,6 +6,7 @@
 #include "fast/local_factor.h"
 #include "scene/shape.h"
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -46,14 +47,28 @@ struct ShapeStack {
   std::size_t count = 0;  ///< regions so far
   std::size_t capacity = 0;
   std::vector<RegionShape> region;
-  std::vector<bool> takes_part;                 ///< has a hat
-  std::vector<double> factor;                   ///< L below and U above the diagonal, rows of `capacity`
-  std::vector<double> right;                    ///< work space, `capacity`
-  std::vector<scene::Vec3> vector_c_m;          ///< c_ik of the corrected form, rows of `capacity`
-  std::vector<scene::Vec3> vector_total_m;      ///< sum over i of c_ik
-  std::vector<scene::Vec3> anchor_total_m;      ///< sum of U_i
-  std::vector<double> length_c_m, angle_c_rad;  ///< c_ik of the printed form, rows of `capacity`
-  std::vector<Printed> printed;                 ///< rows of one per patch
+  std::vector<bool> takes_part;  ///< has a hat
+  std::vector<double> factor;    ///< L below and U above the diagonal, rows of `capacity`
+  std::vector<std::array<double, patch_corners_max>> inverse_edge;  ///< of the distances of p0 to its patch's edges
+  std::vector<double> right;                                        ///< work space, `capacity`
+  std::vector<scene::Vec3> vector_c_m;                              ///< c_ik of the corrected form, rows of `capacity`
+  std::vector<Eigen::Vector3f> vector_c_short_m;                    ///< the same in single precision
+  std::vector<scene::Vec3> vector_total_m;                          ///< sum over i of c_ik
+  std::vector<scene::Vec3> anchor_total_m;                          ///< sum of U_i
+  std::vector<double> length_c_m, angle_c_rad;                      ///< c_ik of the printed form, rows of `capacity`
+  std::vector<Printed> printed;                                     ///< rows of one per patch
+
+  /// Work space of the passes: numbers of one block of vertices.
+  using Lane = std::array<float, block_vertices>;
+  /// A region's local factor.
+  struct Reach {
+    FactorTerms terms;
+    Eigen::Vector3f p0_W_m;
+  };
+  std::array<Lane, patch_corners_max> corner_weight{};
+  std::vector<Lane> height;  ///< of the hats, one per region
+  std::vector<Reach> reach;
+  std::vector<std::size_t> near;  ///< regions whose R reaches the patch at hand
 
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };
@@ -61,12 +76,11 @@ struct ShapeStack {
 /// Takes the next region in. At most `max_regions` times between clears.
 using AddRegion = void (*)(const SurfacePatches&, const RegionShape&, ShapeStack&) noexcept;
 /// Fills field.displacement_m with the global deformation of all regions.
-using InterpolateSeveral = void (*)(const SurfacePatches&, const ShapeStack&, SurfaceField&) noexcept;
+using InterpolateSeveral = void (*)(const SurfacePatches&, ShapeStack&, SurfaceField&) noexcept;
 /// Adds (w_i - 1) u_i inside every region's R_i to it. A point in contact with region i or an earlier one keeps u_i: it
 /// is no noncontact point. At an earlier p0_k there is no u_i to begin with, and a later region's point moves as the
 /// rest of Shape_i does, on which that region is built.
-using ApplyLocalFactors = void (*)(const SurfacePatches&, const LocalConstants&, const ShapeStack&,
-                                   SurfaceField&) noexcept;
+using ApplyLocalFactors = void (*)(const SurfacePatches&, const LocalConstants&, ShapeStack&, SurfaceField&) noexcept;
 /// Displacement of a rest surface point [m], world: what the two passes above give a vertex there, without the pass.
 /// Only the regions in the stack count, so with regions 1 to i - 1 in it this is Shape_{i-1}.
 /// @param local null where there is no local factor; @param at the point, its normal and its patch
@@ -81,7 +95,7 @@ struct SeveralRegions {
   DisplacementAt displacement_at = nullptr;
 };
 
-/// As printed: lengths and angles, region upon region in full passes, an earlier contact point entering with length
+/// As printed: lengths and angles, region upon region, an earlier contact point entering with length
 /// zero and, having no direction, the angle of the mean displacement (errata E15). Normals and distances are those of
 /// the rest shape, where section VI would take those of Shape_{i-1}.
 extern const SeveralRegions several_regions_published;

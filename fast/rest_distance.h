@@ -74,20 +74,25 @@ template <class Body>
   return body.signed_distance_m(p_m) <= radius_m;
 }
 
-/// True only if the point is outside by margin_m or more: a cheap first question.
+/// True only if the point is outside by more than margin_m: a cheap first question.
 template <class Body>
 [[nodiscard]] bool surely_beyond(const Body&, const scene::Vec3&, double) noexcept {
   return false;
 }
+
+/// The ellipsoid times this ratio passes through the point; everywhere it stands off by (ratio - 1) of the shortest
+/// axis at least.
+[[nodiscard]] inline double size_ratio(const scene::Ellipsoid& ellipsoid, const scene::Vec3& p_m) noexcept {
+  return (p_m - ellipsoid.center_m()).cwiseQuotient(ellipsoid.semi_axes_m()).norm();
+}
 [[nodiscard]] inline bool surely_beyond(const scene::Ellipsoid& ellipsoid, const scene::Vec3& p_m,
                                         double margin_m) noexcept {
-  // The ellipsoid times `ratio` passes through the point; everywhere it stands off by the shortest axis at least.
-  const double ratio = (p_m - ellipsoid.center_m()).cwiseQuotient(ellipsoid.semi_axes_m()).norm();
-  return (ratio - 1.0) * ellipsoid.semi_axes_m().minCoeff() > margin_m;
+  return (size_ratio(ellipsoid, p_m) - 1.0) * ellipsoid.semi_axes_m().minCoeff() > margin_m;
 }
 [[nodiscard]] inline bool may_touch(const scene::Ellipsoid& ellipsoid, const scene::Vec3& p_m,
                                     double radius_m) noexcept {
-  return !surely_beyond(ellipsoid, p_m, radius_m) && rest_distance(ellipsoid, p_m).signed_distance_m <= radius_m;
+  const double off_m = (size_ratio(ellipsoid, p_m) - 1.0) * ellipsoid.semi_axes_m().minCoeff();
+  return off_m <= 0.0 || (off_m <= radius_m && rest_distance(ellipsoid, p_m).signed_distance_m <= radius_m);
 }
 
 /// Way from inside points along one direction to the rest surface [m]; zero for a point on it or outside.

@@ -26,6 +26,17 @@ int smallest_free_id(const FastState& state) noexcept {
   }
 }
 
+/// Keeps the points inside the rest surface, in their order.
+void keep_inside(const scene::Shape& body, RegionPoints& points) noexcept {
+  int kept = 0;
+  for (int i = 0; i < points.count; ++i) {
+    if (!(body.signed_distance_m(points.p_W_m(static_cast<std::size_t>(i))) < 0.0)) continue;
+    if (kept != i) points.move(i, kept);
+    ++kept;
+  }
+  points.count = kept;
+}
+
 /// Brings state.regions to what the tracker says, each with its points.
 void take_over(const RegionPoints& all, int count, FastState& state) noexcept {
   SeveralRegionsState& several = *state.several;
@@ -64,7 +75,7 @@ StepStatus press_next(const FastModel& model, const Motion& motion, bool created
           return model.formulas.several.displacement_at(model.rest, *model.anchors, shapes, local, at);
         },
         region.points);
-  } else {
+  } else if (several.bulge_m > 0.0) {
     keep_inside(*model.body, region.points);
   }
   state.lap(Stage::regions);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 namespace touchstone::fast {
 namespace {
@@ -63,6 +64,201 @@ class TreeBuilder {
   std::vector<SampleBall> tree_;
 };
 
+/// Samples before they have an order.
+struct Cloud {
+  std::vector<Vec3> points_m, normals;
+  std::vector<double> area_m2;
+  void add(const Vec3& point_m, const Vec3& normal, double area) {
+    points_m.push_back(point_m);
+    normals.push_back(normal);
+    area_m2.push_back(area);
+  }
+};
+
+ToolSamples in_tree_order(const Cloud& cloud, double surface_m2) {
+  TreeBuilder builder(cloud.points_m);
+  ToolSamples samples;
+  for (const std::int32_t i : builder.order()) {
+    const Vec3 &p = cloud.points_m[static_cast<std::size_t>(i)], &n = cloud.normals[static_cast<std::size_t>(i)];
+    samples.x_T_m.push_back(p.x());
+    samples.y_T_m.push_back(p.y());
+    samples.z_T_m.push_back(p.z());
+    samples.nx_T.push_back(n.x());
+    samples.ny_T.push_back(n.y());
+    samples.nz_T.push_back(n.z());
+    samples.area_m2.push_back(cloud.area_m2[static_cast<std::size_t>(i)]);
+  }
+  samples.spacing_m = std::sqrt(surface_m2 / samples.count());
+  samples.tree = builder.take();
+  return samples;
+}
+
+int pieces(double length_m, double spacing_m, int least) {
+  return std::max(least, static_cast<int>(std::lround(length_m / spacing_m)));
+}
+
+ToolSamples sample_box(const scene::Box& box, int count) {
+  const double spacing_m = std::sqrt(box.area_m2() / count);
+  Cloud cloud;
+  for (int face = 0; face < box.patch_count(); ++face) {
+    const Vec3 corner = box.at(face, 0.0, 0.0).point_m;
+    const double width_m = (box.at(face, 1.0, 0.0).point_m - corner).norm(),
+                 height_m = (box.at(face, 0.0, 1.0).point_m - corner).norm();
+    const int columns = pieces(width_m, spacing_m, 1), rows = pieces(height_m, spacing_m, 1);
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column) {
+        const scene::SurfacePoint at = box.at(face, (column + 0.5) / columns, (row + 0.5) / rows);
+        cloud.add(at.point_m, at.normal, width_m * height_m / (columns * rows));
+      }
+    }
+  }
+  return in_tree_order(cloud, box.area_m2());
+}
+
+ToolSamples sample_revolution(const scene::Revolution& tool, int count) {
+  constexpr double pi = std::numbers::pi;
+  const double spacing_m = std::sqrt(tool.area_m2() / count);
+  struct Ring {
+    Vec3 axis_m;
+    Eigen::Vector2d rz_m, normal;
+    double area_m2;
+  };
+  std::vector<Ring> rings;
+  for (int index = 0; index < tool.piece_count(); ++index) {
+    const scene::RevolutionPiece& piece = tool.piece(index);
+    const int bands = pieces(piece.length_m, spacing_m, 2);
+    for (int band = 0; band < bands; ++band) {
+      const double from = static_cast<double>(band) / bands, to = static_cast<double>(band + 1) / bands;
+      const auto middle = tool.meridian(index, 0.5 * (from + to));
+      // 2 pi times the integral of r along the band.
+      double area_m2 = 2.0 * pi * middle.rz_m.x() * piece.length_m / bands;
+      if (!piece.straight()) {
+        const double turn = (piece.end_angle - piece.start_angle) / bands, R = piece.radius_m;
+        const double first = piece.start_angle + band * turn;
+        area_m2 = 2.0 * pi * R * (piece.center_m.x() * turn + R * (std::sin(first + turn) - std::sin(first)));
+      }
+      rings.push_back({tool.offset_m(), middle.rz_m, middle.normal, area_m2});
+    }
+  }
+  Cloud cloud;
+  const auto total = static_cast<int>(rings.size());
+  for (int i = 0; i < total; ++i) {
+    const Ring& ring = rings[static_cast<std::size_t>(i)];
+    const int on_quarter = pieces(0.5 * pi * ring.rz_m.x(), spacing_m, 1);
+    // Neighbouring rings stand on gaps; counted from either end, so that a mirrored profile has mirrored rings.
+    const double shift = std::min(i, total - 1 - i) % 2 == 0 ? 0.5 : 0.0;
+    for (int k = 0; k < on_quarter; ++k) {
+      const double angle = 0.5 * pi * (k + shift) / on_quarter;
+      double x = std::cos(angle), y = std::sin(angle);
+      for (int quarter = 0; quarter < 4; ++quarter) {
+        cloud.add(ring.axis_m + Vec3(ring.rz_m.x() * x, ring.rz_m.x() * y, ring.rz_m.y()),
+                  Vec3(ring.normal.x() * x, ring.normal.x() * y, ring.normal.y()), ring.area_m2 / (4 * on_quarter));
+        x = -std::exchange(y, x);
+      }
+    }
+  }
+  return in_tree_order(cloud, tool.area_m2());
+}
+
+void halve_until(double limit_m2, const std::array<Vec3, 3>& corners, Cloud& cloud) {
+  const Vec3 twice_area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  const double area_m2 = 0.5 * twice_area.norm();
+  if (area_m2 <= limit_m2) {
+    cloud.add((corners[0] + corners[1] + corners[2]) / 3.0, twice_area.normalized(), area_m2);
+    return;
+  }
+  std::size_t longest = 0;
+  double length2_m2 = -1.0;
+  for (std::size_t side = 0; side < 3; ++side) {
+    const double here_m2 = (corners[(side + 1) % 3] - corners[side]).squaredNorm();
+    // Sides that differ by rounding are equally long.
+    if (here_m2 <= length2_m2 * (1.0 + 1e-12)) continue;
+    length2_m2 = here_m2;
+    longest = side;
+  }
+  const Vec3 &a = corners[longest], &b = corners[(longest + 1) % 3], &c = corners[(longest + 2) % 3];
+  const Vec3 middle = 0.5 * (a + b);
+  halve_until(limit_m2, {a, middle, c}, cloud);
+  halve_until(limit_m2, {middle, b, c}, cloud);
+}
+
+/// One sample for each group of neighbours that look the same way and together are at most the limit.
+class Grouping {
+ public:
+  Grouping(const Cloud& fine, double limit_m2) : fine_(fine), limit_m2_(limit_m2) {
+    // By the axis they look along first: the two sides of a thin sheet never share a sample.
+    std::array<std::vector<std::size_t>, 6> looking;
+    for (std::size_t i = 0; i < fine.points_m.size(); ++i) {
+      std::size_t axis = 0;
+      fine.normals[i].cwiseAbs().maxCoeff(&axis);
+      looking[2 * axis + (fine.normals[i][static_cast<Eigen::Index>(axis)] > 0.0)].push_back(i);
+    }
+    for (std::vector<std::size_t>& group : looking) {
+      order_ = std::move(group);
+      if (!order_.empty()) split(0, order_.size());
+    }
+  }
+  [[nodiscard]] const Cloud& coarse() const { return coarse_; }
+
+ private:
+  void split(std::size_t begin, std::size_t end) {
+    Vec3 lower_m = fine_.points_m[order_[begin]], upper_m = lower_m;
+    Vec3 normal_sum = Vec3::Zero(), center_sum = Vec3::Zero();
+    double area_m2 = 0.0;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Vec3& p_m = fine_.points_m[order_[k]];
+      const double a = fine_.area_m2[order_[k]];
+      lower_m = lower_m.cwiseMin(p_m);
+      upper_m = upper_m.cwiseMax(p_m);
+      normal_sum += a * fine_.normals[order_[k]];
+      center_sum += a * p_m;
+      area_m2 += a;
+    }
+    // Within about 25 degrees of their mean.
+    const bool same_way = normal_sum.norm() >= 0.9 * area_m2;
+    const double reach_m = (upper_m - lower_m).norm();
+    if (end - begin == 1 || (same_way && area_m2 <= limit_m2_ && reach_m * reach_m <= 3.0 * limit_m2_)) {
+      std::size_t nearest = order_[begin];
+      for (std::size_t k = begin; k < end; ++k) {
+        const auto off = [&](std::size_t i) { return (fine_.points_m[i] - center_sum / area_m2).squaredNorm(); };
+        if (off(order_[k]) < off(nearest)) nearest = order_[k];
+      }
+      coarse_.add(fine_.points_m[nearest], normal_sum.normalized(), area_m2);
+      return;
+    }
+    const auto first = order_.begin();
+    auto middle = begin;
+    int axis = 0;
+    (upper_m - lower_m).maxCoeff(&axis);
+    std::sort(first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end),
+              [&](std::size_t a, std::size_t b) {
+                const double at_a = fine_.points_m[a][axis], at_b = fine_.points_m[b][axis];
+                return at_a != at_b ? at_a < at_b : a < b;
+              });
+    double half_m2 = 0.0;
+    while (middle < end && half_m2 < 0.5 * area_m2) half_m2 += fine_.area_m2[order_[middle++]];
+    middle = std::clamp(middle, begin + 1, end - 1);
+    split(begin, middle);
+    split(middle, end);
+  }
+
+  const Cloud& fine_;
+  double limit_m2_;
+  std::vector<std::size_t> order_;
+  Cloud coarse_;
+};
+
+ToolSamples sample_mesh(const scene::TriangleMesh& mesh, int count) {
+  const double surface_m2 = mesh.area_m2(), limit_m2 = surface_m2 / count;
+  Cloud cloud;
+  for (const auto& triangle : mesh.triangles)
+    halve_until(limit_m2,
+                {mesh.points_m.col(triangle[0]), mesh.points_m.col(triangle[1]), mesh.points_m.col(triangle[2])},
+                cloud);
+  if (cloud.points_m.size() > 2 * static_cast<std::size_t>(count)) cloud = Grouping(cloud, limit_m2).coarse();
+  return in_tree_order(cloud, surface_m2);
+}
+
 }  // namespace
 
 std::size_t ToolSamples::memory_bytes() const noexcept {
@@ -76,7 +272,7 @@ ToolSamples sample_tool(const scene::Sphere& tool, int count) {
   constexpr int on_ring = 4;
   const int rings = (count + on_ring - 1) / on_ring;
   const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-  std::vector<Vec3> normals, points_m;
+  Cloud cloud;
   for (int i = 0; i < count; ++i) {
     const int ring = i / on_ring;
     const double z = -1.0 + (2.0 * ring + 1.0) / rings;
@@ -85,24 +281,23 @@ ToolSamples sample_tool(const scene::Sphere& tool, int count) {
     const double x = across * std::cos(0.5 * std::numbers::pi * turn),
                  y = across * std::sin(0.5 * std::numbers::pi * turn);
     const std::array<Vec3, on_ring> quarter{Vec3(x, y, z), Vec3(-y, x, z), Vec3(-x, -y, z), Vec3(y, -x, z)};
-    normals.push_back(quarter[static_cast<std::size_t>(i % on_ring)]);
-    points_m.push_back(tool.center_m() + tool.radius_m() * normals.back());
+    const Vec3& normal = quarter[static_cast<std::size_t>(i % on_ring)];
+    cloud.add(tool.center_m() + tool.radius_m() * normal, normal, tool.area_m2() / count);
   }
-  TreeBuilder builder(points_m);
-  ToolSamples samples;
-  for (const std::int32_t i : builder.order()) {
-    const Vec3 &p = points_m[static_cast<std::size_t>(i)], &n = normals[static_cast<std::size_t>(i)];
-    samples.x_T_m.push_back(p.x());
-    samples.y_T_m.push_back(p.y());
-    samples.z_T_m.push_back(p.z());
-    samples.nx_T.push_back(n.x());
-    samples.ny_T.push_back(n.y());
-    samples.nz_T.push_back(n.z());
-    samples.area_m2.push_back(tool.area_m2() / count);
+  return in_tree_order(cloud, tool.area_m2());
+}
+
+ToolSamples sample_tool(const scene::Tool& tool, int count) {
+  if (tool.shape == scene::ToolShape::mesh) return sample_mesh(scene::tool_mesh(tool), count);
+  const auto shape = scene::tool_shape(tool);
+  switch (tool.shape) {
+    case scene::ToolShape::sphere:
+      return sample_tool(static_cast<const scene::Sphere&>(*shape), count);
+    case scene::ToolShape::box:
+      return sample_box(static_cast<const scene::Box&>(*shape), count);
+    default:
+      return sample_revolution(static_cast<const scene::Revolution&>(*shape), count);
   }
-  samples.spacing_m = std::sqrt(tool.area_m2() / count);
-  samples.tree = builder.take();
-  return samples;
 }
 
 }  // namespace touchstone::fast

@@ -3,7 +3,7 @@
 // the surface makes that true for any tool.
 #pragma once
 
-#include "scene/shape.h"
+#include "scene/scene.h"
 
 #include <cstdint>
 #include <vector>
@@ -39,5 +39,16 @@ struct ToolSamples {
 /// Samples of equal area on a ball-shaped tool.
 /// @param count at least 1
 [[nodiscard]] ToolSamples sample_tool(const scene::Sphere& tool, int count);
+
+/// Samples of any tool, each for nearly the same area, together for all of it. Their number is about `count` and at
+/// most twice that, but for the least a tool needs: four in each ring, one on each face or triangle that stands alone.
+/// - sphere: as above
+/// - capsule, cylinder: rings of evenly spaced points, at least two along each piece of the profile
+/// - box: a grid on every face
+/// - mesh: triangles are halved at their longest side until small enough; of a finer mesh, neighbouring triangles that
+///   look the same way share a sample, at the one nearest their middle
+/// The pattern is mirrored where the tool is, so a straight press has no side force or torque of the sampling's making.
+/// Samples stand within the faces, none on an edge or corner.
+[[nodiscard]] ToolSamples sample_tool(const scene::Tool& tool, int count);
 
 }  // namespace touchstone::fast

@@ -1,6 +1,7 @@
 // No heap use below step(): not on entering contact, in it, on a jump, on a bad pose, or on leaving.
 #include "realtime/no_heap.h"
 
+#include "fast/region_shapes.h"
 #include "fast/step.h"
 #include "unit/fast/press.h"
 
@@ -47,6 +48,31 @@ TEST(NoHeap, BelowAStepOnABox) {
 TEST(NoHeap, BelowAStepOnASphere) {
   for (const Formulation formulation : {Formulation::published, Formulation::corrected}) {
     run_without_heap(test::ball_on_sphere(formulation));
+  }
+}
+
+TEST(NoHeap, InTheShapeOfSeveralRegions) {
+  const FastModel model(test::ball_on_cube());
+  SurfaceField field(model.rest);
+  ShapeStack stack(model.rest, *model.anchors, 3);
+  const std::vector<scene::Vec3> anchor_m(model.skeleton.anchor_m.size(), scene::Vec3(1e-4, 0.0, -1e-4));
+  for (const SeveralRegions& several : {several_regions_published, several_regions_corrected}) {
+    const test::NoHeap guard;
+    stack.clear();
+    scene::Vec3 moved_m = scene::Vec3::Zero();
+    for (const double x_m : {-0.02, 0.001, 0.009}) {
+      const scene::SurfaceQuery at = model.body->query(scene::Vec3(x_m, 0.003, 0.06));
+      RegionShape region;
+      region.anchor_displacement_m = anchor_m;
+      region.contact = {scene::Vec3(0.0, 0.0, -0.002), at.normal, at.patch, model.anchors->at(at.patch, at.point_m)};
+      region.p0_W_m = at.point_m;
+      region.size = {40, 3e-5};
+      several.add(model.rest, region, stack);
+      moved_m += several.displacement_at(model.rest, *model.anchors, stack, &model.local, at);
+    }
+    several.interpolate(model.rest, stack, field);
+    several.apply_local_factors(model.rest, model.local, stack, field);
+    if (!(moved_m.z() < -0.005)) std::abort();
   }
 }
 

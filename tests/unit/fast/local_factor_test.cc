@@ -95,6 +95,31 @@ TEST(LocalFactor, ActsInsideRAndNowhereElse) {
   EXPECT_GT(on_side, 5);
 }
 
+TEST(LocalFactor, ThePassIsTheFormulaAtEveryVertex) {
+  const FastModel model(test::ball_on_sphere());
+  const Vec3 p0 = model.body->query(Vec3(0.013, 0.008, 0.07)).point_m;
+  for (const RegionSize& region : {RegionSize{1, 0.0}, RegionSize{100, 1.1e-4}}) {
+    for (const LocalConstants& c : {constants, LocalConstants{0.8, 0.002, 0.04}, LocalConstants{0.03, 1e-9, 0.015}}) {
+      using Formula = double (*)(const LocalConstants&, const RegionSize&, double) noexcept;
+      const std::pair<ApplyLocalFactor, Formula> forms[] = {{apply_local_factor_published, local_factor_published},
+                                                            {apply_local_factor_corrected, local_factor_corrected}};
+      for (const auto& [apply, formula] : forms) {
+        SurfaceField field(model.rest);
+        for (auto& column : field.displacement_m) column.assign(column.size(), 1.0f);
+        apply(model.rest, c, region, p0, field);
+        int touched = 0;
+        for (int v = 0; v < model.surface.vertex_count(); ++v) {
+          const double r = (Vec3(model.surface.points_m.col(v)) - p0).norm();
+          const double w = r < c.r_R_m ? formula(c, region, r) : 1.0;
+          touched += w != 1.0;
+          for (const auto& column : field.displacement_m) ASSERT_NEAR(column[static_cast<std::size_t>(v)], w, 3e-6);
+        }
+        EXPECT_GT(touched, 50);
+      }
+    }
+  }
+}
+
 TEST(LocalFactor, ReachesRoundToASmallFace) {
   scene::Scene scene = test::ball_on_cube();
   scene.body.size_m = Vec3(0.06, 0.01, 0.01);

@@ -1,0 +1,67 @@
+// What a tick asks of detection, for every body, without the heap.
+#include "fast/contact_regions.h"
+#include "fast/pull_back.h"
+#include "realtime/no_heap.h"
+#include "unit/fast/points.h"
+#include "unit/fast/press.h"
+
+#include <gtest/gtest.h>
+
+namespace touchstone::fast {
+namespace {
+
+using scene::Vec3;
+
+class DetectionWithoutHeap : public testing::TestWithParam<scene::BodyShape> {};
+
+TEST_P(DetectionWithoutHeap, FindsSplitsFollowsAndTakesBack) {
+  scene::Scene scene = test::ball_on_cube();
+  scene.body.shape = GetParam();
+  scene.body.radius_m = 0.03;
+  scene.body.semi_axes_m = Vec3(0.035, 0.025, 0.030);
+  scene.body.profile = {{{0.0, 0.0}, {0.030, 0.0}, {0.025, 0.040}, {0.0, 0.055}}, {0.0, 0.0, 0.030}};
+  scene.tool.shape = scene::ToolShape::box;  // laid across the top it meets it in up to two places
+  scene.tool.size_m = Vec3(0.08, 0.01, 0.01);
+  const auto body = scene::body_shape(scene.body);
+  const Detection detection = detection_for(GetParam());
+  const ToolSamples tool = sample_tool(scene.tool, 2000);
+  const ClusterGrid grid = cluster_grid(tool, 0.002);
+  ClusterScratch scratch(grid);
+  RegionTracker tracker(tool.count(), 20, 10);
+  test::OwnedPoints points(tool.count());
+  std::vector<Cluster> clusters(20);
+  std::vector<TrackedRegion> regions(10);
+  const double top_m = body->bounds().upper_m.z();
+  int ticks_in_contact = 0;
+  {
+    const test::NoHeap guard;
+    for (int tick = 0; tick < 400; ++tick) {
+      const double s = 1e-2 * tick;
+      Placement at;
+      at.R_WT = Eigen::AngleAxisd(0.6 * std::sin(3.0 * s), Vec3::UnitY()).toRotationMatrix();
+      at.origin_W_m = Vec3(0.01 * std::sin(s), 0.0, top_m + 0.002 * std::cos(2.0 * s));
+      detection.find_inside(*body, tool, at, 1e-4, tool.count(), points);
+      ticks_in_contact += points.count > 0;
+      const ClusterCount found = cluster(grid, points, scratch, clusters);
+      const Tracking tracked =
+          tracker.track(points, {clusters.data(), static_cast<std::size_t>(found.count)}, 0.004, regions);
+      for (int r = 0; r < tracked.count; ++r) {
+        const PointRange& range =
+            clusters[static_cast<std::size_t>(regions[static_cast<std::size_t>(r)].cluster)].points;
+        RegionPoints part = points.slice(range.begin, range.size);
+        pull_back(
+            *body, [](int, const Vec3& rest_m) noexcept { return Vec3(0.0, 0.0, -0.01 * rest_m.x()); }, part);
+        const InsideSummary inside = detection.summarise(*body, part);
+        detection.measure_depths(*body, at.R_WT, direction_from(inside, -Vec3::UnitZ()), part);
+      }
+    }
+  }
+  EXPECT_GT(ticks_in_contact, 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, DetectionWithoutHeap,
+                         testing::Values(scene::BodyShape::box, scene::BodyShape::sphere, scene::BodyShape::ellipsoid,
+                                         scene::BodyShape::revolution));
+
+}  // namespace
+}  // namespace touchstone::fast
