@@ -19,7 +19,8 @@ struct PulledBack {
 /// Two steps to the rest point c whose displaced place y(c) = c + u(c) is closest to p. First x' = p - u(c(x')),
 /// started from p, with c(x) the closest rest point: p then stands over y(c) along the rest normal. On a slope of the
 /// deformed surface that is not the shortest way, so the second step is a Newton step along the slope, from u around c.
-/// @param displacement_at Vec3 (const scene::SurfaceQuery&) noexcept: u of a rest point [m], world; also asked up to 1e-4
+/// @param displacement_at Vec3 (const scene::SurfaceQuery&) noexcept: u of a rest point [m], world; also asked up to
+/// 1e-4
 ///   of the body's size beyond a patch's border
 template <class DisplacementAt>
 [[nodiscard]] PulledBack pulled_back(const scene::Shape& shape, double size_m, const DisplacementAt& displacement_at,

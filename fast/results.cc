@@ -8,7 +8,7 @@
 namespace touchstone::fast {
 
 scene::Figures figures(const Run& run) {
-  return {
+  scene::Figures out = {
       {"fast.step_us.p50", run.step.p50_us, "", "us"},
       {"fast.step_us.p99", run.step.p99_us, "", "us"},
       {"fast.step_us.p999", run.step.p999_us, "", "us"},
@@ -21,6 +21,9 @@ scene::Figures figures(const Run& run) {
       {"fast.regions_max", static_cast<double>(run.regions_max), "", ""},
       {"fast.status", 0.0, status_text(run.status), ""},
   };
+  if (run.order_spread_rel) out.push_back({"fast.order_spread_rel", *run.order_spread_rel, "", ""});
+  if (run.equilibrium_rel) out.push_back({"fast.equilibrium_rel", *run.equilibrium_rel, "", ""});
+  return out;
 }
 
 Run run_into_folder(const scene::Scene& scene, const std::filesystem::path& folder, scene::Manifest manifest,

@@ -1,5 +1,7 @@
 #include "fast/run.h"
 
+#include "fast/separation.h"
+#include "fast/several_regions.h"
 #include "fast/step.h"
 
 #include <xxhash.h>
@@ -89,9 +91,18 @@ scene::InstantRecord record_of(const scene::Scene& scene, const FastModel& model
   record.depth_m = scene::rest_depth_m(*model.body, scene.tool, pose);
   record.displacement_m = matrix_of(state.field.displacement_m);
   record.support_force_n = support_force_n(state);
-  if (state.in_contact()) {
-    const ContactRegion& region = state.regions[0];
-    record.regions.push_back({record.depth_m, region.force.force_n, region.force.torque_nm, region.extent.area_m2});
+  for (int i = 0; i < state.region_count; ++i) {
+    const ContactRegion& region = state.regions[static_cast<std::size_t>(i)];
+    if (!region.pressing()) continue;
+    scene::RegionRecord out;
+    out.id = region.id;
+    out.depth_m = model.max_regions == 1 ? record.depth_m : region.extent.deepest_m;
+    out.force_n = region.force.force_n;
+    out.torque_nm = region.force.torque_nm;
+    out.area_m2 = region.extent.area_m2;
+    out.friction_n = region.force.tangential_n;
+    out.sliding = region.friction.sliding;
+    record.regions.push_back(out);
   }
   return record;
 }
@@ -109,6 +120,7 @@ std::string status_text(std::uint32_t status) {
   add(StepStatus::not_finite, "pose not finite, last good answer held");
   add(StepStatus::depth_limited, "depth limited to half of the body's thickness");
   add(StepStatus::law_saturated, "contact law saturated at its peak");
+  add(StepStatus::regions_full, "more contact regions than fast.max_regions, the newest left out");
   add(StepStatus::anchors_limited, "anchor displacement limited to that of the contact (raise fast.s_c_m2)");
   return text.empty() ? "ok" : text;
 }
@@ -122,6 +134,7 @@ Run run(const scene::Scene& scene, const std::function<void(double)>& progress) 
   run.surface = model.surface;
   run.memory_bytes = model.memory_bytes() + state.memory_bytes();
 
+  const Separation separation(*model.body, run.surface, scene::tool_surface(scene.tool, scene.fast.tool_samples));
   const std::vector<Tick> ticks = ticks_of(scene);
   std::vector<double> step_us, force_us;
   step_us.reserve(ticks.size());
@@ -139,12 +152,18 @@ Run run(const scene::Scene& scene, const std::function<void(double)>& progress) 
     step_us.push_back(microseconds(end - begin));
     if (state.in_contact()) {
       force_us.push_back(microseconds(published - begin));
-      run.regions_max = 1;
+      run.regions_max = std::max(run.regions_max, state.region_count);
     }
     run.status |= static_cast<std::uint32_t>(status);
-    hash.add_force(state.regions[0].force.force_n);
+    hash.add_force(total_force_n(state));
     if (ticks[k].instant >= 0) {
+      if (state.region_count > 1) {
+        const OrderSpread spread = order_spread(model, state);
+        run.order_spread_rel = std::max(run.order_spread_rel.value_or(0.0), spread.spread_rel);
+        run.equilibrium_rel = std::max(run.equilibrium_rel.value_or(0.0), spread.equilibrium_rel);
+      }
       run.instants.push_back(record_of(scene, model, state, ticks[k].time_s, pose));
+      if (!state.in_contact()) run.instants.back().separation_m = separation.distance_m(pose);
       run.normals.push_back(matrix_of(state.field.normal));
     }
     if (progress && k % report_every == 0) progress(static_cast<double>(k + 1) / static_cast<double>(ticks.size()));

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,9 @@ struct Run {
   std::size_t memory_bytes = 0;                ///< model and state
   int ticks = 0;
   int regions_max = 0;
+  /// What the paper leaves open about several regions (errata E18), worst over the instants; see OrderSpread. Absent
+  /// where no instant had several.
+  std::optional<double> order_spread_rel, equilibrium_rel;
   std::uint32_t status = 0;      ///< OR of all StepStatus bits
   std::uint64_t state_hash = 0;  ///< over every tick's force and final shape; equal on replay
 };

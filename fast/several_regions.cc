@@ -190,7 +190,7 @@ StepStatus press_several_regions(const FastModel& model, const Motion& motion, F
 }
 
 StepStatus shape_several_regions(const FastModel& model, FastState& state) noexcept {
-  const SeveralRegionsState& several = *state.several;
+  SeveralRegionsState& several = *state.several;
   model.formulas.several.interpolate(model.rest, several.shapes, state.field);
   state.lap(Stage::interpolation);
   if (model.formulas.local_factor()) {

@@ -22,7 +22,7 @@ struct Dimple {
   Vec3 operator()(const Vec3& rest_m) const {
     return std::exp(-(rest_m - center_m).squaredNorm() / (width_m * width_m)) * displacement_m;
   }
-  Vec3 operator()(int /*patch*/, const Vec3& rest_m) const { return (*this)(rest_m); }
+  Vec3 operator()(const scene::SurfaceQuery& at) const { return (*this)(at.point_m); }
 };
 
 constexpr double tool_radius_m = 0.008;
@@ -92,7 +92,7 @@ TEST_P(PullBack, OfABodyAtRestLeavesThePoints) {
   for (int i = 0; i < 500; ++i) {
     const Vec3 p_m(between(-0.05, 0.05), between(-0.05, 0.05), between(-0.01, 0.07));
     const PulledBack back = pulled_back(
-        *body, 0.06, [](int, const Vec3&) noexcept { return Vec3(0, 0, 0); }, p_m);
+        *body, 0.06, [](const scene::SurfaceQuery&) noexcept { return Vec3(0, 0, 0); }, p_m);
     if (body->signed_distance_m(p_m) < 0.0) {
       EXPECT_LT((back.x_m - p_m).norm(), 1e-15);
     }
@@ -105,7 +105,7 @@ TEST_P(PullBack, OfAMovedBodyIsTheMove) {
   const Vec3 move_m(0.001, -0.002, 0.0015);
   const Vec3 p_m = on_top(0.004, 0.003) - Vec3(0, 0, 0.002) + move_m;
   const PulledBack back = pulled_back(
-      *body, 0.06, [&](int, const Vec3&) noexcept { return move_m; }, p_m);
+      *body, 0.06, [&](const scene::SurfaceQuery&) noexcept { return move_m; }, p_m);
   EXPECT_LT((back.x_m + move_m - p_m).norm(), 2e-6);
 }
 
