@@ -14,7 +14,7 @@
 
 namespace touchstone::bench {
 
-double PeerResult::over_step() const noexcept { return valid() ? ratio(step.wall.p50_us, our_step_us) : not_measured; }
+double PeerResult::over_step() const noexcept { return valid() ? ratio(step.cpu_us, our_step_us) : not_measured; }
 
 std::vector<PeerSetting> peer_settings() {
   return {{"rubber.implicit", 3.0e6, 0.45, true},
@@ -27,7 +27,7 @@ const PeerResult* fastest(const std::vector<PeerResult>& peers, const std::strin
   const PeerResult* best = nullptr;
   for (const PeerResult& peer : peers) {
     if (peer.size != size || !peer.valid() || !peer.setting.name.starts_with(begins)) continue;
-    if (best == nullptr || peer.step.wall.p50_us < best->step.wall.p50_us) best = &peer;
+    if (best == nullptr || peer.step.cpu_us < best->step.cpu_us) best = &peer;
   }
   return best;
 }

@@ -29,7 +29,8 @@ struct PeerResult {
 
   /// It computed what it was asked to, and its time may be quoted.
   [[nodiscard]] bool valid() const noexcept { return sound && touching && ticks > 0; }
-  /// NaN unless valid.
+  /// Its thread's own time over our time by the wall clock: its steps are long enough for other processes to come in
+  /// between, ours are not. NaN unless valid.
   [[nodiscard]] double over_step() const noexcept;
 };
 
