@@ -110,7 +110,7 @@ TEST_P(ShippedSceneWithoutHeap, BelowAStep) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedSceneWithoutHeap, testing::ValuesIn(test::shipped_scenes()),
-                         [](const auto& info) { return test::test_name(info.param); });
+                         [](const auto& scene) { return test::test_name(scene.param); });
 
 // The watch itself.
 TEST(NoHeapDeathTest, SeesEveryWayToTheHeap) {

@@ -51,7 +51,7 @@ TEST_P(ShippedScene, GivesEqualBitsAndNoStatus) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedScene, testing::ValuesIn(test::shipped_scenes()),
-                         [](const auto& info) { return test::test_name(info.param); });
+                         [](const auto& scene) { return test::test_name(scene.param); });
 
 TEST(Replay, HashSeesEveryPhysicalChange) {
   const std::uint64_t hash = run(busy(Formulation::corrected)).state_hash;
