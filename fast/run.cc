@@ -43,16 +43,6 @@ std::vector<Tick> ticks_of(const scene::Scene& scene) {
   return ticks;
 }
 
-Percentiles percentiles(std::vector<double> sample_us) {
-  if (sample_us.empty()) return {};
-  std::sort(sample_us.begin(), sample_us.end());
-  const auto at = [&](double part) {
-    const auto rank = static_cast<std::size_t>(std::ceil(part * static_cast<double>(sample_us.size())));
-    return sample_us[std::max<std::size_t>(rank, 1) - 1];
-  };
-  return {at(0.5), at(0.99), at(0.999), sample_us.back()};
-}
-
 /// Hash over every tick's force and the shape after the last.
 class StateHash {
  public:
@@ -108,8 +98,6 @@ scene::InstantRecord record_of(const scene::Scene& scene, const FastModel& model
 }
 
 }  // namespace
-
-std::vector<scene::Fault> unsupported(const scene::Scene&) { return {}; }
 
 std::string status_text(std::uint32_t status) {
   std::string text;

@@ -1,7 +1,7 @@
 // The real-time pipeline over a scene's track in virtual time: what `touchstone fast` does.
 #pragma once
 
-#include "scene/error.h"
+#include "fast/percentiles.h"
 #include "scene/plan.h"
 #include "scene/record.h"
 #include "scene/scene.h"
@@ -14,11 +14,6 @@
 #include <vector>
 
 namespace touchstone::fast {
-
-/// Percentiles of a sample of durations [us].
-struct Percentiles {
-  double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
-};
 
 /// One side's answer over the whole track.
 struct Run {
@@ -40,9 +35,6 @@ struct Run {
 
 /// What the fast model computes for this scene and what it leaves out.
 [[nodiscard]] scene::Plan plan(const scene::Scene& scene);
-
-/// What of the scene this model cannot do; empty when it can.
-[[nodiscard]] std::vector<scene::Fault> unsupported(const scene::Scene& scene);
 
 /// Status bits in words, "ok" for none.
 [[nodiscard]] std::string status_text(std::uint32_t status);

@@ -39,9 +39,6 @@ class StopOnSignal {
 
 int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const std::string& command) {
   const scene::Scene scene = options.load();
-  if (std::vector<scene::Fault> faults = fast::unsupported(scene); !faults.empty()) {
-    throw scene::InputError(std::move(faults));
-  }
   const std::filesystem::path folder = options.folder(scene, "live");
   scene::prepare_result_folder(folder);
   scene::Manifest manifest = scene::make_manifest(scene, command);
