@@ -146,10 +146,5 @@ TEST(Plan, SaysWhatIsModelledAndWhatIsNot) {
   EXPECT_NE(line(compass, "several regions").reason.find("2 at the track's instants"), std::string::npos);
 }
 
-TEST(Unsupported, IsNothingForBoxAndSphereUnderABall) {
-  EXPECT_TRUE(unsupported(test::ball_on_cube()).empty());
-  EXPECT_TRUE(unsupported(test::ball_on_sphere()).empty());
-}
-
 }  // namespace
 }  // namespace touchstone::fast
