@@ -36,9 +36,6 @@ struct Run {
 /// What the fast model computes for this scene and what it leaves out.
 [[nodiscard]] scene::Plan plan(const scene::Scene& scene);
 
-/// Status bits in words, "ok" for none.
-[[nodiscard]] std::string status_text(std::uint32_t status);
-
 /// Runs the whole track at fast.rate_hz. Deterministic but for the timings.
 /// @param progress called now and then with the fraction done; may be empty
 [[nodiscard]] Run run(const scene::Scene& scene, const std::function<void(double)>& progress = {});

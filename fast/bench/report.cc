@@ -1,7 +1,6 @@
 #include "fast/bench/report.h"
 
 #include "fast/bench/statistics.h"
-#include "fast/run.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,6 @@
 #include "fast/live/live_log.h"
 #include "fast/live/replay_device.h"
 #include "fast/live/scripted_device.h"
-#include "fast/run.h"
 #include "scene/error.h"
 
 #include <algorithm>
