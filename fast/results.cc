@@ -1,6 +1,7 @@
 #include "fast/results.h"
 
 #include "fast/command_line.h"
+#include "fast/state.h"
 
 #include <algorithm>
 #include <cstdio>
