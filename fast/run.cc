@@ -97,6 +97,23 @@ scene::InstantRecord record_of(const scene::Scene& scene, const FastModel& model
   return record;
 }
 
+void add_beams(const FastModel& model, const FastState& state, double time_s, std::vector<BeamRecord>& beams) {
+  std::vector<BeamStress> stress(model.skeleton.anchor_m.size());
+  for (std::size_t k = 0; k < static_cast<std::size_t>(state.region_count); ++k) {
+    const ContactRegion& region = state.regions[k];
+    if (!region.pressing()) continue;
+    if (state.several != nullptr) {
+      stress = state.several->stress_pa[k];
+    } else {
+      beam_stresses(model.skeleton, region.ends, stress);
+    }
+    for (std::size_t i = 0; i < stress.size(); ++i) {
+      beams.push_back({time_s, region.id, static_cast<int>(i), model.skeleton.anchor_m[i],
+                       region.ends.displacement_m[i], region.ends.force_n[i], stress[i]});
+    }
+  }
+}
+
 }  // namespace
 
 Run run(const scene::Scene& scene, const std::function<void(double)>& progress) {
@@ -139,6 +156,7 @@ Run run(const scene::Scene& scene, const std::function<void(double)>& progress) 
       run.instants.push_back(record_of(scene, model, state, ticks[k].time_s, pose));
       if (!state.in_contact()) run.instants.back().separation_m = separation.distance_m(pose);
       run.normals.push_back(matrix_of(state.field.normal));
+      add_beams(model, state, ticks[k].time_s, run.beams);
     }
     if (progress && k % report_every == 0) progress(static_cast<double>(k + 1) / static_cast<double>(ticks.size()));
   }
