@@ -10,7 +10,7 @@ constexpr double begins_s = 0.4, ends_s = 1.4;  ///< the way along x
 
 class Slide : public Experiment {
  protected:
-  Slide() {
+  void SetUp() override {
     scene_.compare.instants = 301;  // every 0.1 mm of the way
     for (scene::InstantRecord& instant : in_contact(scene_)) {
       if (instant.time_s <= begins_s + 1e-9) {
@@ -19,6 +19,9 @@ class Slide : public Experiment {
         (instant.regions[0].sliding ? sliding_ : stuck_).push_back(instant);
       }
     }
+    ASSERT_GT(before_.size(), 50u);
+    ASSERT_GT(stuck_.size(), 5u);
+    ASSERT_GT(sliding_.size(), 100u);
   }
   [[nodiscard]] double limit_n(const scene::InstantRecord& instant) const {
     return scene_.contact.friction->K * std::pow(instant.force_n().z(), scene_.contact.friction->beta);
@@ -32,7 +35,6 @@ class Slide : public Experiment {
 };
 
 TEST_P(Slide, PressingAloneGivesNoFriction) {
-  ASSERT_GT(before_.size(), 50u);
   for (const scene::InstantRecord& instant : before_) {
     EXPECT_LT(friction_n(instant), 1e-12 * instant.force_n().z()) << instant.time_s;
     EXPECT_FALSE(instant.regions[0].sliding);
@@ -40,8 +42,6 @@ TEST_P(Slide, PressingAloneGivesNoFriction) {
 }
 
 TEST_P(Slide, SticksUntilTheLimitIsReached) {
-  ASSERT_GT(stuck_.size(), 5u);
-  ASSERT_GT(sliding_.size(), 100u);
   EXPECT_LT(stuck_.back().time_s, sliding_.front().time_s);
   double friction = 0.0;
   for (const scene::InstantRecord& instant : stuck_) {
