@@ -59,13 +59,17 @@ class ContactArea : public Experiment {
 };
 
 TEST_P(ContactArea, SameForceMakesTheHeadShallower) {
+  const auto depth_m = [](const InstantRecord& instant) { return instant.depth_m; };
   for (const double part : {0.2, 0.5, 1.0}) {
     const double force_n = part * tail_.back().force_n().z();
-    const auto depth_m = [](const InstantRecord& instant) { return instant.depth_m; };
     EXPECT_LT(at_force(head_, force_n, depth_m), 0.5 * at_force(tail_, force_n, depth_m)) << force_n;
     EXPECT_LT(at_force(head_, force_n, largest_displacement_m), 0.7 * at_force(tail_, force_n, largest_displacement_m))
         << force_n;
   }
+  const double force_n = tail_.back().force_n().z();
+  record("head_depth_mm", 1e3 * at_force(head_, force_n, depth_m));
+  record("head_displacement_mm", 1e3 * at_force(head_, force_n, largest_displacement_m));
+  record("tail_displacement_mm", 1e3 * largest_displacement_m(tail_.back()));
 }
 
 TEST_P(ContactArea, SameDepthMakesTheHeadsForceLarger) {
@@ -121,13 +125,18 @@ TEST_P(ContactArea, PlainLawDoesNotSeeTheArea) {
     const InstantRecord last = in_contact(scene).back();
     const double D = last.depth_m;
     EXPECT_LT(last.force_n().z(), D * (press.contact.k1_n_per_m + press.contact.k3_n_per_m3 * D * D));
+    record(scene.name, last.force_n().z());
   }
+  record("ball_10_mm", balls[0].force_n().z());
+  record("ball_40_mm", balls[2].force_n().z());
 }
 
 TEST_P(ContactArea, AreaAwareLawGrowsWithTheRadius) {
   const std::vector<InstantRecord> balls = growing_balls(scene("ball-on-cube-press"), head_scene_.contact);
   EXPECT_NEAR(balls[1].force_n().z() / balls[0].force_n().z(), std::sqrt(2.0), 0.1);
   EXPECT_NEAR(balls[2].force_n().z() / balls[0].force_n().z(), 2.0, 0.15);
+  record("ball_10_mm", balls[0].force_n().z());
+  record("ball_40_mm", balls[2].force_n().z());
 }
 
 INSTANTIATE_TEST_SUITE_P(Fig15, ContactArea, both_formulations, formulation_name);

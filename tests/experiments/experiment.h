@@ -23,6 +23,8 @@ class Experiment : public testing::TestWithParam<scene::Formulation> {
     std::erase_if(instants, [](const scene::InstantRecord& instant) { return instant.regions.empty(); });
     return instants;
   }
+  /// A number for reports/experiments.md, into the file of --gtest_output.
+  static void record(const std::string& name, double number) { RecordProperty(name, std::to_string(number)); }
 };
 
 inline std::string formulation_name(const testing::TestParamInfo<scene::Formulation>& info) {
