@@ -17,11 +17,14 @@ class Slide : public Experiment {
         before_.push_back(instant);
       } else if (instant.time_s <= ends_s + 1e-9) {
         (instant.regions[0].sliding ? sliding_ : stuck_).push_back(instant);
+      } else {
+        after_.push_back(instant);
       }
     }
     ASSERT_GT(before_.size(), 50u);
     ASSERT_GT(stuck_.size(), 5u);
     ASSERT_GT(sliding_.size(), 100u);
+    ASSERT_GT(after_.size(), 15u);
   }
   [[nodiscard]] double limit_n(const scene::InstantRecord& instant) const {
     return scene_.contact.friction->K * std::pow(instant.force_n().z(), scene_.contact.friction->beta);
@@ -31,7 +34,7 @@ class Slide : public Experiment {
   }
 
   scene::Scene scene_ = scene("ball-on-cube-slide");
-  std::vector<scene::InstantRecord> before_, stuck_, sliding_;
+  std::vector<scene::InstantRecord> before_, stuck_, sliding_, after_;
 };
 
 TEST_P(Slide, PressingAloneGivesNoFriction) {
@@ -71,6 +74,17 @@ TEST_P(Slide, SlidingFrictionOpposesTheMotionUnderAConstantNormalForce) {
     EXPECT_NEAR(F_t.x(), -mu_D * normal_n, 1e-9 * normal_n) << instant.time_s;
     EXPECT_LT(std::hypot(F_t.y(), F_t.z()), 1e-9 * normal_n) << instant.time_s;
     EXPECT_NEAR(instant.force_n().x(), F_t.x(), 1e-9 * normal_n) << instant.time_s;
+  }
+}
+
+TEST_P(Slide, RestAfterwardsKeepsTheFriction) {
+  const double normal_n = sliding_.back().force_n().z();
+  for (const scene::InstantRecord& instant : after_) {
+    EXPECT_NEAR(instant.force_n().z(), normal_n, 1e-9 * normal_n) << instant.time_s;
+    EXPECT_NEAR(friction_n(instant), friction_n(sliding_.back()), 1e-9 * normal_n) << instant.time_s;
+    // The published form has only the last step's direction, and at rest that is the rounding of the pose (errata E5).
+    if (published()) continue;
+    EXPECT_NEAR(instant.regions[0].friction_n.x(), -friction_n(instant), 1e-9 * normal_n) << instant.time_s;
   }
 }
 
