@@ -54,6 +54,15 @@ FaceAxes face_axes(int patch) noexcept {
 
 bool AnchorPoints::first_between_its_anchors(int) const { return true; }
 
+PatchPlace AnchorPoints::place(int patch, const std::array<double, patch_corners_max>& weight) const noexcept {
+  PatchPlace place{weight};
+  const auto& corner = patches_[static_cast<std::size_t>(patch)];
+  for (std::size_t k = 0; k < corner.size(); ++k) {
+    if (!held_[static_cast<std::size_t>(corner[k])]) place.free += weight[k];
+  }
+  return place;
+}
+
 void AnchorPoints::add(const Vec3& point_m, bool held, AnchorReason reason) {
   points_m_.push_back(point_m);
   held_.push_back(held);
@@ -86,13 +95,10 @@ Vec3 BoxAnchors::halfway_m(int, int i, int j) const {
 
 PatchPlace BoxAnchors::at(int patch, const Vec3& p_m) const noexcept {
   const auto axes = face_axes(patch);
-  const Vec3 place = (p_m - box_.center_m()).cwiseQuotient(box_.half_m());
-  const double u = std::clamp(0.5 * (place[axes.u] + 1.0), 0.0, 1.0);
-  const double v = std::clamp(0.5 * (place[axes.v] + 1.0), 0.0, 1.0);
-  PatchPlace at;
-  at.weight = {(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v};
-  if (patch != bottom_face) at.edge = {u, 1.0 - u, v, 1.0 - v};
-  return at;
+  const Vec3 local = (p_m - box_.center_m()).cwiseQuotient(box_.half_m());
+  const double u = std::clamp(0.5 * (local[axes.u] + 1.0), 0.0, 1.0);
+  const double v = std::clamp(0.5 * (local[axes.v] + 1.0), 0.0, 1.0);
+  return place(patch, {(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v});
 }
 
 EllipsoidAnchors::EllipsoidAnchors(const scene::Sphere& sphere, double support_height_m)
@@ -135,23 +141,13 @@ Vec3 EllipsoidAnchors::halfway_m(int, int i, int j) const {
 PatchPlace EllipsoidAnchors::at(int patch, const Vec3& p_m) const noexcept {
   const Vec3 out = (p_m - center_m_).cwiseAbs().cwiseQuotient(semi_axes_m_);
   const Vec3 barycentric = out / out.sum();
-  PatchPlace at;
-  if ((patch & 4) == 0) {
-    at.weight = {barycentric.x(), barycentric.y(), barycentric.z(), 0.0};
-    at.edge = {barycentric.x(), barycentric.y(), barycentric.z(), 1.0};
-    return at;
-  }
+  if ((patch & 4) == 0) return place(patch, {barycentric.x(), barycentric.y(), barycentric.z(), 0.0});
   const double height_m = p_m.z() - support_height_m_;
   const double equator_m = center_m_.z() - support_height_m_;
   const double ramp = std::clamp(height_m / equator_m, 0.0, 1.0);
   const double equator = barycentric.x() + barycentric.y();
-  at.weight = {0.0, 0.0, 1.0, 0.0};
-  if (ramp > 0.0 && equator > 0.0) {
-    at.weight = {ramp * barycentric.x() / equator, ramp * barycentric.y() / equator, 1.0 - ramp, 0.0};
-    // The patch's edges are its three sides and the support's ring.
-    at.edge = {barycentric.x(), barycentric.y(), barycentric.z(), ramp};
-  }
-  return at;
+  if (!(ramp > 0.0 && equator > 0.0)) return place(patch, {0.0, 0.0, 1.0, 0.0});
+  return place(patch, {ramp * barycentric.x() / equator, ramp * barycentric.y() / equator, 1.0 - ramp, 0.0});
 }
 
 RevolutionAnchors::RevolutionAnchors(const scene::Revolution& revolution, double support_height_m)
@@ -255,14 +251,14 @@ void RevolutionAnchors::place_bands(const std::vector<int>& anchor_of_corner) {
                                               : Kind::band;
     part.low_m = corner_arc_m(low);
     part.high_m = corner_arc_m(high);
-    part.top_m = height_m(k + 1);
     part.band_top_m = height_m(high);
-    part.held = at_or_below_support(part.top_m) || (k == 0 && revolution_.flat_bottom());
-    part.crosses = !part.held && at_or_below_support(height_m(k));
-    part.band_crosses = !at_or_below_support(part.band_top_m) && at_or_below_support(height_m(low));
-    part.rim_m = revolution_.piece(k).length_m;
-    if (part.crosses) part.rim_m = length_m_ - arc_at_height_m(k, support_height_m_);
-    part.band_rim_m = part.high_m - part.low_m;
+    part.crosses = !at_or_below_support(part.band_top_m) && at_or_below_support(height_m(low));
+    part.rim_m = part.high_m - part.low_m;
+    if (part.kind == Kind::cap && part.high < 0 && held_[static_cast<std::size_t>(part.low)]) {
+      int last = low;
+      while (part.crosses && at_or_below_support(height_m(last + 1))) ++last;
+      part.held_rim_m = part.crosses ? length_m_ - arc_at_height_m(last, support_height_m_) : part.rim_m;
+    }
   }
 }
 
@@ -356,43 +352,23 @@ PatchPlace RevolutionAnchors::at(int patch, const Vec3& p_m) const noexcept {
   // From the cap's pole, at the bottom or at the top.
   const double from_pole_m = part.low < 0 ? along_m : length_m_ - along_m;
 
-  PatchPlace at;
   double band = std::clamp((along_m - part.low_m) / (part.high_m - part.low_m), 0.0, 1.0);
-  if (part.band_crosses) band = std::clamp(over_support_m / (part.band_top_m - support_height_m_), 0.0, 1.0);
+  if (part.crosses) band = std::clamp(over_support_m / (part.band_top_m - support_height_m_), 0.0, 1.0);
   switch (part.kind) {
     case Kind::band:
-      at.weight = {(1.0 - band) * (1.0 - phi), (1.0 - band) * phi, band * (1.0 - phi), band * phi};
-      break;
+      return place(patch, {(1.0 - band) * (1.0 - phi), (1.0 - band) * phi, band * (1.0 - phi), band * phi});
     case Kind::sector_down:
-      at.weight = {band * (1.0 - phi), band * phi, 1.0 - band, 0.0};
-      break;
+      return place(patch, {band * (1.0 - phi), band * phi, 1.0 - band, 0.0});
     case Kind::sector_up:
-      at.weight = {(1.0 - band) * (1.0 - phi), (1.0 - band) * phi, band, 0.0};
+      return place(patch, {(1.0 - band) * (1.0 - phi), (1.0 - band) * phi, band, 0.0});
+    case Kind::cap:
       break;
-    case Kind::cap: {
-      const Eigen::Vector2d uv = square(std::min(1.0, from_pole_m / part.band_rim_m));
-      const double u = uv.x(), v = uv.y();
-      at.weight = {u * (1.0 - v), u * v, (1.0 - u) * v, (1.0 - u) * (1.0 - v)};
-      break;
-    }
   }
-
-  if (part.held || (part.crosses && over_support_m <= 0.0)) return at;
-  if (quadrant < 0) {
-    const Eigen::Vector2d uv = square(std::min(1.0, from_pole_m / part.rim_m));
-    at.edge = {uv.x(), 1.0 - uv.x(), uv.y(), 1.0 - uv.y()};
-    return at;
-  }
-  const double up = std::clamp((along_m - part.arc_begin_m) / revolution_.piece(piece).length_m, 0.0, 1.0);
-  const double rise = part.crosses ? std::min(1.0, over_support_m / (part.top_m - support_height_m_)) : up;
-  const bool ends_below = piece == 0, ends_above = piece + 1 == revolution_.piece_count();
-  if (ends_below) {
-    at.edge = {up * (1.0 - phi), up * phi, 1.0 - up, part.crosses ? rise : 1.0};
-  } else if (ends_above) {
-    at.edge = {(1.0 - up) * (1.0 - phi), (1.0 - up) * phi, rise, 1.0};
-  } else {
-    at.edge = {phi, 1.0 - phi, rise, 1.0 - (part.crosses ? rise : up)};
-  }
+  const Eigen::Vector2d uv = square(std::min(1.0, from_pole_m / part.rim_m));
+  const double u = uv.x(), v = uv.y();
+  PatchPlace at = place(patch, {u * (1.0 - v), u * v, (1.0 - u) * v, (1.0 - u) * (1.0 - v)});
+  // All its anchor points are held, and yet it gives in the middle.
+  if (part.held_rim_m > 0.0) at.free = std::max(0.0, 1.0 - from_pole_m / part.held_rim_m);
   return at;
 }
 

@@ -23,22 +23,15 @@ using Lane3 = std::array<Lane, 3>;
 using Several [[gnu::vector_size(32)]] = float;
 constexpr std::size_t lanes_at_once = sizeof(Several) / sizeof(float);
 
-bool on_patch(const ShapeStack& stack, std::size_t k, std::size_t patch) noexcept {
-  return stack.takes_part[k] && static_cast<std::size_t>(stack.region[k].contact.patch) == patch;
-}
-
-/// h_k at a place of the patch that holds p0_k.
-double hat_at(const ShapeStack& stack, std::size_t k, const PatchPlace& place) noexcept {
-  const std::array<double, corners_max>& inverse = stack.inverse_edge[k];
-  return std::min(std::min(place.edge[0] * inverse[0], place.edge[1] * inverse[1]),
-                  std::min(place.edge[2] * inverse[2], place.edge[3] * inverse[3]));
+/// What hat h_k is on a patch.
+const HatPart& hat_of(const ShapeStack& stack, std::size_t k, std::size_t patch) noexcept {
+  return stack.hat[k * stack.patches + patch];
 }
 
 /// h_k(p0_j)
 double hat_at_contact(const ShapeStack& stack, std::size_t k, std::size_t j) noexcept {
   const ContactPoint& at = stack.region[j].contact;
-  return stack.takes_part[j] && on_patch(stack, k, static_cast<std::size_t>(at.patch)) ? hat_at(stack, k, at.place)
-                                                                                       : 0.0;
+  return stack.takes_part[j] ? hat_of(stack, k, static_cast<std::size_t>(at.patch)).at(at.place) : 0.0;
 }
 
 double at_place(const std::array<double, corners_max>& corner, const PatchPlace& place) noexcept {
@@ -59,11 +52,16 @@ Vec3 vector_at(const SurfacePatches& rest, const Displacements& anchor_m, std::s
 }
 
 /// Lays the region on the stack and lets the factorisation grow by its row and column.
-void grow(const RegionShape& region, ShapeStack& stack) noexcept {
+void grow(const SurfacePatches& rest, const RegionShape& region, decltype(hat_part)* part_of,
+          ShapeStack& stack) noexcept {
   const std::size_t i = stack.count++, n = stack.capacity;
   stack.region[i] = region;
   stack.takes_part[i] = region.contact.displacement_m.squaredNorm() > 0.0 && !region.contact.place.held();
-  stack.inverse_edge[i] = Hat::inverse_edges(region.contact.place);
+  const Patch& from = rest.patches[static_cast<std::size_t>(region.contact.patch)];
+  for (std::size_t p = 0; p < stack.patches; ++p) {
+    stack.hat[i * stack.patches + p] =
+        stack.takes_part[i] ? part_of(from, region.contact.place, rest.patches[p]) : HatPart{};
+  }
   std::vector<double>& a = stack.factor;
   for (std::size_t k = 0; k < i; ++k) {
     double below = hat_at_contact(stack, k, i), above = hat_at_contact(stack, i, k);
@@ -94,7 +92,7 @@ void solve(ShapeStack& stack) noexcept {
 }
 
 void add_corrected(const SurfacePatches& rest, const RegionShape& region, ShapeStack& stack) noexcept {
-  grow(region, stack);
+  grow(rest, region, hat_part, stack);
   const std::size_t last = stack.count - 1;
   Vec3* c_m = stack.vector_c_m.data() + last * stack.capacity;
   for (std::size_t j = 0; j <= last; ++j) {
@@ -119,13 +117,13 @@ void add_corrected(const SurfacePatches& rest, const RegionShape& region, ShapeS
 }
 
 void add_published(const SurfacePatches& rest, const RegionShape& region, ShapeStack& stack) noexcept {
-  grow(region, stack);
+  grow(rest, region, hat_part_to_creases, stack);
   const std::size_t last = stack.count - 1;
   ShapeStack::Printed* printed = stack.printed.data() + last * rest.patches.size();
   for (std::size_t p = 0; p < rest.patches.size(); ++p) {
     const Patch& patch = rest.patches[p];
     const auto u = corner_displacements(patch, region.anchor_displacement_m);
-    Vec3 mean_m = on_patch(stack, last, p) ? region.contact.displacement_m : Vec3(Vec3::Zero());
+    Vec3 mean_m = hat_of(stack, last, p).ceiling * region.contact.displacement_m;
     for (std::size_t k = 0; k < patch.corners; ++k) mean_m += u[k];
     printed[p].toward = mean_m.stableNormalized();
     for (std::size_t k = 0; k < corners_max; ++k) {
@@ -157,8 +155,8 @@ TOUCHSTONE_INLINE void raise_hats(const SurfacePatches& rest, std::size_t first,
                                   const VertexBlock& block, ShapeStack& stack) noexcept {
   const auto begin = static_cast<std::size_t>(block.begin), count = static_cast<std::size_t>(block.end) - begin;
   for (std::size_t k = first; k <= last; ++k) {
-    if (!on_patch(stack, k, p)) continue;
-    const Hat hat(rest, stack.inverse_edge[k]);
+    if (!hat_of(stack, k, p).reaches()) continue;
+    const Hat hat(rest, hat_of(stack, k, p));
     float* height = stack.height[k].data();
 #pragma GCC ivdep
     for (std::size_t v = 0; v < count; ++v) height[v] = hat(begin + v);
@@ -195,7 +193,7 @@ struct Published {
 #pragma GCC ivdep
     for (std::size_t v = 0; v < count; ++v) angle[v] = angle_at(begin + v);
     for (std::size_t k = 0; k <= i; ++k) {
-      if (!on_patch(stack, k, p)) continue;
+      if (!hat_of(stack, k, p).reaches()) continue;
       const float* height = stack.height[k].data();
       add(static_cast<float>(stack.length_c_m[i * stack.capacity + k]), height, count, length);
       add(static_cast<float>(stack.angle_c_rad[i * stack.capacity + k]), height, count, angle);
@@ -218,8 +216,8 @@ struct Published {
     const ShapeStack::Printed& here = stack.printed[i * rest.patches.size() + p];
     double length_m = at_place(here.length_m, place), angle_rad = at_place(here.angle_rad, place);
     for (std::size_t k = 0; k <= i; ++k) {
-      if (!on_patch(stack, k, p)) continue;
-      const double height = hat_at(stack, k, place);
+      if (!hat_of(stack, k, p).reaches()) continue;
+      const double height = hat_of(stack, k, p).at(place);
       length_m += height * stack.length_c_m[i * stack.capacity + k];
       angle_rad += height * stack.angle_c_rad[i * stack.capacity + k];
     }
@@ -265,7 +263,7 @@ struct Corrected {
       };
       for (std::size_t k = 0; k < patch.corners; ++k) add_vector(corner[k], stack.corner_weight[k]);
       for (std::size_t k = 0; k <= i; ++k) {
-        if (on_patch(stack, k, p)) add_vector(c_m[k], stack.height[k]);
+        if (hat_of(stack, k, p).reaches()) add_vector(c_m[k], stack.height[k]);
       }
       std::memcpy(out[0].data() + v, &x, sizeof x);
       std::memcpy(out[1].data() + v, &y, sizeof y);
@@ -278,8 +276,8 @@ struct Corrected {
     const auto p = static_cast<std::size_t>(at.patch);
     Vec3 u_m = vector_at(rest, stack.region[i].anchor_displacement_m, p, place);
     for (std::size_t k = 0; k <= i; ++k) {
-      if (!on_patch(stack, k, p)) continue;
-      u_m += hat_at(stack, k, place) * stack.vector_c_m[i * stack.capacity + k];
+      if (!hat_of(stack, k, p).reaches()) continue;
+      u_m += hat_of(stack, k, p).at(place) * stack.vector_c_m[i * stack.capacity + k];
     }
     return u_m;
   }
@@ -289,7 +287,7 @@ struct Corrected {
     const auto p = static_cast<std::size_t>(at.patch);
     Vec3 u_m = vector_at(rest, stack.anchor_total_m, p, place);
     for (std::size_t k = 0; k < stack.count; ++k) {
-      if (on_patch(stack, k, p)) u_m += hat_at(stack, k, place) * stack.vector_total_m[k];
+      if (hat_of(stack, k, p).reaches()) u_m += hat_of(stack, k, p).at(place) * stack.vector_total_m[k];
     }
     return u_m;
   }
@@ -321,19 +319,9 @@ void interpolate_several_corrected(const SurfacePatches& rest, ShapeStack& stack
   interpolate_corrected(rest, stack.anchor_total_m, ContactPoint{}, field);
   float *x = field.displacement_m[0].data(), *y = field.displacement_m[1].data(), *z = field.displacement_m[2].data();
   for (std::size_t k = 0; k < stack.count; ++k) {
-    if (!stack.takes_part[k]) continue;
-    const ContactPoint& contact = stack.region[k].contact;
-    const Patch& patch = rest.patches[static_cast<std::size_t>(contact.patch)];
-    const Hat hat(rest, stack.inverse_edge[k]);
-    const Eigen::Vector3f rise = stack.vector_total_m[k].cast<float>();
-    const auto begin = static_cast<std::size_t>(patch.begin), end = static_cast<std::size_t>(patch.end);
-    // Columns never overlap.
-#pragma GCC ivdep
-    for (std::size_t v = begin; v < end; ++v) {
-      const float height = hat(v);
-      x[v] += height * rise.x();
-      y[v] += height * rise.y();
-      z[v] += height * rise.z();
+    for (std::size_t p = 0; p < stack.patches; ++p) {
+      const HatPart& part = hat_of(stack, k, p);
+      if (part.reaches()) raise(rest, rest.patches[p], part, stack.vector_total_m[k], x, y, z);
     }
   }
 }
@@ -458,10 +446,11 @@ Vec3 displacement_at(const SurfacePatches& rest, const AnchorPoints& anchors, co
 
 ShapeStack::ShapeStack(const SurfacePatches& rest, const AnchorPoints& anchors, int max_regions)
     : capacity(static_cast<std::size_t>(max_regions)),
+      patches(rest.patches.size()),
       region(capacity),
       takes_part(capacity, false),
+      hat(capacity * patches),
       factor(capacity * capacity, 0.0),
-      inverse_edge(capacity),
       right(capacity, 0.0),
       vector_c_m(capacity * capacity, Vec3(Vec3::Zero())),
       vector_c_short_m(capacity * capacity),
@@ -483,10 +472,10 @@ void ShapeStack::clear() noexcept {
 
 std::size_t ShapeStack::memory_bytes() const noexcept {
   return sizeof(ShapeStack) +
-         capacity * (sizeof(RegionShape) + sizeof(Vec3) + 5 * sizeof(double) + sizeof(Lane) + sizeof(Reach) +
+         capacity * (sizeof(RegionShape) + sizeof(Vec3) + sizeof(double) + sizeof(Lane) + sizeof(Reach) +
                      sizeof(std::size_t)) +
          capacity * capacity * (sizeof(Vec3) + sizeof(Eigen::Vector3f) + 3 * sizeof(double)) +
-         anchor_total_m.size() * sizeof(Vec3) + printed.size() * sizeof(Printed);
+         anchor_total_m.size() * sizeof(Vec3) + printed.size() * sizeof(Printed) + hat.size() * sizeof(HatPart);
 }
 
 const SeveralRegions several_regions_published{add_published, interpolate_several_published,

@@ -167,10 +167,9 @@ TEST(RegionShapes, FusedEqualsRegionUponRegion) {
   s.shape(several_regions_corrected, nullptr);
   const auto hat = [&](std::size_t k, int patch, const PatchPlace& place) {
     const ContactPoint& top = s.regions[k].contact;
-    if (top.patch != patch) return 0.0;
-    double height = 1.0;
-    for (std::size_t e = 0; e < 4; ++e) height = std::min(height, place.edge[e] / top.place.edge[e]);
-    return height;
+    const auto& patches = s.model.rest.patches;
+    return hat_part(patches[static_cast<std::size_t>(top.patch)], top.place, patches[static_cast<std::size_t>(patch)])
+        .at(place);
   };
   const auto weighted = [&](std::size_t i, int patch, const PatchPlace& place) {
     Vec3 sum = Vec3::Zero();
