@@ -17,7 +17,7 @@ std::string status_text(std::uint32_t status) {
   add(StepStatus::not_finite, "pose not finite, last good answer held");
   add(StepStatus::depth_limited, "depth limited to half of the body's thickness");
   add(StepStatus::law_saturated, "contact law saturated at its peak");
-  add(StepStatus::regions_full, "more contact regions than fast.max_regions, the newest left out");
+  add(StepStatus::regions_full, "more contact regions than fast.max_regions, the smallest left out");
   add(StepStatus::anchors_limited, "anchor displacement limited to that of the contact (raise fast.s_c_m2)");
   return text.empty() ? "ok" : text;
 }
