@@ -267,12 +267,13 @@ Drawing along_path(const fast::Run& run, const Travel& travel, const std::string
 std::string instant_text(const scene::Scene& scene, const fast::Run& run, std::size_t instant) {
   const InstantRecord& record = run.instants[instant];
   std::string text = fmt::format("{}{}s", number_text(record.time_s), no_break);
+  if (most_regions(run) > 1) text += ", " + contacts_text(record.regions.size());
   if (const auto travel = sideways(run)) {
     text += fmt::format(", {} = {}", axis_names[static_cast<std::size_t>(travel->axis)],
                         quantity_text(record.tool.position_m[travel->axis], "m"));
+  } else {
+    text += fmt::format(", {} deep", quantity_text(record.depth_m, "m"));
   }
-  if (most_regions(run) > 1) text += ", " + contacts_text(record.regions.size());
-  text += fmt::format(", {} deep", quantity_text(record.depth_m, "m"));
   if (scene.contact.friction && !record.regions.empty()) {
     const bool sliding =
         std::any_of(record.regions.begin(), record.regions.end(), [](const auto& r) { return r.sliding; });
@@ -332,7 +333,7 @@ void show_contact(Plot& plot, const Window& window) {
 Drawing sections(const scene::Scene& scene, const fast::Run& run, const std::vector<std::size_t>& instants,
                  const std::string& name, const std::string& title, const std::string& caption,
                  const std::function<void(Plot&, std::size_t)>& show) {
-  const int width_px = instants.size() > 2 ? 380 : 560, height_px = instants.size() > 2 ? 340 : 440;
+  const int width_px = instants.size() > 2 ? 330 : 560, height_px = instants.size() > 2 ? 310 : 440;
   std::vector<std::string> panels;
   for (std::size_t i = 0; i < instants.size(); ++i) {
     const InstantRecord& record = run.instants[instants[i]];

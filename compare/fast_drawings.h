@@ -31,9 +31,9 @@ struct Drawing {
 /// middle one of them, or that with most regions.
 [[nodiscard]] std::vector<Drawing> shape_drawings(const scene::Scene& scene, const fast::Run& run);
 
-/// Instants worth a section: where the number of regions changes, of the six longest stages that where its
-/// shallowest region is deepest; where the tool travels
-/// sideways while pressed, both ends and the middle of its way; else the deepest. Of equal ones the last.
+/// Instants worth a section. Several regions at a time: of the six longest stages with one number of regions, that
+/// where the shallowest is deepest. Else where the tool travels sideways while pressed, both ends and the middle of its
+/// way. Else the deepest. Of equal ones the last.
 [[nodiscard]] std::vector<std::size_t> instants_shown(const fast::Run& run);
 
 /// Stretches of time "stuck" and "sliding"; an instant stands for the time nearer to it than to its neighbours. Several
