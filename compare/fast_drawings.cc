@@ -66,6 +66,10 @@ Vec3 friction_n(const InstantRecord& record) {
 
 Vec3 normal_n(const InstantRecord& record) { return record.force_n() - friction_n(record); }
 
+bool slides(const InstantRecord& record) {
+  return std::any_of(record.regions.begin(), record.regions.end(), [](const RegionRecord& r) { return r.sliding; });
+}
+
 /// Null while there is no region of this id.
 const RegionRecord* find_region(const InstantRecord& record, int id) {
   const auto found =
@@ -122,9 +126,18 @@ std::vector<Stage> stages_of(const fast::Run& run) {
   return stages;
 }
 
-/// Past what may be the way down.
-bool is_pressed(const fast::Run& run, const InstantRecord& record) {
-  return !record.regions.empty() && record.depth_m >= 0.9 * run.instants[deepest_of(run)].depth_m;
+/// Instants in contact past what may be the way down.
+std::vector<std::size_t> pressed_instants(const fast::Run& run) {
+  const double least_m = 0.9 * run.instants[deepest_of(run)].depth_m;
+  std::vector<std::size_t> pressed;
+  for (std::size_t t = 0; t < run.instants.size(); ++t) {
+    if (!run.instants[t].regions.empty() && run.instants[t].depth_m >= least_m) pressed.push_back(t);
+  }
+  return pressed;
+}
+
+double size_m(const scene::Surface& surface) {
+  return (surface.points_m.rowwise().maxCoeff() - surface.points_m.rowwise().minCoeff()).maxCoeff();
 }
 
 /// The tool's way along the world axis it travels farthest while pressed.
@@ -134,25 +147,19 @@ struct Travel {
 };
 
 std::optional<Travel> sideways(const fast::Run& run) {
-  std::array<double, 2> low_m, high_m;
-  low_m.fill(std::numeric_limits<double>::infinity());
-  high_m.fill(-std::numeric_limits<double>::infinity());
-  for (const InstantRecord& record : run.instants) {
-    if (!is_pressed(run, record)) continue;
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      low_m[axis] = std::min(low_m[axis], record.tool.position_m[static_cast<Eigen::Index>(axis)]);
-      high_m[axis] = std::max(high_m[axis], record.tool.position_m[static_cast<Eigen::Index>(axis)]);
-    }
+  Vec3 low_m = Vec3::Constant(std::numeric_limits<double>::infinity()), high_m = -low_m;
+  for (const std::size_t t : pressed_instants(run)) {
+    low_m = low_m.cwiseMin(run.instants[t].tool.position_m);
+    high_m = high_m.cwiseMax(run.instants[t].tool.position_m);
   }
-  const std::size_t axis = high_m[0] - low_m[0] >= high_m[1] - low_m[1] ? 0 : 1;
-  const Vec3 body_m = run.surface.points_m.rowwise().maxCoeff() - run.surface.points_m.rowwise().minCoeff();
-  if (!(high_m[axis] - low_m[axis] > 0.01 * body_m.maxCoeff())) return std::nullopt;
-  return Travel{static_cast<int>(axis), low_m[axis], high_m[axis]};
+  const int axis = high_m.x() - low_m.x() >= high_m.y() - low_m.y() ? 0 : 1;
+  if (!(high_m[axis] - low_m[axis] > 0.01 * size_m(run.surface))) return std::nullopt;
+  return Travel{axis, low_m[axis], high_m[axis]};
 }
 
 constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
 
-std::string contacts_text(std::size_t count) { return fmt::format("{} contact{}", count, count == 1 ? "" : "s"); }
+std::string regions_text(std::size_t count) { return fmt::format("{} region{}", count, count == 1 ? "" : "s"); }
 
 /// Adjacent instants of one name as one span, from midway to midway; an empty name is none.
 std::vector<Span> spans_by(const fast::Run& run, const std::function<std::string(const InstantRecord&)>& name,
@@ -174,9 +181,9 @@ std::vector<Span> spans_by(const fast::Run& run, const std::function<std::string
   return spans;
 }
 
-std::vector<Span> contact_spans(const fast::Run& run) {
+std::vector<Span> region_spans(const fast::Run& run) {
   return spans_by(
-      run, [](const InstantRecord& r) { return r.regions.empty() ? "" : contacts_text(r.regions.size()); },
+      run, [](const InstantRecord& r) { return r.regions.empty() ? "" : regions_text(r.regions.size()); },
       [](const InstantRecord& r) { return std::min(0.06 * static_cast<double>(r.regions.size()), 0.4); });
 }
 
@@ -267,18 +274,14 @@ Drawing along_path(const fast::Run& run, const Travel& travel, const std::string
 std::string instant_text(const scene::Scene& scene, const fast::Run& run, std::size_t instant) {
   const InstantRecord& record = run.instants[instant];
   std::string text = fmt::format("{}{}s", number_text(record.time_s), no_break);
-  if (most_regions(run) > 1) text += ", " + contacts_text(record.regions.size());
+  if (most_regions(run) > 1) text += ", " + regions_text(record.regions.size());
   if (const auto travel = sideways(run)) {
     text += fmt::format(", {} = {}", axis_names[static_cast<std::size_t>(travel->axis)],
                         quantity_text(record.tool.position_m[travel->axis], "m"));
   } else {
     text += fmt::format(", {} deep", quantity_text(record.depth_m, "m"));
   }
-  if (scene.contact.friction && !record.regions.empty()) {
-    const bool sliding =
-        std::any_of(record.regions.begin(), record.regions.end(), [](const auto& r) { return r.sliding; });
-    text += sliding ? ", sliding" : ", stuck";
-  }
+  if (scene.contact.friction && !record.regions.empty()) text += slides(record) ? ", sliding" : ", stuck";
   return text;
 }
 
@@ -320,7 +323,8 @@ Window contact_window(const scene::Scene& scene, const scene::Surface& surface, 
     }
   }
   if (!(low_m.x() <= high_m.x())) low_m = high_m = body->query(record.tool.position_m).point_m;
-  return {0.5 * (low_m.x() + high_m.x()), high_m.z(), std::max(0.85 * (high_m.x() - low_m.x()), 2.5 * record.depth_m)};
+  return {0.5 * (low_m.x() + high_m.x()), high_m.z(),
+          std::max({0.85 * (high_m.x() - low_m.x()), 2.5 * record.depth_m, 0.01 * size_m(surface)})};
 }
 
 void show_contact(Plot& plot, const Window& window) {
@@ -381,15 +385,11 @@ const std::vector<std::string>& drawing_names() {
 }
 
 std::vector<Span> friction_spans(const fast::Run& run) {
-  const auto slides = [](const InstantRecord& record) {
-    return std::any_of(record.regions.begin(), record.regions.end(), [](const RegionRecord& r) { return r.sliding; });
+  const auto state = [](const InstantRecord& record) -> std::string {
+    if (record.regions.empty()) return "";
+    return slides(record) ? "sliding" : "stuck";
   };
-  return spans_by(
-      run,
-      [&](const InstantRecord& r) -> std::string { return r.regions.empty() ? ""
-                                                          : slides(r)       ? "sliding"
-                                                                            : "stuck"; },
-      [&](const InstantRecord& r) { return slides(r) ? 0.16 : 0.06; });
+  return spans_by(run, state, [](const InstantRecord& record) { return slides(record) ? 0.16 : 0.06; });
 }
 
 std::vector<Drawing> force_drawings(const scene::Scene& scene, const fast::Run& run) {
@@ -416,7 +416,7 @@ std::vector<Drawing> force_drawings(const scene::Scene& scene, const fast::Run& 
   if (most_regions(run) > 1) {
     Plot plot = over_time(run, "Normal force of each region", force_label(run, "normal force"));
     add_regions(plot, run, region_time_s, normal_force);
-    plot.spans = contact_spans(run);
+    plot.spans = region_spans(run);
     out.push_back(drawing("regions", "Regions as they are numbered in curve.csv.", plot));
   }
   if (travel) {
@@ -445,7 +445,6 @@ std::vector<Drawing> force_drawings(const scene::Scene& scene, const fast::Run& 
 }
 
 std::vector<std::size_t> instants_shown(const fast::Run& run) {
-  const std::size_t count = run.instants.size();
   if (most_regions(run) > 1) {
     std::vector<Stage> stages = stages_of(run);
     const auto is_longer = [](const Stage& a, const Stage& b) { return a.to - a.from > b.to - b.from; };
@@ -457,15 +456,16 @@ std::vector<std::size_t> instants_shown(const fast::Run& run) {
     return found;
   }
   if (const auto travel = sideways(run)) {
+    const std::vector<std::size_t> pressed = pressed_instants(run);
     std::vector<std::size_t> found;
     for (const double share : {0.0, 0.5, 1.0}) {
       const double wanted_m = travel->from_m + share * (travel->to_m - travel->from_m);
       const auto distance_m = [&](std::size_t t) {
         return std::abs(run.instants[t].tool.position_m[travel->axis] - wanted_m);
       };
-      std::size_t nearest = deepest_of(run);
-      for (std::size_t t = 0; t < count; ++t) {
-        if (is_pressed(run, run.instants[t]) && distance_m(t) <= distance_m(nearest) + 1e-9) nearest = t;
+      std::size_t nearest = pressed.front();
+      for (const std::size_t t : pressed) {
+        if (distance_m(t) <= distance_m(nearest) + 1e-9) nearest = t;
       }
       found.push_back(nearest);
     }
@@ -476,11 +476,10 @@ std::vector<std::size_t> instants_shown(const fast::Run& run) {
 
 std::vector<Drawing> shape_drawings(const scene::Scene& scene, const fast::Run& run) {
   const std::vector<std::size_t> shown = instants_shown(run);
-  std::size_t most = shown[shown.size() / 2];
-  for (const std::size_t t : shown) {
-    if (run.instants[t].regions.size() > run.instants[most].regions.size()) most = t;
-  }
-  std::vector<Drawing> out;
+  std::vector<Drawing> out = {sections(scene, run, shown, "section", "The whole section",
+                                       "At the tool's centre; true scale.",
+                                       [&](Plot& plot, std::size_t) { show_whole(plot, run.surface); })};
+  if (most_regions(run) == 0) return out;
   std::vector<Window> windows;
   double widest_m = 0.0;
   for (const std::size_t t : shown) {
@@ -488,12 +487,15 @@ std::vector<Drawing> shape_drawings(const scene::Scene& scene, const fast::Run& 
     widest_m = std::max(widest_m, windows.back().half_m);
   }
   for (Window& window : windows) window.half_m = widest_m;
-  out.push_back(sections(scene, run, shown, "section", "The whole section", "At the tool's centre; true scale.",
-                         [&](Plot& plot, std::size_t) { show_whole(plot, run.surface); }));
   out.push_back(sections(scene, run, shown, "contact", "Around the contact",
                          "The same nearer; between the surface's points it is drawn straight.",
                          [&](Plot& plot, std::size_t i) { show_contact(plot, windows[i]); }));
   out.push_back(dent(scene, run, shown));
+
+  std::size_t most = shown[shown.size() / 2];
+  for (const std::size_t t : shown) {
+    if (run.instants[t].regions.size() > run.instants[most].regions.size()) most = t;
+  }
   out.push_back(
       {"view",
        "Cut in half at the tool's centre; the grey area is the tool's cut. True proportions, displacements not "

@@ -27,8 +27,8 @@ struct Drawing {
 /// "path", with friction also "friction-path".
 [[nodiscard]] std::vector<Drawing> force_drawings(const scene::Scene& scene, const fast::Run& run);
 
-/// "section" of the whole body and around the "contact" at instants_shown(), the "dent" in it; "view" in space at the
-/// middle one of them, or that with most regions.
+/// "section" of the whole body at instants_shown(); where the tool ever touches it also around the "contact", the
+/// "dent" in the section, and a "view" in space at the middle instant or that with most regions.
 [[nodiscard]] std::vector<Drawing> shape_drawings(const scene::Scene& scene, const fast::Run& run);
 
 /// Instants worth a section. Several regions at a time: of the six longest stages with one number of regions, that

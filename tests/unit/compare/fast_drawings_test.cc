@@ -86,6 +86,16 @@ TEST(FastDrawings, OfAPressHaveNothingTheSceneHasNot) {
 TEST(FastDrawings, OfATrackWithoutContactAreOfTheShapeOnly) {
   const testing::Sides sides = with_regions("0000");
   EXPECT_TRUE(force_drawings(sides.scene, sides.run).empty());
+  EXPECT_THAT(names_of(shape_drawings(sides.scene, sides.run)), ElementsAre("section"));
+}
+
+TEST(FastDrawings, OfAGrazingContactShowSomethingOfItsSurroundings) {
+  testing::Sides sides = with_regions("0101");
+  for (InstantRecord& record : sides.run.instants) {
+    record.tool.position_m.z() = 0.0701;
+    record.depth_m = 0.0;
+    for (auto& r : record.regions) r.depth_m = 0.0;
+  }
   for (const Drawing& drawing : shape_drawings(sides.scene, sides.run)) {
     EXPECT_TRUE(testing::is_well_formed(drawing.svg)) << drawing.name;
     EXPECT_FALSE(testing::shows_not_a_number(drawing.svg)) << drawing.name;
@@ -164,9 +174,10 @@ TEST(FastDrawings, HaveACurvePerRegion) {
     EXPECT_EQ(count(svg, ">region 3</text>"), 0u) << name;
     EXPECT_EQ(curves(svg), 3u) << name;
   }
-  for (const char* legend : {">1 contact</text>", ">2 contacts</text>", ">3 contacts</text>"}) {
+  for (const char* legend : {">1 region</text>", ">2 regions</text>", ">3 regions</text>"}) {
     EXPECT_EQ(count(svg_of(drawings, "regions"), legend), 1u) << legend;
   }
+  EXPECT_EQ(count(svg_of(drawings, "regions"), ">0 regions</text>"), 0u);
   EXPECT_EQ(svg_of(force_drawings(sides.scene, with_regions("01110").run), "regions"), "");
 }
 
