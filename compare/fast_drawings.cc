@@ -327,6 +327,27 @@ Window contact_window(const scene::Scene& scene, const scene::Surface& surface, 
           std::max({0.85 * (high_m.x() - low_m.x()), 2.5 * record.depth_m, 0.01 * size_m(surface)})};
 }
 
+/// Of one scale at all instants; with several regions at a time also of one place.
+std::vector<Window> contact_windows(const scene::Scene& scene, const fast::Run& run,
+                                    const std::vector<std::size_t>& instants) {
+  std::vector<Window> windows;
+  for (const std::size_t t : instants) windows.push_back(contact_window(scene, run.surface, run.instants[t]));
+  Window widest = windows[0];
+  double low_m = widest.x_m, high_m = widest.x_m;
+  for (const Window& window : windows) {
+    low_m = std::min(low_m, window.x_m - window.half_m);
+    high_m = std::max(high_m, window.x_m + window.half_m);
+    widest.top_m = std::max(widest.top_m, window.top_m);
+    widest.half_m = std::max(widest.half_m, window.half_m);
+  }
+  if (most_regions(run) > 1) {
+    const Window all{0.5 * (low_m + high_m), widest.top_m, 0.5 * (high_m - low_m)};
+    return std::vector<Window>(windows.size(), all);
+  }
+  for (Window& window : windows) window.half_m = widest.half_m;
+  return windows;
+}
+
 void show_contact(Plot& plot, const Window& window) {
   plot.x_range = {1e3 * (window.x_m - window.half_m), 1e3 * (window.x_m + window.half_m)};
   plot.y_range = {1e3 * (window.top_m - 0.75 * window.half_m), 1e3 * (window.top_m + 0.5 * window.half_m)};
@@ -356,6 +377,7 @@ Drawing dent(const scene::Scene& scene, const fast::Run& run, const std::vector<
   plot.title = "Dent in the section";
   plot.x_label = "x at rest [mm]";
   plot.y_label = "displacement upwards [mm]";
+  double low_mm = 0.0, high_mm = 0.0;
   for (std::size_t i = 0; i < instants.size(); ++i) {
     const InstantRecord& record = run.instants[instants[i]];
     std::vector<std::pair<double, double>> points_mm;
@@ -370,9 +392,12 @@ Drawing dent(const scene::Scene& scene, const fast::Run& run, const std::vector<
     for (const auto& [x_mm, up_mm] : points_mm) {
       curve.x.push_back(x_mm);
       curve.y.push_back(up_mm);
+      low_mm = std::min(low_mm, up_mm);
+      high_mm = std::max(high_mm, up_mm);
     }
     plot.curves.push_back(std::move(curve));
   }
+  if (low_mm < high_mm) plot.y_range = {1.06 * low_mm, 1.06 * high_mm};
   return drawing("dent", "Of the upper side; heights exaggerated.", plot);
 }
 
@@ -480,13 +505,7 @@ std::vector<Drawing> shape_drawings(const scene::Scene& scene, const fast::Run& 
                                        "At the tool's centre; true scale.",
                                        [&](Plot& plot, std::size_t) { show_whole(plot, run.surface); })};
   if (most_regions(run) == 0) return out;
-  std::vector<Window> windows;
-  double widest_m = 0.0;
-  for (const std::size_t t : shown) {
-    windows.push_back(contact_window(scene, run.surface, run.instants[t]));
-    widest_m = std::max(widest_m, windows.back().half_m);
-  }
-  for (Window& window : windows) window.half_m = widest_m;
+  const std::vector<Window> windows = contact_windows(scene, run, shown);
   out.push_back(sections(scene, run, shown, "contact", "Around the contact",
                          "The same nearer; between the surface's points it is drawn straight.",
                          [&](Plot& plot, std::size_t i) { show_contact(plot, windows[i]); }));

@@ -190,6 +190,40 @@ TEST(FastDrawings, ShowEachStageOfSeveralRegions) {
       << "three panels with three names each";
 }
 
+/// Ticks along x of every panel of a drawing.
+std::vector<std::string> x_ticks(const std::string& svg) {
+  static const std::regex pattern("text-anchor=\"middle\" fill=\"currentColor\">([−0-9.]+)<");
+  std::vector<std::string> panels;
+  for (std::size_t at = svg.find("translate(0 0)"); at != std::string::npos;) {
+    const std::size_t next = svg.find("</svg>\n</g>", at);
+    const std::string panel = svg.substr(at, next - at);
+    std::string ticks;
+    for (std::sregex_iterator it(panel.begin(), panel.end(), pattern), end; it != end; ++it)
+      ticks += (*it)[1].str() + " ";
+    if (!ticks.empty()) panels.push_back(ticks);
+    at = next == std::string::npos ? next : next + 1;
+  }
+  return panels;
+}
+
+TEST(FastDrawings, ShowSeveralRegionsAtOnePlaceAndATravellingToolWhereItIs) {
+  testing::Sides sides = with_regions("0112222100");
+  for (std::size_t t = 0; t < 10; ++t) sides.run.instants[t].tool.position_m.x() = t < 5 ? -0.005 : 0.005;
+  const auto regions = x_ticks(svg_of(shape_drawings(sides.scene, sides.run), "contact"));
+  ASSERT_EQ(regions.size(), 3u);
+  EXPECT_EQ(regions[0], regions[1]);
+  EXPECT_EQ(regions[0], regions[2]);
+  sides = with_regions("11111");
+  for (std::size_t t = 0; t < 5; ++t) {
+    sides.run.instants[t].depth_m = 0.002;
+    sides.run.instants[t].tool.position_m = Vec3(0.004 * static_cast<double>(t), 0.0, 0.068);
+  }
+  const auto places = x_ticks(svg_of(shape_drawings(sides.scene, sides.run), "contact"));
+  ASSERT_EQ(places.size(), 3u);
+  EXPECT_NE(places[0], places[1]);
+  EXPECT_NE(places[1], places[2]);
+}
+
 TEST(FastDrawings, ShowNoMoreStagesThanAnyoneLooksAt) {
   const testing::Sides sides = with_regions("1212121212112222");
   const std::vector<std::size_t> shown = instants_shown(sides.run);
