@@ -5,6 +5,7 @@
 #include "compare/page.h"
 #include "compare/text.h"
 #include "fast/results.h"
+#include "fast/state.h"
 
 #include <fmt/format.h>
 
@@ -64,7 +65,8 @@ std::string fast_report_html(const scene::Scene& scene, const fast::Run& run, co
   out += tag("h2", "What the fast model computes of the scene") + "\n" + plan_table(fast::plan(scene));
   out += manifest_section(manifest,
                           "Beside this page: the drawings as SVG files, summary.json (these figures), curve.csv (every "
-                          "instant), manifest.json, and surface.pvd for ParaView, where the filter Warp By Vector with "
+                          "instant), beams.csv (every beam end), manifest.json, and surface.pvd for ParaView, where "
+                          "the filter Warp By Vector with "
                           "displacement_m shows the deformed body.");
   return page(scene_title(scene), out);
 }

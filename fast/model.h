@@ -36,7 +36,7 @@ struct Formulas {
 /// The constant part of the fast model.
 struct FastModel {
   /// Allocates and precomputes; throws std::bad_alloc only.
-  /// @param scene validated, and without unsupported() faults
+  /// @param scene validated
   explicit FastModel(const scene::Scene& scene);
 
   std::unique_ptr<const scene::Shape> body;  ///< rest shape

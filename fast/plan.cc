@@ -137,8 +137,8 @@ scene::Plan plan(const scene::Scene& scene) {
     leaves_out("friction", "the scene has no [contact.friction]; the force is along the direction of deformation");
   }
   models("beam skeleton",
-         text("%d beams, %d of them ending on the support, anchor points: ", static_cast<int>(model.skeleton.anchor_m.size()),
-              static_cast<int>(held)) +
+         text("%d beams, %d of them ending on the support, anchor points: ",
+              static_cast<int>(model.skeleton.anchor_m.size()), static_cast<int>(held)) +
              anchors_text(*model.anchors) + "; force split " + printed,
          measured.cost({Stage::skeleton}));
   if (!scene.body.inclusions.empty()) {

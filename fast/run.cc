@@ -43,16 +43,6 @@ std::vector<Tick> ticks_of(const scene::Scene& scene) {
   return ticks;
 }
 
-Percentiles percentiles(std::vector<double> sample_us) {
-  if (sample_us.empty()) return {};
-  std::sort(sample_us.begin(), sample_us.end());
-  const auto at = [&](double part) {
-    const auto rank = static_cast<std::size_t>(std::ceil(part * static_cast<double>(sample_us.size())));
-    return sample_us[std::max<std::size_t>(rank, 1) - 1];
-  };
-  return {at(0.5), at(0.99), at(0.999), sample_us.back()};
-}
-
 /// Hash over every tick's force and the shape after the last.
 class StateHash {
  public:
@@ -107,23 +97,24 @@ scene::InstantRecord record_of(const scene::Scene& scene, const FastModel& model
   return record;
 }
 
-}  // namespace
-
-std::vector<scene::Fault> unsupported(const scene::Scene&) { return {}; }
-
-std::string status_text(std::uint32_t status) {
-  std::string text;
-  const auto add = [&](StepStatus bit, const char* words) {
-    if ((status & static_cast<std::uint32_t>(bit)) == 0) return;
-    text += (text.empty() ? "" : ", ") + std::string(words);
-  };
-  add(StepStatus::not_finite, "pose not finite, last good answer held");
-  add(StepStatus::depth_limited, "depth limited to half of the body's thickness");
-  add(StepStatus::law_saturated, "contact law saturated at its peak");
-  add(StepStatus::regions_full, "more contact regions than fast.max_regions, the newest left out");
-  add(StepStatus::anchors_limited, "anchor displacement limited to that of the contact (raise fast.s_c_m2)");
-  return text.empty() ? "ok" : text;
+void add_beams(const FastModel& model, const FastState& state, double time_s, std::vector<BeamRecord>& beams) {
+  std::vector<BeamStress> stress(model.skeleton.anchor_m.size());
+  for (std::size_t k = 0; k < static_cast<std::size_t>(state.region_count); ++k) {
+    const ContactRegion& region = state.regions[k];
+    if (!region.pressing()) continue;
+    if (state.several != nullptr) {
+      stress = state.several->stress_pa[k];
+    } else {
+      beam_stresses(model.skeleton, region.ends, stress);
+    }
+    for (std::size_t i = 0; i < stress.size(); ++i) {
+      beams.push_back({time_s, region.id, static_cast<int>(i), model.skeleton.anchor_m[i],
+                       region.ends.displacement_m[i], region.ends.force_n[i], stress[i]});
+    }
+  }
 }
+
+}  // namespace
 
 Run run(const scene::Scene& scene, const std::function<void(double)>& progress) {
   const Clock::time_point start = Clock::now();
@@ -165,6 +156,7 @@ Run run(const scene::Scene& scene, const std::function<void(double)>& progress) 
       run.instants.push_back(record_of(scene, model, state, ticks[k].time_s, pose));
       if (!state.in_contact()) run.instants.back().separation_m = separation.distance_m(pose);
       run.normals.push_back(matrix_of(state.field.normal));
+      add_beams(model, state, ticks[k].time_s, run.beams);
     }
     if (progress && k % report_every == 0) progress(static_cast<double>(k + 1) / static_cast<double>(ticks.size()));
   }

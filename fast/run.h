@@ -1,7 +1,8 @@
 // The real-time pipeline over a scene's track in virtual time: what `touchstone fast` does.
 #pragma once
 
-#include "scene/error.h"
+#include "fast/beam_stress.h"
+#include "fast/percentiles.h"
 #include "scene/plan.h"
 #include "scene/record.h"
 #include "scene/scene.h"
@@ -15,9 +16,15 @@
 
 namespace touchstone::fast {
 
-/// Percentiles of a sample of durations [us].
-struct Percentiles {
-  double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
+/// What a contact region does to one beam end at one instant.
+struct BeamRecord {
+  double time_s = 0.0;
+  int region_id = 0;
+  int anchor = 0;              ///< of AnchorPoints::points_m
+  scene::Vec3 anchor_m;        ///< at rest, world
+  scene::Vec3 displacement_m;  ///< world; zero where held
+  scene::Vec3 force_n;         ///< F_i, on the beam at its other end, world
+  BeamStress end;              ///< all zero where the region only keeps its place
 };
 
 /// One side's answer over the whole track.
@@ -25,6 +32,7 @@ struct Run {
   scene::Surface surface;                      ///< rest surface; its points are the rest points of the records
   std::vector<scene::InstantRecord> instants;  ///< at scene::instants_s
   std::vector<Eigen::Matrix3Xd> normals;       ///< per instant, current unit normals at the rest points
+  std::vector<BeamRecord> beams;               ///< per instant, pressing region and anchor point
   Percentiles step;                            ///< whole step, wall clock, over all ticks of the track
   Percentiles force;                           ///< detection to published force, ticks in contact only
   double setup_s = 0.0;                        ///< building the model
@@ -40,12 +48,6 @@ struct Run {
 
 /// What the fast model computes for this scene and what it leaves out.
 [[nodiscard]] scene::Plan plan(const scene::Scene& scene);
-
-/// What of the scene this model cannot do; empty when it can.
-[[nodiscard]] std::vector<scene::Fault> unsupported(const scene::Scene& scene);
-
-/// Status bits in words, "ok" for none.
-[[nodiscard]] std::string status_text(std::uint32_t status);
 
 /// Runs the whole track at fast.rate_hz. Deterministic but for the timings.
 /// @param progress called now and then with the fraction done; may be empty

@@ -214,6 +214,7 @@ OrderSpread order_spread(const FastModel& model, FastState& state) {
   // Everything is put back afterwards.
   const std::vector<ContactRegion> regions = state.regions;
   const ShapeStack shapes = several.shapes;
+  const std::vector<std::vector<BeamStress>> stress_pa = several.stress_pa;
   const Motion still{state.pose, placement(state.pose), state.pose, true};
   const auto count = static_cast<std::size_t>(state.region_count);
   // No region is new any more: directions and friction stay as they are.
@@ -252,6 +253,7 @@ OrderSpread order_spread(const FastModel& model, FastState& state) {
   std::copy(created.begin(), created.end(), several.order.begin());
   std::copy(regions.begin(), regions.end(), state.regions.begin());
   several.shapes = shapes;
+  several.stress_pa = stress_pa;
   several.ends.update(model.skeleton, shapes.anchor_total_m);
   return spread;
 }

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace touchstone::fast {
@@ -27,6 +28,9 @@ enum class StepStatus : std::uint32_t {
   return static_cast<StepStatus>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
 }
 constexpr StepStatus& operator|=(StepStatus& a, StepStatus b) noexcept { return a = a | b; }
+
+/// Status bits in words, "ok" for none.
+[[nodiscard]] std::string status_text(std::uint32_t status);
 
 struct SeveralRegionsState;
 

@@ -1,12 +1,10 @@
 #include "fast/step.h"
 
+#include "fast/flush_tiny_numbers.h"
 #include "fast/press.h"
 #include "fast/several_regions.h"
 
 #include <cmath>
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#endif
 
 namespace touchstone::fast {
 namespace {
@@ -18,21 +16,6 @@ bool finite(const Pose& pose) noexcept {
   const double length = pose.orientation.norm();
   return pose.position_m.allFinite() && std::isfinite(length) && length > 0.0;
 }
-
-/// Takes numbers too small for full precision as zero while it lives: they cost a hundred times a normal one, and a
-/// surface at rest in some direction is full of them.
-class FlushTinyNumbers {
- public:
-#if defined(__SSE__)
-  FlushTinyNumbers() noexcept : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040u); }
-  ~FlushTinyNumbers() { _mm_setcsr(before_); }
-  FlushTinyNumbers(const FlushTinyNumbers&) = delete;
-  FlushTinyNumbers& operator=(const FlushTinyNumbers&) = delete;
-
- private:
-  unsigned before_;
-#endif
-};
 
 /// The whole tool in one region.
 StepStatus press_one_region(const FastModel& model, const Motion& motion, FastState& state) noexcept {

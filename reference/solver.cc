@@ -422,7 +422,8 @@ scene::Plan plan(const Scene& scene) {
                                   : "fewer than three levels: unknown, reported as infinite");
   for (int level = 0; level < scene.reference.levels; ++level) {
     std::ostringstream size;
-    size << "cells of " << std::setprecision(3) << 1e3 * element_size_m(scene, level) << " mm at the deepest contact's rim";
+    size << "cells of " << std::setprecision(3) << 1e3 * element_size_m(scene, level)
+         << " mm at the deepest contact's rim";
     add(("level " + std::to_string(level + 1)).c_str(), true, size.str(), expected_unknowns(scene, choice, level));
   }
   return plan;

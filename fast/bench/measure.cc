@@ -46,7 +46,7 @@ class Measurement {
       fast::step(model_, pose, state_);
       step_us.push_back(us_between(begin, Clock::now()));
     }
-    return percentile_us(std::move(step_us), 0.5);
+    return fast::percentile_us(std::move(step_us), 0.5);
   }
 
   void step_block(int ticks, CaseResult& result) {
@@ -111,11 +111,11 @@ class Measurement {
 
   void finish(CaseResult& result) {
     result.ticks = static_cast<int>(samples_.step_us.size());
-    result.step = {percentiles(std::move(samples_.step_us)), median(std::move(samples_.step_cpu_us))};
-    result.floor = {percentiles(std::move(samples_.floor_us)), median(std::move(samples_.floor_cpu_us))};
-    result.force = percentiles(std::move(samples_.force_us));
+    result.step = {fast::percentiles(std::move(samples_.step_us)), median(std::move(samples_.step_cpu_us))};
+    result.floor = {fast::percentiles(std::move(samples_.floor_us)), median(std::move(samples_.floor_cpu_us))};
+    result.force = fast::percentiles(std::move(samples_.force_us));
     for (std::size_t s = 0; s < fast::stage_count; ++s) {
-      result.stages[s] = percentiles(std::move(samples_.stage_us[s]));
+      result.stages[s] = fast::percentiles(std::move(samples_.stage_us[s]));
     }
     result.instructions = median(std::move(samples_.instructions));
     result.cycles = median(std::move(samples_.cycles));

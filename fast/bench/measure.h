@@ -3,7 +3,7 @@
 
 #include "fast/bench/counters.h"
 #include "fast/bench/workload.h"
-#include "fast/run.h"
+#include "fast/percentiles.h"
 #include "fast/stage_clock.h"
 
 #include <array>

@@ -112,7 +112,7 @@ PeerResult measure_setting(const std::string& size, const PeerSetting& setting, 
   result.dent_m = peer.dent_m();
   result.touching = 2 * touching_ticks >= result.ticks && !pierced && result.dent_m > 0.7 * result.depth_m &&
                     result.dent_m < 1.3 * result.depth_m;
-  result.step = {percentiles(std::move(step_us)), median(std::move(cpu_us))};
+  result.step = {fast::percentiles(std::move(step_us)), median(std::move(cpu_us))};
   result.our_step_us = ours.median_us();
   return result;
 }

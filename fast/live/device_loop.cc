@@ -1,27 +1,12 @@
 #include "fast/live/device_loop.h"
 
+#include "fast/flush_tiny_numbers.h"
+
 #include <algorithm>
 #include <limits>
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#endif
 
 namespace touchstone::live {
 namespace {
-
-/// Takes numbers too small for full precision as zero while it lives; they cost a hundred times a normal one.
-class FlushTinyNumbers {
- public:
-#if defined(__SSE__)
-  FlushTinyNumbers() noexcept : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040u); }
-  ~FlushTinyNumbers() { _mm_setcsr(before_); }
-  FlushTinyNumbers(const FlushTinyNumbers&) = delete;
-  FlushTinyNumbers& operator=(const FlushTinyNumbers&) = delete;
-
- private:
-  unsigned before_;
-#endif
-};
 
 scene::Pose no_pose() noexcept {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -102,7 +87,7 @@ std::int64_t newest_grid_point(const LoopTime& time, std::int64_t since_start_ns
 }  // namespace
 
 void run_device_loop(const LoopTime& time, const LoopPorts& ports, Ledger& ledger) noexcept {
-  [[maybe_unused]] const FlushTinyNumbers flush;
+  [[maybe_unused]] const fast::FlushTinyNumbers flush;
   // One period to be on time for the first.
   const std::int64_t start_ns = ports.clock.now_ns() + time.time_ns(1);
   for (std::int64_t index = 0; index < time.grid_points && ledger.ticks < time.ticks;) {

@@ -15,7 +15,7 @@ namespace touchstone::live {
 /// The real-time model with its state. Built before the loop; the steps use no heap.
 class Engine {
  public:
-  /// @param scene validated, and without fast::unsupported() faults; may go out of scope
+  /// @param scene validated; may go out of scope
   explicit Engine(const scene::Scene& scene);
   ~Engine();
   Engine(const Engine&) = delete;

@@ -1,7 +1,7 @@
 // How well the loop kept time, and what it sent.
 #pragma once
 
-#include "fast/run.h"
+#include "fast/percentiles.h"
 
 #include <array>
 #include <cstddef>

@@ -5,7 +5,6 @@
 
 #include <csignal>
 #include <iostream>
-#include <map>
 
 namespace touchstone::live {
 namespace {
@@ -39,9 +38,6 @@ class StopOnSignal {
 
 int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const std::string& command) {
   const scene::Scene scene = options.load();
-  if (std::vector<scene::Fault> faults = fast::unsupported(scene); !faults.empty()) {
-    throw scene::InputError(std::move(faults));
-  }
   const std::filesystem::path folder = options.folder(scene, "live");
   scene::prepare_result_folder(folder);
   scene::Manifest manifest = scene::make_manifest(scene, command);
@@ -68,10 +64,17 @@ void add_live_verb(CLI::App& app, fast::VerbOptions& options, LiveOptions& live,
   CLI::App* verb = fast::add_verb(
       app, "live", "the real-time pipeline in the wall clock, driven by a device", options,
       [&options, &live, program] { return live_verb(options, live, program + " live"); }, exit_code);
-  verb->add_option("--device", live.device, "scripted: the track; replay: a log; hand: a virtual hand on the track")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, DeviceKind>{
-          {"scripted", DeviceKind::scripted}, {"replay", DeviceKind::replay}, {"hand", DeviceKind::hand}}))
-      ->default_str("scripted");
+  verb->add_option_function<std::string>(
+          "--device",
+          [&live](const std::string& name) {
+            for (const DeviceKind kind : {DeviceKind::scripted, DeviceKind::replay, DeviceKind::hand}) {
+              live.device = kind;
+              if (name == name_of(kind)) return;
+            }
+            throw CLI::ValidationError("--device", "expected scripted, replay or hand, found " + name);
+          },
+          "scripted (default): the track; replay: a log; hand: a virtual hand on the track")
+      ->type_name("scripted|replay|hand");
   verb->add_option("--seconds", live.seconds, "length (default the track's or the log's; 10 for hand)");
   verb->add_option("--rate", live.rate_hz, "ticks per second, 1 to 10000 (default 1000, or the log's)");
   verb->add_option("--log", live.log, "replay: live.csv of an earlier run");

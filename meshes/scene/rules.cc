@@ -112,8 +112,7 @@ void check_inclusions(const Body& body, const Shape& shape, std::vector<Violatio
       double apart_m = 1e300;
       for (const auto& p_m : points_m.colwise()) apart_m = std::min(apart_m, inclusions[other]->signed_distance_m(p_m));
       const Eigen::Matrix3Xd others_m = surface_points_m(*inclusions[other]);
-      for (const auto& p_m : others_m.colwise())
-        apart_m = std::min(apart_m, inclusions.back()->signed_distance_m(p_m));
+      for (const auto& p_m : others_m.colwise()) apart_m = std::min(apart_m, inclusions.back()->signed_distance_m(p_m));
       if (apart_m <= 0.0) {
         found.push_back({name + ".center_m", "overlaps body.inclusion[" + std::to_string(other) + "] by " +
                                                  number(-apart_m * 1e3) + " mm; expected them apart"});

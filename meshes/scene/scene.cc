@@ -65,7 +65,8 @@ TriangleMesh tool_mesh(const Tool& tool) {
 }
 
 Pose pose_at(const std::vector<Waypoint>& track, double time_s) {
-  const auto after = std::find_if(track.begin(), track.end(), [&](const Waypoint& w) { return w.time_s > time_s; });
+  const auto after = std::upper_bound(track.begin(), track.end(), time_s,
+                                      [](double t_s, const Waypoint& w) { return t_s < w.time_s; });
   if (after == track.begin()) return track.front().pose;
   const Waypoint& a = *(after - 1);
   if (after == track.end()) return a.pose;

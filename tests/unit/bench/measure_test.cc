@@ -1,5 +1,7 @@
 #include "fast/bench/measure.h"
 
+#include "fast/state.h"
+
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
@@ -45,7 +46,7 @@ class Verb : public testing::TestWithParam<std::string> {
     for (char& c : name) {
       if (c == '/') c = '-';
     }
-    dir_ = std::filesystem::path(testing::TempDir()) / ("verb-" + name);
+    dir_ = std::filesystem::path(testing::TempDir()) / ("verb-" + std::to_string(getpid()) + name);
     std::filesystem::remove_all(dir_);
     std::filesystem::create_directories(dir_);
   }
@@ -125,6 +126,15 @@ TEST_P(Verb, HelpHasAnExample) {
 
 TEST_P(Verb, UnknownOptionIsBadInput) { EXPECT_EQ(run(GetParam() + " " + scene + " --nonsense").exit_code, 2); }
 
+TEST(LiveVerb, AnUnknownDeviceIsRefusedWithThoseThereAre) {
+  for (const std::string& verb : verbs()) {
+    if (!verb.ends_with(" live")) continue;
+    const Answer answer = run(verb + " " + scene + " --device mouse");
+    EXPECT_EQ(answer.exit_code, 2);
+    EXPECT_THAT(answer.output, HasSubstr("expected scripted, replay or hand, found mouse"));
+  }
+}
+
 TEST(FastVerb, LeavesTheResultFolderOfTheContract) {
   for (const std::string& verb : verbs()) {
     if (!verb.ends_with(" fast")) continue;
@@ -132,7 +142,7 @@ TEST(FastVerb, LeavesTheResultFolderOfTheContract) {
     std::filesystem::remove_all(out);
     const Answer answer = run(verb + " " + scene + " --quiet --out " + out.string());
     EXPECT_EQ(answer.exit_code, 0) << answer.output;
-    std::vector<std::string> files = {"manifest.json", "curve.csv", "summary.json"};
+    std::vector<std::string> files = {"manifest.json", "curve.csv", "beams.csv", "summary.json"};
     // Surfaces need VTK, which touchstone-fast does without.
     if (verb.find("touchstone-fast") == std::string::npos)
       files.insert(files.end(), {"surface.pvd", "surface_0022.vtp"});

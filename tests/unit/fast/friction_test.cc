@@ -557,7 +557,8 @@ class ModelDrag {
     ContactRegion& region = fast.regions[0];
     force = region.force;
     const Vec3 way = before ? material_step_m(last, now, force.load_center_m) : Vec3(Vec3::Zero());
-    if (region.pressing()) D = resolve(friction, model.law.at(0.0), now.R_WT, region.d, region.points, way, force, state);
+    if (region.pressing())
+      D = resolve(friction, model.law.at(0.0), now.R_WT, region.d, region.points, way, force, state);
     last = now;
   }
   [[nodiscard]] double ratio() const { return force.tangential_n.norm() / force.normal_n; }

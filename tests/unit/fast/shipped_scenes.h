@@ -21,8 +21,7 @@ inline std::vector<std::string> shipped_scenes() {
 }
 
 inline scene::Scene shipped_scene(const std::string& name, scene::Formulation formulation) {
-  scene::Scene scene =
-      scene::load_scene(std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/" + name + ".toml", {});
+  scene::Scene scene = scene::load_scene(std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/" + name + ".toml", {});
   scene.fast.formulation = formulation;
   return scene;
 }
