@@ -1,0 +1,314 @@
+// The extremes: how deep, and where on the body.
+#include "extremes/rig.h"
+
+namespace touchstone::fast {
+namespace {
+
+using extremes::has;
+using extremes::Rig;
+using scene::Vec3;
+
+// A tool that only touches feels nothing, and the force goes to zero with the depth.
+// As printed: the force is shared by lever arms whose sum may be 0, so a touch is 0 / 0 (E6).
+TEST(DepthAndPlace, TouchingIsNoForce) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    for (const scene::Scene& scene : {extremes::cube(formulation), extremes::ball(formulation)}) {
+      Rig rig(scene);
+      const double top_m = rig.model.body->bounds().upper_m.z() + scene.tool.radius_m;
+      rig.to(test::at(0.0, 0.0, top_m + 0.001));
+      rig.to(test::at(0.0, 0.0, top_m));
+      EXPECT_EQ(rig.force_n(), Vec3::Zero());
+      double before_n = 1e300;
+      for (double depth_m = 1e-3; depth_m > 1e-18; depth_m /= 10.0) {
+        rig.to(test::at(0.0, 0.0, top_m - depth_m));
+        EXPECT_LE(rig.force_n().norm(), before_n);
+        before_n = rig.force_n().norm();
+      }
+      EXPECT_LT(before_n, 1e-9);
+    }
+  }
+}
+
+// A punch flush with the face has all its samples at depth 0 and no force; 1e-15 m further it has k1 times that.
+// As printed: contact is where triangles meet, and flush ones meet nowhere or everywhere.
+TEST(DepthAndPlace, FlushPunchIsNoForceAndTheNextDigitIsTheLaw) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    Rig rig(extremes::punch_on_cube(formulation));
+    rig.to(extremes::punched(-1e-15));
+    EXPECT_EQ(rig.force_n(), Vec3::Zero());
+    rig.to(extremes::punched(1e-15));
+    ASSERT_TRUE(rig.state.in_contact());
+    EXPECT_NEAR(rig.force_n().z() / (40.0 * 1e-15), 1.0, 0.05);  // a digit of the coordinate is 1.4e-17 m
+    rig.to(extremes::punched(1e-9));
+    EXPECT_NEAR(rig.force_n().z() / (40.0 * 1e-9), 1.0, 1e-6);
+  }
+}
+
+// Pressed as deep as the body is thick, the force stays at what the depth limit gives, and the step says so.
+// As printed: nothing bounds the depth; the cubic term alone would answer 6.5e4 N.
+TEST(DepthAndPlace, DepthOfTheWholeBodyIsLimited) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    Rig rig(extremes::punch_on_cube(formulation));
+    rig.may = StepStatus::depth_limited;
+    StepStatus status = StepStatus::ok;
+    double before_n = 0.0;
+    for (int i = 0; i < 58; ++i) {
+      status = rig.to(extremes::punched(0.001 * i));
+      EXPECT_GE(rig.force_n().z(), before_n * (1.0 - 1e-12));
+      before_n = rig.force_n().z();
+    }
+    EXPECT_TRUE(has(status, StepStatus::depth_limited));
+    EXPECT_NEAR(before_n, rig.law().force_n(depth_limit_rel * 0.06), 1e-9 * before_n);
+  }
+}
+
+// A tool driven through the body and out at the far side leaves no force, no region and the surface at rest.
+// As printed: the closest side changes half way, and the force turns round and throws the tool out.
+TEST(DepthAndPlace, ThroughTheBodyAndOutLeavesNothing) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    for (const scene::Scene& scene : {extremes::cube(formulation), extremes::ball(formulation)}) {
+      Rig rig(scene);
+      rig.may = StepStatus::depth_limited | StepStatus::anchors_limited;
+      for (int i = 0; i <= 100; ++i) {
+        rig.to(test::at(0.003, 0.0, 0.08 - 0.001 * i));
+        // Never turned round, as long as something pushes.
+        EXPECT_GE(rig.force_n().z(), 0.0) << i;
+      }
+      EXPECT_FALSE(rig.state.in_contact());
+      EXPECT_EQ(rig.force_n(), Vec3::Zero());
+      EXPECT_EQ(rig.largest_displacement_m(), 0.0);
+    }
+  }
+}
+
+// Inside a tool that is larger than the body no sample is left in the body: no force, and no memory of the way there.
+// As printed: surfaces that do not cut each other are not in contact either.
+TEST(DepthAndPlace, BodyWhollyInsideTheToolIsNoContact) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    scene::Scene scene = extremes::punch_on_cube(formulation);
+    scene.tool.size_m = Vec3(0.2, 0.2, 0.2);
+    Rig rig(scene);
+    rig.may = StepStatus::depth_limited | StepStatus::anchors_limited;
+    for (int i = 0; i <= 75; ++i) rig.to(test::at(0.0, 0.0, 0.162 - 0.002 * i));
+    EXPECT_FALSE(rig.state.in_contact());
+    EXPECT_EQ(rig.force_n(), Vec3::Zero());
+    EXPECT_EQ(rig.largest_displacement_m(), 0.0);
+  }
+}
+
+// A tool that is in the middle of the body from the first tick on has a force within the limit, that a step of 1e-12 m
+// changes by no more than slope times step.
+// As printed: with no contact before there is no direction to deform in.
+TEST(DepthAndPlace, ToolWhollyInsideTheBodyIsSteady) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    for (const scene::Scene& scene : {extremes::cube(formulation), extremes::ball(formulation)}) {
+      Rig rig(scene);
+      rig.may = StepStatus::depth_limited | StepStatus::anchors_limited;
+      rig.to(test::at(0.0, 0.0, 0.03));
+      ASSERT_TRUE(rig.state.in_contact());
+      const Vec3 force_n = rig.force_n();
+      EXPECT_GT(force_n.norm(), 0.0);
+      rig.to(test::at(1e-12, 0.0, 0.03));
+      const double slope = rig.law().slope_n_per_m(rig.region().extent.deepest_m);
+      EXPECT_LE((rig.force_n() - force_n).norm(), 4.0 * slope * 1e-12 + 1e-9 * force_n.norm());
+    }
+  }
+}
+
+// A tool larger than the body, lowered over it, stays within the law.
+// As printed: the same, as far as its samples meet the body.
+TEST(DepthAndPlace, ToolLargerThanTheBodyIsBounded) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    for (scene::Scene scene : {extremes::cube(formulation), extremes::ball(formulation)}) {
+      scene.tool.radius_m = 0.048;
+      Rig rig(scene);
+      rig.may = StepStatus::depth_limited | StepStatus::anchors_limited;
+      double most_n = 0.0;
+      for (int i = 0; i <= 60; ++i) {
+        rig.to(test::at(0.0, 0.0, 0.12 - 0.002 * i));
+        most_n = std::max(most_n, rig.force_n().norm());
+      }
+      EXPECT_GT(most_n, 1.0);
+    }
+  }
+}
+
+// 50 mm in one tick push the tool back to where it came from, along the direction of a slow press.
+// As printed: the closest side of the body decides, which at that depth is any of six.
+TEST(DepthAndPlace, JumpOfFiftyMillimetresKnowsWhereItCameFrom) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    const Vec3 middle_m(0.0, 0.0, 0.03);
+    for (const Vec3& from : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
+      Rig rig(extremes::cube(formulation));
+      rig.may = StepStatus::depth_limited | StepStatus::anchors_limited;
+      rig.to({middle_m + 0.041 * from, Eigen::Quaterniond::Identity()});
+      EXPECT_FALSE(rig.state.in_contact());
+      rig.to({middle_m - 0.009 * from, Eigen::Quaterniond::Identity()});
+      ASSERT_TRUE(rig.state.in_contact());
+      EXPECT_GT(rig.force_n().normalized().dot(from), 0.999) << from.transpose();
+    }
+  }
+}
+
+// Without friction a contact has no memory on a face: after a tangential jump it feels what a fresh one feels there.
+// As printed: the same, once a mesh part has been cut out anew, which takes 5 to 155 ms.
+TEST(DepthAndPlace, TangentialJumpIsAFreshPressElsewhere) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    Rig jumped(extremes::cube(formulation)), fresh(extremes::cube(formulation));
+    jumped.to(test::pressed(0.002, -0.018, -0.018));
+    jumped.to(test::pressed(0.002, 0.018, 0.018));
+    fresh.to(test::pressed(-0.001, 0.018, 0.018));
+    fresh.to(test::pressed(0.002, 0.018, 0.018));
+    ASSERT_TRUE(fresh.state.in_contact());
+    EXPECT_LE((jumped.force_n() - fresh.force_n()).norm(), 1e-12 * fresh.force_n().norm());
+    EXPECT_NEAR(jumped.largest_displacement_m(), fresh.largest_displacement_m(), 1e-7);
+  }
+}
+
+// From far off straight towards the middle, over corners, edges and faces, in steps and at once: bounded throughout.
+// As printed: a beam of length 0 at a corner, which is an anchor point, is NaN (E9).
+TEST(DepthAndPlace, EveryCornerEdgeAndFaceIsBounded) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    for (const scene::Scene& scene : {extremes::cube(formulation), extremes::ball(formulation)}) {
+      Rig rig(scene);
+      rig.may = StepStatus::depth_limited | StepStatus::anchors_limited;
+      for (const Vec3& out : {Vec3(1, 1, 1), Vec3(1, -1, 1), Vec3(1, 0, 1), Vec3(1, 1, 0), Vec3(0, 0, 1), Vec3(1, 0, 0),
+                              Vec3(0, 0, -1), Vec3(1, 0, -1), Vec3(1, 1, -1), Vec3(1e-9, 0, 1)}) {
+        for (int i = 0; i <= 40; ++i)
+          rig.to({Vec3(0.0, 0.0, 0.03) + (0.065 - 0.001 * i) * out.normalized() * out.lpNorm<1>() / out.norm(),
+                  test::tilted()});
+        EXPECT_TRUE(rig.state.in_contact());
+        rig.to(test::at(0.0, 0.0, 1.0));
+        rig.to({Vec3(0.0, 0.0, 0.03) + 0.038 * out.normalized(), test::tilted()});
+        rig.to(test::at(0.0, 0.0, 1.0));
+      }
+    }
+  }
+}
+
+// Pressed on a corner along the diagonal the force looks back along it, and all four upper corners feel the same.
+// As printed: NaN, as above.
+TEST(DepthAndPlace, CornersAreAlike) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    std::vector<double> size_n;
+    for (const Vec3& out : {Vec3(1, 1, 1), Vec3(-1, 1, 1), Vec3(1, -1, 1), Vec3(-1, -1, 1)}) {
+      scene::Scene scene = extremes::cube(formulation);
+      scene.fast.tool_samples = 20000;
+      Rig rig(scene);
+      rig.may = StepStatus::anchors_limited;
+      const Vec3 corner_m = Vec3(0.0, 0.0, 0.03) + 0.03 * out;
+      for (const double depth_m : {-0.001, 0.001, 0.003})
+        rig.to({corner_m + (0.010 - depth_m) * out.normalized(), Eigen::Quaterniond::Identity()});
+      ASSERT_TRUE(rig.state.in_contact());
+      EXPECT_GT(rig.force_n().normalized().dot(out.normalized()), 0.999);
+      size_n.push_back(rig.force_n().norm());
+    }
+    const auto [least, most] = std::minmax_element(size_n.begin(), size_n.end());
+    EXPECT_LE(*most, 1.03 * *least);
+  }
+}
+
+// Exactly over an anchor point, an edge, the bottom rim and the support: bounded, and nothing is left when it goes.
+// As printed: over an anchor point l_i = 0 and the split is NaN (E9).
+TEST(DepthAndPlace, ExactlyOverAnAnchorAnEdgeAndTheRim) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    Rig rig(extremes::cube(formulation));
+    rig.may = StepStatus::anchors_limited | StepStatus::depth_limited;
+    for (const Vec3& place :
+         {Vec3(0.03, 0.03, 0.068), Vec3(0.03, 0.0, 0.068), Vec3(0.039, 0.0, 0.0), Vec3(0.0, 0.0, -0.007)}) {
+      rig.to({place, Eigen::Quaterniond::Identity()});
+      EXPECT_GT(rig.force_n().norm(), 0.0) << place.transpose();
+      rig.to(test::at(0.0, 0.0, 1.0));
+      EXPECT_EQ(rig.largest_displacement_m(), 0.0);
+    }
+  }
+}
+
+// Pressed from below the support face answers with force and does not move.
+// As printed: anchor points of the bottom move like any other; what holds them is not said.
+TEST(DepthAndPlace, SupportFaceStaysPutWhenPressed) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    for (const scene::Scene& scene : {extremes::cube(formulation), extremes::ball(formulation)}) {
+      Rig rig(scene);
+      rig.may = StepStatus::anchors_limited;
+      rig.to(test::at(0.0, 0.0, -0.0101));
+      rig.to(test::at(0.0, 0.0, -0.007));
+      ASSERT_TRUE(rig.state.in_contact());
+      EXPECT_LT(rig.force_n().z(), 0.0);
+      for (std::size_t v = 0; v < rig.model.rest.vertex_count(); ++v) {
+        if (rig.model.rest.rest_W_m[2][v] > static_cast<float>(scene.body.support_height_m)) continue;
+        EXPECT_TRUE(rig.displacement_m(v).isZero(0.0));
+      }
+    }
+  }
+}
+
+// A ball led around every free edge of the box, at constant depth, feels a force that changes by at most 4 times slope
+// times step in a tick.
+// As printed: the direction is the mean normal of triangles, which jumps by up to a right angle with each of them.
+TEST(DepthAndPlace, ForceIsContinuousOverEveryEdgeOfABox) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    struct Edge {
+      Vec3 middle_m, first, second;  // outward normals of its faces
+    };
+    std::vector<Edge> edges;
+    for (const Vec3& side : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
+      edges.push_back({Vec3(0, 0, 0.06) + 0.03 * side, Vec3::UnitZ(), side});
+    for (const double x : {1.0, -1.0})
+      for (const double y : {1.0, -1.0})
+        edges.push_back({Vec3(0.03 * x, 0.03 * y, 0.03), x * Vec3::UnitX(), y * Vec3::UnitY()});
+    for (const Edge& edge : edges) {
+      scene::Scene scene = extremes::cube(formulation);
+      scene.fast.tool_samples = 20000;
+      Rig rig(scene);
+      rig.may = StepStatus::anchors_limited;
+      constexpr double out_m = 0.010 - 0.002;
+      // In along the first face, a quarter turn about the edge, off along the second.
+      const auto pose_at = [&](int i) {
+        constexpr int flat = 100, turn = 125;
+        Vec3 p_m;
+        if (i < flat) {
+          p_m = edge.middle_m + out_m * edge.first - 1e-4 * (flat - i) * edge.second;
+        } else if (i < flat + turn) {
+          const double angle = 0.5 * std::numbers::pi * (i - flat) / turn;
+          p_m = edge.middle_m + out_m * (std::cos(angle) * edge.first + std::sin(angle) * edge.second);
+        } else {
+          p_m = edge.middle_m + out_m * edge.second - 1e-4 * (i - flat - turn) * edge.first;
+        }
+        return scene::Pose{p_m, Eigen::Quaterniond::Identity()};
+      };
+      EXPECT_LE(extremes::steepest(rig, 325, pose_at), 4.0) << edge.middle_m.transpose();
+      EXPECT_GT(rig.force_n().normalized().dot(edge.second), 0.999);
+    }
+  }
+}
+
+// Led over the anchor points of an ellipsoid the force has no jump: at most 4 times slope times step in a tick.
+// As printed: NaN at the anchor point itself (E9); x_i turns round there.
+TEST(DepthAndPlace, ForceIsContinuousOverAnEllipsoidsAnchor) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    scene::Scene scene = extremes::ellipsoid(formulation, Vec3(0.05, 0.03, 0.02), 0.004);
+    scene.fast.tool_samples = 20000;
+    Rig top(scene);
+    top.may = StepStatus::anchors_limited;
+    const auto over_the_pole = [](int i) {
+      const double angle = 0.002 * (i - 100);
+      const Vec3 p_m(0.05 * std::sin(angle), 0.0, 0.02 + 0.02 * std::cos(angle));
+      const Vec3 normal = Vec3(std::sin(angle) / 0.05, 0.0, std::cos(angle) / 0.02).normalized();
+      return scene::Pose{p_m + 0.008 * normal, Eigen::Quaterniond::Identity()};
+    };
+    EXPECT_LE(extremes::steepest(top, 200, over_the_pole), 4.0);
+    Rig side(scene);
+    side.may = StepStatus::anchors_limited;
+    const auto around_the_end = [](int i) {
+      const double angle = 0.004 * (i - 100);
+      const Vec3 p_m(0.05 * std::cos(angle), 0.03 * std::sin(angle), 0.02);
+      const Vec3 normal = Vec3(std::cos(angle) / 0.05, std::sin(angle) / 0.03, 0.0).normalized();
+      return scene::Pose{p_m + 0.008 * normal, Eigen::Quaterniond::Identity()};
+    };
+    EXPECT_LE(extremes::steepest(side, 200, around_the_end), 4.0);
+  }
+}
+
+}  // namespace
+}  // namespace touchstone::fast
