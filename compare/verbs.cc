@@ -36,9 +36,14 @@ int with_reference_exits(Solve solve) {
 int plan(const fast::VerbOptions& options, const std::filesystem::path&) {
   const scene::Scene scene = options.load();
   std::cout << scene::explained_toml(scene) << '\n'
-            << fast::plan_text("The fast model computes", fast::plan(scene)) << '\n'
-            << fast::plan_text("The reference solves", reference::plan(scene));
-  refuse(reference::unsupported(scene));
+            << fast::plan_text("The fast model computes", fast::plan(scene)) << '\n';
+  const std::vector<scene::Fault> faults = reference::unsupported(scene);
+  if (faults.empty()) {
+    std::cout << fast::plan_text("The reference solves", reference::plan(scene));
+  } else {
+    std::cout << "The reference cannot solve this scene:\n";
+    for (const scene::Fault& fault : faults) std::cout << "  " << fault.text() << '\n';
+  }
   return fast::done;
 }
 

@@ -53,7 +53,7 @@ TOUCHSTONE_INLINE void apply(const SurfacePatches& rest, const LocalConstants& c
   const float *rx = rest.rest_W_m[0].data(), *ry = rest.rest_W_m[1].data(), *rz = rest.rest_W_m[2].data();
   float *x = field.displacement_m[0].data(), *y = field.displacement_m[1].data(), *z = field.displacement_m[2].data();
   for (const Patch& patch : rest.patches) {
-    if ((patch.center_W_m - p0_W_m).norm() > patch.radius_m + constants.r_R_m) continue;
+    if (patch.all.distance2_m2(p0_m) >= r_R_m2) continue;
     for (std::int32_t b = patch.first_block; b < patch.last_block; ++b) {
       const VertexBlock& block = rest.blocks[static_cast<std::size_t>(b)];
       if (block.distance2_m2(p0_m) >= r_R_m2) continue;

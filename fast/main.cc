@@ -1,4 +1,5 @@
 // touchstone-fast: the real-time side alone, for the machine with the device. Links neither deal.II, VTK nor MPI.
+#include "fast/bench/bench_verb.h"
 #include "fast/command_line.h"
 #include "fast/live/live_verb.h"
 #include "fast/results.h"
@@ -32,6 +33,7 @@ int main(int argc, char** argv) {
   CLI::App app("Real-time contact of a rigid tool with an elastic body.", "touchstone-fast");
   fast::VerbOptions options;
   live::LiveOptions live_options;
+  bench::BenchVerbOptions bench_options;
   int exit_code = fast::done;
   fast::add_verb(
       app, "plan", "what the fast model computes for a scene, what it leaves out and why", options,
@@ -41,5 +43,6 @@ int main(int argc, char** argv) {
       [&] { return run(options); }, exit_code)
       ->add_option("--out", options.out, "result folder (default out/<scene>-fast)");
   live::add_live_verb(app, options, live_options, exit_code);
+  bench::add_bench_verb(app, bench_options, exit_code);
   return fast::run_command_line(app, argc, argv, exit_code);
 }

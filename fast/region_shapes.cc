@@ -399,6 +399,7 @@ TOUCHSTONE_INLINE void apply_to_block(const SurfacePatches& rest, float r_R_m, s
 template <class Formulation>
 TOUCHSTONE_INLINE void apply_factors(const SurfacePatches& rest, const LocalConstants& local, ShapeStack& stack,
                                      SurfaceField& field) noexcept {
+  const auto r_R_m = static_cast<float>(local.r_R_m);
   for (std::size_t i = 0; i < stack.count; ++i) {
     const RegionShape& region = stack.region[i];
     stack.reach[i] = {Formulation::Factor::terms(local, region.size), region.p0_W_m.cast<float>()};
@@ -408,10 +409,9 @@ TOUCHSTONE_INLINE void apply_factors(const SurfacePatches& rest, const LocalCons
     // Never beyond the capacity it was given.
     stack.near.clear();
     for (std::size_t i = 0; i < stack.count; ++i) {
-      if ((patch.center_W_m - stack.region[i].p0_W_m).norm() <= patch.radius_m + local.r_R_m) stack.near.push_back(i);
+      if (patch.all.distance2_m2(stack.reach[i].p0_W_m) < r_R_m * r_R_m) stack.near.push_back(i);
     }
     if (stack.near.empty()) continue;
-    const auto r_R_m = static_cast<float>(local.r_R_m);
     for (std::int32_t b = patch.first_block; b < patch.last_block; ++b) {
       const VertexBlock& block = rest.blocks[static_cast<std::size_t>(b)];
       const bool reached = std::any_of(stack.near.begin(), stack.near.end(), [&](std::size_t i) {

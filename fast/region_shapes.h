@@ -22,17 +22,16 @@ struct RegionShape {
   RegionSize size;
 };
 
-/// Shape_i, i = 0 to count: the regions by creation, each with how its increment u_i = Shape_i - Shape_{i-1} is made
-/// up.
+/// Shape_i, i = 0 to count: the regions by creation, each with the make-up of its increment u_i = Shape_i -
+/// Shape_{i-1}.
 ///
 /// A quantity q of u_i is the sum of its anchor points' q by weight and, on top, the hats (Hat) over the contact points
 /// p0_k of the regions k <= i by coefficient c_ik, so that it has its value at p0_i and that of no displacement at
-/// every earlier p0_k, which the tool holds. The coefficients solve sum_k h_k(p0_j) c_ik = target_j - W(p0_j) q, j <=
-/// i: one triangular factorisation that grows by a row and a column per region, since u_i's matrix is a corner of the
-/// next one's. Its pivots are kept from zero: a region that comes within a hundredth of its patch of an earlier contact
-/// point gives way to that, and nothing grows beyond measure.
-/// A contact point that does not move the surface (held, or without force) takes no part.
-/// Storage is fixed at construction.
+/// every earlier p0_k, which the tool holds. The coefficients solve, for j <= i,
+/// sum_k h_k(p0_j) c_ik = target_j - W(p0_j) q: one triangular factorisation that grows by a row and a column per
+/// region, since u_i's matrix is a corner of the next one's. Its pivots are kept from zero: a region that comes within
+/// a hundredth of its patch of an earlier contact point gives way to that, and nothing grows beyond measure. A contact
+/// point that does not move the surface (held, or without force) takes no part. Storage is fixed at construction.
 struct ShapeStack {
   ShapeStack(const SurfacePatches& rest, const AnchorPoints& anchors, int max_regions);
   /// Shape_0: the body at rest.
@@ -95,7 +94,7 @@ struct SeveralRegions {
   DisplacementAt displacement_at = nullptr;
 };
 
-/// As printed: lengths and angles, region upon region, an earlier contact point entering with length
+/// As printed: lengths and angles, region upon region at every vertex, an earlier contact point entering with length
 /// zero and, having no direction, the angle of the mean displacement (errata E15). Normals and distances are those of
 /// the rest shape, where section VI would take those of Shape_{i-1}.
 extern const SeveralRegions several_regions_published;

@@ -27,10 +27,10 @@ int smallest_free_id(const FastState& state) noexcept {
 }
 
 /// Keeps the points inside the rest surface, in their order.
-void keep_inside(const scene::Shape& body, RegionPoints& points) noexcept {
+void keep_inside(RegionPoints& points) noexcept {
   int kept = 0;
   for (int i = 0; i < points.count; ++i) {
-    if (!(body.signed_distance_m(points.p_W_m(static_cast<std::size_t>(i))) < 0.0)) continue;
+    if (!(points.depth_m[i] > 0.0)) continue;
     if (kept != i) points.move(i, kept);
     ++kept;
   }
@@ -76,7 +76,7 @@ StepStatus press_next(const FastModel& model, const Motion& motion, bool created
         },
         region.points);
   } else if (several.bulge_m > 0.0) {
-    keep_inside(*model.body, region.points);
+    keep_inside(region.points);
   }
   state.lap(Stage::regions);
   StepStatus status = StepStatus::ok;

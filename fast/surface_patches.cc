@@ -22,19 +22,24 @@ Vec3 normal_near(const scene::Surface& surface, const Patch& patch, const Vec3& 
   return normal;
 }
 
+VertexBlock block_of(const Columns3& rest_W_m, std::int32_t begin, std::int32_t end) {
+  VertexBlock block;
+  block.begin = begin;
+  block.end = end;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float* column = rest_W_m[static_cast<std::size_t>(axis)].data();
+    const auto [low, high] = std::minmax_element(column + begin, column + end);
+    block.low_W_m[axis] = *low;
+    block.high_W_m[axis] = *high;
+  }
+  return block;
+}
+
 void add_blocks(const Columns3& rest_W_m, Patch& patch, std::vector<VertexBlock>& blocks) {
+  patch.all = block_of(rest_W_m, patch.begin, patch.end);
   patch.first_block = static_cast<std::int32_t>(blocks.size());
   for (std::int32_t begin = patch.begin; begin < patch.end; begin += block_vertices) {
-    VertexBlock block;
-    block.begin = begin;
-    block.end = std::min(begin + block_vertices, patch.end);
-    for (int axis = 0; axis < 3; ++axis) {
-      const float* column = rest_W_m[static_cast<std::size_t>(axis)].data();
-      const auto [low, high] = std::minmax_element(column + block.begin, column + block.end);
-      block.low_W_m[axis] = *low;
-      block.high_W_m[axis] = *high;
-    }
-    blocks.push_back(block);
+    blocks.push_back(block_of(rest_W_m, begin, std::min(begin + block_vertices, patch.end)));
   }
   patch.last_block = static_cast<std::int32_t>(blocks.size());
 }

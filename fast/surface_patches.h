@@ -39,6 +39,7 @@ struct Patch {
   /// A ball around its vertices.
   scene::Vec3 center_W_m;
   double radius_m = 0.0;
+  VertexBlock all;                               ///< of its vertices
   std::int32_t first_block = 0, last_block = 0;  ///< its blocks, the last one not included
 };
 

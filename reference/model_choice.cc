@@ -78,6 +78,14 @@ ModelChoice choose_model(const Scene& scene) {
 std::vector<scene::Fault> unsupported_parts(const Scene& scene) {
   std::vector<scene::Fault> faults;
   const auto add = [&](const std::string& message) { faults.push_back({"", 0, 0, message}); };
+  if (scene.body.shape == BodyShape::ellipsoid || scene.body.shape == BodyShape::revolution)
+    add("body.shape: the reference solves box and sphere bodies only");
+  if (!scene.body.inclusions.empty()) add("body.inclusion: the reference solves bodies of one material only");
+  if (scene.tool.shape != scene::ToolShape::sphere) add("tool.shape: the reference knows sphere tools only");
+  if (scene.tool.mass_center_m && *scene.tool.mass_center_m != Vec3::Zero())
+    add("tool.mass_center_m: the reference takes the centre of the sphere");
+  if (scene.contact.friction) add("contact.friction: the reference solves frictionless contact only");
+  if (!faults.empty()) return faults;
   const ModelChoice choice = choose_model(scene);
   const auto body = scene::body_shape(scene.body);
   if (scene.body.shape == BodyShape::sphere) {

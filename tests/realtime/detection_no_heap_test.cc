@@ -50,7 +50,7 @@ TEST_P(DetectionWithoutHeap, FindsSplitsFollowsAndTakesBack) {
             clusters[static_cast<std::size_t>(regions[static_cast<std::size_t>(r)].cluster)].points;
         RegionPoints part = points.slice(range.begin, range.size);
         pull_back(
-            *body, [](const scene::SurfaceQuery& at) noexcept { return Vec3(0.0, 0.0, -0.01 * at.point_m.x()); }, part);
+            *body, [](const scene::SurfaceQuery& rest) noexcept { return Vec3(0.0, 0.0, -0.01 * rest.point_m.x()); }, part);
         const InsideSummary inside = detection.summarise(*body, part);
         detection.measure_depths(*body, at.R_WT, direction_from(inside, -Vec3::UnitZ()), part);
       }

@@ -4,6 +4,7 @@
 #include "fast/region_shapes.h"
 #include "fast/step.h"
 #include "unit/fast/press.h"
+#include "unit/fast/shipped_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -88,6 +89,28 @@ TEST(NoHeap, BelowAStepWithManySamplesAndTriangles) {
   scene.fast.triangles = 100000;
   run_without_heap(scene);
 }
+
+class ShippedSceneWithoutHeap : public testing::TestWithParam<std::string> {};
+
+TEST_P(ShippedSceneWithoutHeap, BelowAStep) {
+  for (const auto formulation : {scene::Formulation::published, scene::Formulation::corrected}) {
+    const scene::Scene scene = test::shipped_scene(GetParam(), formulation);
+    const FastModel model(scene);
+    FastState state(model);
+    const double begin_s = scene.track.front().time_s, end_s = scene.track.back().time_s;
+    int in_contact = 0;
+    for (int i = 0; i <= 300; ++i) {
+      const scene::Pose pose = scene::pose_at(scene.track, begin_s + (end_s - begin_s) * i / 300);
+      const test::NoHeap guard;
+      step(model, pose, state);
+      in_contact += state.in_contact();
+    }
+    EXPECT_GT(in_contact, 0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedSceneWithoutHeap, testing::ValuesIn(test::shipped_scenes()),
+                         [](const auto& scene) { return test::test_name(scene.param); });
 
 // The watch itself.
 TEST(NoHeapDeathTest, SeesEveryWayToTheHeap) {

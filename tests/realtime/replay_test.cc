@@ -2,6 +2,7 @@
 #include "fast/run.h"
 #include "fast/step.h"
 #include "unit/fast/press.h"
+#include "unit/fast/shipped_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -36,6 +37,21 @@ TEST(Replay, GivesEqualBits) {
     }
   }
 }
+
+class ShippedScene : public testing::TestWithParam<std::string> {};
+
+TEST_P(ShippedScene, GivesEqualBitsAndNoStatus) {
+  for (const Formulation formulation : {Formulation::published, Formulation::corrected}) {
+    const scene::Scene scene = test::shipped_scene(GetParam(), formulation);
+    const auto first = run(scene), second = run(scene);
+    EXPECT_EQ(first.state_hash, second.state_hash);
+    EXPECT_EQ(status_text(first.status), "ok");
+    EXPECT_GT(first.regions_max, 0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedScene, testing::ValuesIn(test::shipped_scenes()),
+                         [](const auto& scene) { return test::test_name(scene.param); });
 
 TEST(Replay, HashSeesEveryPhysicalChange) {
   const std::uint64_t hash = run(busy(Formulation::corrected)).state_hash;

@@ -95,6 +95,35 @@ TEST_P(ContactDetection, DeepestSampleIsTheRestDepth) {
   }
 }
 
+TEST_P(ContactDetection, MarginBringsInWhatIsNearFromOutside) {
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> place(-0.045, 0.045);
+  constexpr double margin_m = 0.0015;
+  int outside = 0;
+  for (int k = 0; k < 100; ++k) {
+    const scene::Pose pose = test::at(place(random), place(random), 0.03 + place(random));
+    const InsideSummary with =
+        c.detection.find_inside(*c.body, c.tool, placement(pose), margin_m, c.tool.count(), c.points);
+    std::vector<bool> found(static_cast<std::size_t>(c.tool.count()), false);
+    for (int i = 0; i < c.points.count; ++i) found[static_cast<std::size_t>(c.points.sample[i])] = true;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const Vec3 p_W = Vec3(c.tool.x_T_m[i], c.tool.y_T_m[i], c.tool.z_T_m[i]) + pose.position_m;
+      const double distance_m = c.body->signed_distance_m(p_W);
+      // Off a box's corner the faces' planes are asked.
+      if (distance_m < margin_m - 1e-15) {
+        EXPECT_TRUE(found[i]);
+      } else if (distance_m > std::sqrt(3.0) * margin_m) {
+        EXPECT_FALSE(found[i]);
+      }
+      outside += found[i] && distance_m > 0.0;
+    }
+    const InsideSummary without =
+        c.detection.find_inside(*c.body, c.tool, placement(pose), 0.0, c.tool.count(), c.points);
+    EXPECT_EQ(with.normal_sum, without.normal_sum) << "the summary speaks of the inside ones";
+  }
+  EXPECT_GT(outside, 500);
+}
+
 TEST_P(ContactDetection, LimitStopsTheSearchEarly) {
   const double top_m = c.body->bounds().upper_m.z();
   c.detection.find_inside(*c.body, c.tool, placement(test::at(0.0, 0.0, top_m)), 0.0, 1, c.points);

@@ -1,14 +1,15 @@
 #include "fast/contact_regions.h"
 
+#include "scene/surface.h"
 #include "unit/fast/points.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
+#include <memory>
 #include <random>
-#include <set>
 
 namespace touchstone::fast {
 namespace {
@@ -227,6 +228,55 @@ TEST_F(Tracking1D, NewOnesBeyondTheCapacityAreLeftOutAndSaid) {
   EXPECT_THAT(track({{30, 2}, {0, 2}}), ElementsAre(P(0, 1), P(-1, 0)));
   tracker.forget();
   EXPECT_THAT(track({{30, 2}}), ElementsAre(P(-1, 0)));
+}
+
+/// Three balls in a row on one rigid tool, rocked over a block.
+TEST(ContactRegions, OfAToolWithThreeFeet) {
+  scene::TriangleMesh feet;
+  for (const double x_m : {-0.02, 0.0, 0.02}) {
+    const scene::Surface ball = scene::tessellate(scene::Sphere(Vec3(x_m, 0.0, 0.0), 0.006), 1000);
+    const auto before = static_cast<std::int32_t>(feet.points_m.cols());
+    feet.points_m.conservativeResize(3, before + ball.points_m.cols());
+    feet.points_m.rightCols(ball.points_m.cols()) = ball.points_m;
+    for (const auto& t : ball.triangles) feet.triangles.push_back({t[0] + before, t[1] + before, t[2] + before});
+  }
+  scene::Tool tool;
+  tool.shape = scene::ToolShape::mesh;
+  tool.mesh = std::make_shared<scene::TriangleMesh>(feet);
+  const ToolSamples samples = sample_tool(tool, 3000);
+  const scene::Box block(Vec3(0.0, 0.0, 0.03), Vec3(0.08, 0.06, 0.06));
+  const Detection detection = detection_for(scene::BodyShape::box);
+  const ClusterGrid grid = cluster_grid(samples, 0.004);
+  ClusterScratch scratch(grid);
+  RegionTracker tracker(samples.count(), 20, 10);
+  test::OwnedPoints points(samples.count());
+  std::vector<Cluster> clusters(20);
+  std::vector<TrackedRegion> regions(10);
+  // Where the regions of a pose are, by creation, and which of the last ones they were.
+  const auto tick = [&](double tilt, double depth_m) {
+    const Placement at{Eigen::AngleAxisd(tilt, Vec3::UnitY()).toRotationMatrix(), Vec3(0, 0, 0.066 - depth_m)};
+    detection.find_inside(block, samples, at, 0.0, samples.count(), points);
+    const ClusterCount found = cluster(grid, points, scratch, clusters);
+    const Tracking tracked =
+        tracker.track(points, {clusters.data(), static_cast<std::size_t>(found.count)}, 0.004, regions);
+    std::vector<std::pair<int, int>> list;
+    for (int r = 0; r < tracked.count; ++r) {
+      const TrackedRegion& region = regions[static_cast<std::size_t>(r)];
+      list.emplace_back(
+          region.was,
+          static_cast<int>(std::lround(clusters[static_cast<std::size_t>(region.cluster)].center_W_m.x() / 0.02)));
+    }
+    return list;
+  };
+  using P = std::pair<int, int>;
+  EXPECT_THAT(tick(0.0, -0.001), ElementsAre());
+  EXPECT_THAT(tick(0.2, -0.001), ElementsAre(P(-1, 1)));  // the foot at +x goes down first
+  EXPECT_THAT(tick(0.2, 0.001), ElementsAre(P(0, 1), P(-1, 0)));
+  EXPECT_THAT(tick(0.0, 0.001), ElementsAre(P(0, 1), P(1, 0), P(-1, -1)));
+  EXPECT_THAT(tick(0.01, 0.0012), ElementsAre(P(0, 1), P(1, 0), P(2, -1)));
+  EXPECT_THAT(tick(-0.2, 0.001), ElementsAre(P(1, 0), P(2, -1)));
+  EXPECT_THAT(tick(0.0, 0.001), ElementsAre(P(0, 0), P(1, -1), P(-1, 1)));
+  EXPECT_THAT(tick(0.0, -0.001), ElementsAre());
 }
 
 }  // namespace

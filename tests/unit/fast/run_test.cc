@@ -2,6 +2,7 @@
 
 #include "fast/step.h"
 #include "unit/fast/press.h"
+#include "unit/fast/shipped_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -107,8 +108,8 @@ TEST(Run, PublishedLeavesAResidualOffTheAxis) {
 
 TEST(StatusText, NamesEveryBit) {
   EXPECT_EQ(status_text(0), "ok");
-  const std::string all = status_text(0xf);
-  for (const char* part : {"not finite", "half of the body", "saturated", "fast.s_c_m2"}) {
+  const std::string all = status_text(0x1f);
+  for (const char* part : {"not finite", "half of the body", "saturated", "fast.s_c_m2", "fast.max_regions"}) {
     EXPECT_NE(all.find(part), std::string::npos) << part;
   }
 }
@@ -122,15 +123,27 @@ TEST(Plan, SaysWhatIsModelledAndWhatIsNot) {
   scene::Scene scene = test::ball_on_cube();
   scene::Plan with = plan(scene);
   for (const char* part :
-       {"contact detection", "contact force", "torque", "beam skeleton", "surface", "local factor"}) {
+       {"contact detection", "contact force", "beam skeleton", "surface", "local factor", "normals"}) {
     EXPECT_TRUE(line(with, part).modelled) << part;
   }
   for (const char* part : {"friction", "several regions", "inclusions"})
     EXPECT_FALSE(line(with, part).modelled) << part;
   for (const auto& l : with) EXPECT_FALSE(l.reason.empty() || l.cost.empty()) << l.part;
-  EXPECT_NE(line(with, "contact detection").cost.find("600 points"), std::string::npos);
+  EXPECT_NE(line(with, "contact detection").reason.find("600 points"), std::string::npos);
   scene.fast.C_n = 0.0;
   EXPECT_FALSE(line(plan(scene), "local factor").modelled);
+  scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
+  scene::Inclusion core;
+  core.shape = scene::BodyShape::sphere;
+  core.radius_m = 0.01;
+  core.center_m = Vec3(0.0, 0.0, 0.03);
+  core.material = {1e5, 0.3};
+  scene.body.inclusions.push_back(core);
+  with = plan(scene);
+  for (const char* part : {"friction", "inclusions"}) EXPECT_TRUE(line(with, part).modelled) << part;
+  const scene::Plan compass = plan(test::shipped_scene("compass-two-pins", scene::Formulation::corrected));
+  EXPECT_TRUE(line(compass, "several regions").modelled);
+  EXPECT_NE(line(compass, "several regions").reason.find("2 at the track's instants"), std::string::npos);
 }
 
 TEST(Unsupported, IsNothingForBoxAndSphereUnderABall) {

@@ -1,0 +1,55 @@
+#include "fast/bench/bench_verb.h"
+
+#include "fast/command_line.h"
+#include "scene/results.h"
+
+#include <cstdlib>
+#include <iostream>
+
+namespace touchstone::bench {
+namespace {
+
+/// Of the last minute, as an entry of the manifest.
+std::string load_average() {
+  double load = 0.0;
+  if (getloadavg(&load, 1) != 1) return "unknown";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", load);
+  return text;
+}
+
+}  // namespace
+
+int bench_verb(const BenchVerbOptions& options, const std::string& command) {
+  scene::prepare_result_folder(options.out);
+  scene::Manifest manifest = scene::make_manifest(scene_of({scene::BodyShape::box, "4k", 1}), command);
+  manifest.entries.emplace_back("only", options.only.empty() ? "everything" : options.only);
+  manifest.entries.emplace_back("effort", options.quick ? "quick" : "full");
+  manifest.entries.emplace_back("load_average_before", load_average());
+  const scene::Stopwatch watch;
+  fast::ProgressLine progress(options.quiet);
+  const BenchResult result = run_bench(options, [&](const std::string& text) { progress.show(text, true); });
+  progress.finish();
+  manifest.times.push_back(watch.read("bench"));
+  manifest.entries.emplace_back("load_average_after", load_average());
+  manifest.entries.emplace_back("counters", result.counters);
+  manifest.entries.emplace_back("peer", result.peer_version.empty() ? "none in this build" : result.peer_version);
+  scene::write_summary(options.out / "summary.json", figures(result));
+  scene::write_manifest(options.out / "manifest.json", manifest);
+  std::cout << report_text(result) << "Results: " << options.out.string() << '\n';
+  return fast::done;
+}
+
+void add_bench_verb(CLI::App& app, BenchVerbOptions& options, int& exit_code) {
+  const std::string program = app.get_name();
+  CLI::App* verb = app.add_subcommand("bench", "what a tick costs, per stage, beside copying its output and Bullet");
+  verb->add_flag("--quick", options.quick, "about 10 s instead of more than a minute: fewer cases and ticks");
+  verb->add_option("--only", options.only, "some cases: the first parts of a name such as box/4k/1, * for any part");
+  verb->add_option("--ticks", options.ticks, "measured per case (default by the time)")->check(CLI::Range(1, 10000000));
+  verb->add_option("--out", options.out, "result folder (default out/bench)");
+  verb->add_flag("--quiet", options.quiet, "no progress, only results and errors");
+  verb->footer("Example:\n  " + program + " bench --only box/4k");
+  verb->callback([&options, &exit_code, program] { exit_code = bench_verb(options, program + " bench"); });
+}
+
+}  // namespace touchstone::bench

@@ -1,0 +1,210 @@
+#include "fast/bench/measure.h"
+
+#include "fast/bench/floor.h"
+#include "fast/bench/statistics.h"
+#include "fast/step.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <vector>
+
+namespace touchstone::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double us_between(Clock::time_point begin, Clock::time_point end) {
+  return std::chrono::duration<double, std::micro>(end - begin).count();
+}
+
+/// Ticks at the start of every block that are not measured: they bring back what the other kind of work drove out of
+/// the caches.
+constexpr int warming_ticks = 2;
+
+/// Everything collected tick by tick; storage taken before the first.
+struct Samples {
+  std::vector<double> step_us, force_us, floor_us;
+  std::array<std::vector<double>, fast::stage_count> stage_us;
+  std::vector<double> step_cpu_us, floor_cpu_us, instructions, cycles;  ///< a block's mean each
+};
+
+class Measurement {
+ public:
+  Measurement(const Case& which, const fast::FastModel& model, HardwareCounters& counters)
+      : which_(which), model_(model), state_(model), floor_(model.rest), counters_(counters) {}
+
+  /// Presses the tool in, and says what a step takes [us].
+  double approach() {
+    while (tick_ < approach_ticks) fast::step(model_, next_pose(), state_);
+    constexpr int trial = 9;
+    std::vector<double> step_us;
+    for (int i = 0; i < trial; ++i) {
+      const scene::Pose pose = next_pose();
+      const Clock::time_point begin = Clock::now();
+      fast::step(model_, pose, state_);
+      step_us.push_back(us_between(begin, Clock::now()));
+    }
+    return percentile_us(std::move(step_us), 0.5);
+  }
+
+  void step_block(int ticks, CaseResult& result) {
+    for (int i = 0; i < warming_ticks; ++i) fast::step(model_, next_pose(), state_);
+    // Poses are made outside: a sine is none of the step's business.
+    poses_.clear();
+    for (int i = 0; i < ticks; ++i) poses_.push_back(next_pose());
+    counters_.start();
+    const double cpu_begin_us = thread_cpu_us();
+    for (const scene::Pose& pose : poses_) {
+      const Clock::time_point begin = Clock::now();
+      fast::StepStatus status = fast::step_force(model_, pose, state_);
+      const Clock::time_point published = Clock::now();
+      status |= fast::step_shape(model_, state_);
+      const Clock::time_point end = Clock::now();
+      samples_.step_us.push_back(us_between(begin, end));
+      samples_.force_us.push_back(us_between(begin, published));
+      result.status |= static_cast<std::uint32_t>(status);
+      count_regions(result);
+    }
+    const double cpu_us = thread_cpu_us() - cpu_begin_us;
+    const HardwareCounters::Counts counts = counters_.stop();
+    samples_.step_cpu_us.push_back(cpu_us / ticks);
+    if (counters_.counting()) {
+      samples_.instructions.push_back(counts.instructions / ticks);
+      samples_.cycles.push_back(counts.cycles / ticks);
+    }
+  }
+
+  void floor_block(int ticks) {
+    for (int i = 0; i < warming_ticks; ++i) floor_.copy();
+    const double cpu_begin_us = thread_cpu_us();
+    for (int i = 0; i < ticks; ++i) {
+      const Clock::time_point begin = Clock::now();
+      floor_.copy();
+      samples_.floor_us.push_back(us_between(begin, Clock::now()));
+    }
+    samples_.floor_cpu_us.push_back((thread_cpu_us() - cpu_begin_us) / ticks);
+  }
+
+  void stage_block(int ticks) {
+    for (int i = 0; i < warming_ticks; ++i) fast::step(model_, next_pose(), state_);
+    fast::StageClock clock;
+    state_.clock = &clock;
+    for (int i = 0; i < ticks; ++i) {
+      const scene::Pose pose = next_pose();
+      clock.start();
+      fast::step(model_, pose, state_);
+      for (std::size_t s = 0; s < fast::stage_count; ++s) {
+        samples_.stage_us[s].push_back(clock.spent_us(static_cast<fast::Stage>(s)));
+      }
+    }
+    state_.clock = nullptr;
+  }
+
+  void reserve(int ticks) {
+    const auto n = static_cast<std::size_t>(ticks);
+    for (std::vector<double>* sample : {&samples_.step_us, &samples_.force_us, &samples_.floor_us}) sample->reserve(n);
+    for (std::vector<double>& sample : samples_.stage_us) sample.reserve(n);
+    poses_.reserve(n);
+  }
+
+  void finish(CaseResult& result) {
+    result.ticks = static_cast<int>(samples_.step_us.size());
+    result.step = {percentiles(std::move(samples_.step_us)), median(std::move(samples_.step_cpu_us))};
+    result.floor = {percentiles(std::move(samples_.floor_us)), median(std::move(samples_.floor_cpu_us))};
+    result.force = percentiles(std::move(samples_.force_us));
+    for (std::size_t s = 0; s < fast::stage_count; ++s) {
+      result.stages[s] = percentiles(std::move(samples_.stage_us[s]));
+    }
+    result.instructions = median(std::move(samples_.instructions));
+    result.cycles = median(std::move(samples_.cycles));
+    for (int i = 0; i < state_.region_count; ++i) {
+      result.points += state_.regions[static_cast<std::size_t>(i)].points.count;
+    }
+  }
+
+ private:
+  scene::Pose next_pose() { return pose_at_tick(which_, tick_++); }
+
+  void count_regions(CaseResult& result) const {
+    const auto end = state_.regions.begin() + state_.region_count;
+    const auto pressing = static_cast<int>(
+        std::count_if(state_.regions.begin(), end, [](const fast::ContactRegion& r) { return r.pressing(); }));
+    result.regions_least = std::min(result.regions_least, pressing);
+    result.regions_most = std::max(result.regions_most, pressing);
+  }
+
+  const Case& which_;
+  const fast::FastModel& model_;
+  fast::FastState state_;
+  CopyFloor floor_;
+  HardwareCounters& counters_;
+  Samples samples_;
+  std::vector<scene::Pose> poses_;
+  std::int64_t tick_ = 0;
+};
+
+}  // namespace
+
+Effort effort_of(bool quick, int ticks) {
+  Effort effort;
+  if (quick) {
+    effort.seconds_per_case = 0.25;
+    effort.ticks_min = 160;
+  }
+  effort.ticks = ticks;
+  return effort;
+}
+
+double thread_cpu_us() noexcept {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return 1e6 * static_cast<double>(time.tv_sec) + 1e-3 * static_cast<double>(time.tv_nsec);
+}
+
+double CaseResult::step_over_floor() const noexcept {
+  return available ? ratio(step.wall.p50_us, floor.wall.p50_us) : not_measured;
+}
+
+double CaseResult::force_us_per_region() const noexcept {
+  return available && regions_least > 0 ? force.p50_us / regions_least : not_measured;
+}
+
+bool CaseResult::as_planned() const noexcept {
+  return available && regions_least == which.regions && regions_most == which.regions && status == 0;
+}
+
+CaseResult measure(const Case& which, const Effort& effort, HardwareCounters& counters) {
+  CaseResult result;
+  result.which = which;
+  const scene::Scene scene = scene_of(which);
+  const Clock::time_point start = Clock::now();
+  const fast::FastModel model(scene);
+  result.setup_s = 1e-6 * us_between(start, Clock::now());
+  result.triangles = model.surface.triangle_count();
+  result.vertices = model.surface.vertex_count();
+  if (model.tool.count() == 0) {
+    result.available = false;
+    result.why = "not available in this build: the tool has no samples";
+    return result;
+  }
+  Measurement measurement(which, model, counters);
+  const double step_us = measurement.approach();
+  // Two steps a tick, and a floor that takes a part of one.
+  const double wished = 1e6 * effort.seconds_per_case / (2.3 * std::max(step_us, 0.1));
+  const int ticks = effort.ticks > 0 ? effort.ticks
+                                     : static_cast<int>(std::clamp<double>(wished, effort.ticks_min, effort.ticks_max));
+  measurement.reserve(ticks);
+  result.regions_least = which.regions;
+  for (int done = 0; done < ticks; done += effort.block_ticks) {
+    const int block = std::min(effort.block_ticks, ticks - done);
+    measurement.step_block(block, result);
+    measurement.floor_block(block);
+    measurement.stage_block(block);
+  }
+  measurement.finish(result);
+  return result;
+}
+
+}  // namespace touchstone::bench

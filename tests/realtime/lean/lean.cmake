@@ -1,0 +1,25 @@
+# Counts the instructions of lean_step's ways and compares them. -D PROGRAM=... -D VALGRIND=...
+function(count how result)
+  execute_process(
+    COMMAND ${VALGRIND} --tool=callgrind --callgrind-out-file=/dev/null ${PROGRAM} ${how}
+    OUTPUT_VARIABLE answer ERROR_VARIABLE report RESULT_VARIABLE status)
+  if(NOT status EQUAL 0 OR NOT report MATCHES "Collected : ([0-9]+)")
+    message(FATAL_ERROR "${how}: valgrind did not count (${status})\n${report}")
+  endif()
+  set(${result} ${CMAKE_MATCH_1} PARENT_SCOPE)
+endfunction()
+
+count(set_up set_up)
+foreach(how step bare padded)
+  count(${how} all)
+  math(EXPR ${how} "${all} - ${set_up}")
+endforeach()
+math(EXPR step_permille "(${step} - ${bare}) * 1000 / ${bare}")
+math(EXPR padded_permille "(${padded} - ${bare}) * 1000 / ${bare}")
+message(STATUS "instructions of 200 lean ticks: step ${step}, bare stages ${bare} (step has ${step_permille} permille more), padded ${padded_permille} permille more")
+if(padded_permille LESS_EQUAL 20)
+  message(FATAL_ERROR "a superfluous stage in every fourth tick does not show: the count cannot be trusted")
+endif()
+if(step_permille GREATER 20)
+  message(FATAL_ERROR "a lean scene pays ${step_permille} permille for what it does not use; the limit is 20")
+endif()
