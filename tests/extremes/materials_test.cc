@@ -20,8 +20,8 @@ scene::Inclusion sphere_at(const Vec3& center_m, double radius_m, double youngs_
   return inclusion;
 }
 
-// Poisson's ratio from 0 to 0.5 changes no force of a single region, and that of several without a jump at 0.5.
-// As printed: the elasticity matrix is singular at 0.5 if it is inverted (E11).
+// Poisson's ratio from 0 to 0.5: the force of one region does not know it, and that of several has no jump at 0.5.
+// As printed: The elasticity matrix is singular at 0.5 if it is inverted (E11).
 TEST(MaterialExtremes, PoissonsRatioFromZeroToAHalf) {
   IN_BOTH_FORMULATIONS(formulation) {
     double one_n = -1.0, near_n = -1.0;
@@ -31,7 +31,9 @@ TEST(MaterialExtremes, PoissonsRatioFromZeroToAHalf) {
       Rig single(one);
       single.may = StepStatus::anchors_limited;
       single.to(test::at(0.0, 0.0, 0.067));
-      if (one_n >= 0.0) EXPECT_EQ(single.force_n().norm(), one_n);
+      if (one_n >= 0.0) {
+        EXPECT_EQ(single.force_n().norm(), one_n);
+      }
       one_n = single.force_n().norm();
       EXPECT_GT(one_n, 0.0);
       scene::Scene two = extremes::pins_on_cube(formulation, {Vec3(-0.01, 0, 0), Vec3(0.01, 0, 0)});
@@ -41,15 +43,16 @@ TEST(MaterialExtremes, PoissonsRatioFromZeroToAHalf) {
       several.to(extremes::sunk(0.002));
       ASSERT_EQ(several.state.region_count, 2);
       const double force_n = several.force_n().norm();
-      if (nu == 0.5) EXPECT_NEAR(force_n / near_n, 1.0, 1e-3);
+      if (nu == 0.5) {
+        EXPECT_NEAR(force_n / near_n, 1.0, 1e-3);
+      }
       near_n = force_n;
     }
   }
 }
 
-// An inclusion of the body's own material changes nothing.
-// As printed: the deflection of one material in two parts is up to 16 times that of one part (E13); the printed k
-// here is exact only for the sum of all its parts.
+// An inclusion of the body's own material: the same as none.
+// As printed: The deflection of one material in two parts is up to 16 times that of one part (E13).
 TEST(MaterialExtremes, InclusionOfTheBodysOwnMaterialIsNone) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene plain = extremes::cube(formulation), filled = plain;
@@ -60,14 +63,15 @@ TEST(MaterialExtremes, InclusionOfTheBodysOwnMaterialIsNone) {
       rig->to(test::pressed(0.002, 0.004, 0.007));
     }
     for (std::size_t i = 0; i < without.region().ends.force_n.size(); ++i) {
-      EXPECT_LE((without.region().ends.force_n[i] - with.region().ends.force_n[i]).norm(), 1e-9 * with.force_n().norm());
+      EXPECT_LE((without.region().ends.force_n[i] - with.region().ends.force_n[i]).norm(),
+                1e-9 * with.force_n().norm());
       EXPECT_LE((without.region().ends.displacement_m[i] - with.region().ends.displacement_m[i]).norm(), 1e-9 * 0.002);
     }
   }
 }
 
 // Moduli in the ratio 1e-6 to 1e6: finite, the force untouched, the beams in balance.
-// As printed: (12) is a tautology and leaves the parts' elongations open (E14); the balance is least squares.
+// As printed: (12) is a tautology and leaves the parts' elongations open (E14); the balance is least squares (E8).
 TEST(MaterialExtremes, InclusionRatiosOverTwelveDecades) {
   IN_BOTH_FORMULATIONS(formulation) {
     double force_n = -1.0;
@@ -78,20 +82,22 @@ TEST(MaterialExtremes, InclusionRatiosOverTwelveDecades) {
       rig.may = StepStatus::anchors_limited;
       rig.to(test::pressed(0.002, 0.004, 0.007));
       EXPECT_LE(rig.imbalance(), formulation == Formulation::corrected ? 1e-9 : 1.0);
-      if (force_n >= 0.0) EXPECT_EQ(rig.force_n().norm(), force_n);
+      if (force_n >= 0.0) {
+        EXPECT_EQ(rig.force_n().norm(), force_n);
+      }
       force_n = rig.force_n().norm();
     }
   }
 }
 
-// An inclusion that fills the body makes it a body of that material.
-// As printed: the same limit, since the printed k is exact where one part is the whole beam.
+// An inclusion that fills the body: a body of that material.
+// As printed: The same limit: the printed k is exact where one part is the whole beam.
 TEST(MaterialExtremes, InclusionFillingTheBodyIsTheBody) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene stiff = extremes::ball(formulation), filled = stiff;
     stiff.fast.s_c_m2 = filled.fast.s_c_m2 = 1e-2;
     stiff.body.material.youngs_modulus_pa = 3e7;
-    filled.body.inclusions = {sphere_at(Vec3(0.0, 0.0, 0.030), 0.029999, 3e7)};
+    filled.body.inclusions = {sphere_at(Vec3(0.0, 0.0, 0.030), 0.03 * (1.0 - 1e-9), 3e7)};
     Rig of_one(stiff), of_two(filled);
     for (Rig* rig : {&of_one, &of_two}) {
       rig->may = StepStatus::anchors_limited;
@@ -100,13 +106,13 @@ TEST(MaterialExtremes, InclusionFillingTheBodyIsTheBody) {
     ASSERT_GT(of_one.largest_end_m(), 1e-7);
     for (std::size_t i = 0; i < of_one.region().ends.displacement_m.size(); ++i) {
       EXPECT_LE((of_one.region().ends.displacement_m[i] - of_two.region().ends.displacement_m[i]).norm(),
-                0.02 * of_one.largest_end_m());
+                1e-4 * of_one.largest_end_m());
     }
   }
 }
 
-// As many inclusions as there may be, in the way of every beam: finite, in balance, and split into all their parts.
-// As printed: one inclusion per beam is spoken of.
+// As many inclusions as there may be, in the way of one beam: split into all their parts, finite, the beams in balance.
+// As printed: One inclusion per beam is spoken of.
 TEST(MaterialExtremes, SixteenInclusions) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::cube(formulation);
@@ -125,8 +131,8 @@ TEST(MaterialExtremes, SixteenInclusions) {
   }
 }
 
-// An inclusion a micrometre under the contact: bounded while the tool slides over it, the force that of the body alone.
-// As printed: a part of no length divides by nothing.
+// An inclusion a micrometre under the contact, the tool sliding over it: bounded, and the force that of the body alone.
+// As printed: A part of no length divides by nothing.
 TEST(MaterialExtremes, InclusionTouchingTheContact) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::cube(formulation), plain = scene;
@@ -140,7 +146,7 @@ TEST(MaterialExtremes, InclusionTouchingTheContact) {
   }
 }
 
-// A softening law rises to its peak and stays there, and the step says so.
+// Past the peak of a softening law: the force rises to its peak and stays there, and the step says so.
 // As printed: |...| makes the force fall to 0 and rise again to 9 times the peak (E1).
 TEST(MaterialExtremes, SofteningLawSaturatesAtItsPeak) {
   IN_BOTH_FORMULATIONS(formulation) {
@@ -162,8 +168,8 @@ TEST(MaterialExtremes, SofteningLawSaturatesAtItsPeak) {
   }
 }
 
-// With k1 = 0 the force goes with the cube of the depth.
-// As printed: the same; the closed inverse has k1 in its denominators.
+// k1 = 0: the force goes with the cube of the depth, and its inverse gives the depth back.
+// As printed: The same; the closed inverse has k1 in its denominators.
 TEST(MaterialExtremes, PurelyCubicLawIsTheCube) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::punch_on_cube(formulation);
@@ -179,7 +185,7 @@ TEST(MaterialExtremes, PurelyCubicLawIsTheCube) {
 }
 
 // C_n at its limit and far past it: corrected never turns the surface inside out; both stay bounded.
-// As printed: beyond the limit points beside the contact move against it, by up to C_n over the limit (E16).
+// As printed: Beyond the limit points beside the contact move against it, by up to C_n over the limit (E16).
 TEST(MaterialExtremes, LocalFactorAtItsLimitAndPastIt) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::cube(formulation);
@@ -191,18 +197,20 @@ TEST(MaterialExtremes, LocalFactorAtItsLimitAndPastIt) {
       rig.largest_factor = formulation == Formulation::published ? std::max(1.0, C_n / limit) : 1.0;
       for (const double z_m : {0.071, 0.069, 0.064}) rig.to(test::at(0.0, 0.0, z_m));
       const LocalConstants local{C_n, scene.fast.C_r_m, scene.fast.r_R_m};
-      for (double r_m = 0.0; r_m < 0.02; r_m += 1e-4) {
+      for (double r_m = 0.0; r_m < local.r_R_m; r_m += 1e-4) {
         const double w = (formulation == Formulation::published ? local_factor_published : local_factor_corrected)(
             local, {60, 5e-5}, r_m);
-        EXPECT_GE(w, formulation == Formulation::corrected || C_n <= limit * (1.0 - 1e-9) ? 0.0 : 1.0 - C_n / limit - 1e-9);
+        EXPECT_GE(
+            w, formulation == Formulation::corrected || C_n <= limit * (1.0 - 1e-9) ? 0.0 : 1.0 - C_n / limit - 1e-9);
         EXPECT_LE(w, 1.0 + 1e-12);
       }
     }
   }
 }
 
-// The corrected local factor is 1 at r_R and at the contact's rim, whatever the region's size, and has no step between.
-// As printed: it jumps at r_R by 41 % for two samples and 84 % for 200 (E16); here only bounded.
+// Contacts of 1 to 1e5 samples and of area 0 to 1 m2: the corrected factor is 1 at r_R and at the rim and has no step
+// between.
+// As printed: It jumps at r_R by 41 % for two samples and 84 % for 200 (E16); here only bounded.
 TEST(MaterialExtremes, LocalFactorHasNoStep) {
   const LocalConstants local{0.4, 0.002, 0.015};
   for (const double area_m2 : {0.0, 1e-300, 1e-12, 1e-5, 3e-4, 1.0}) {
@@ -223,8 +231,8 @@ TEST(MaterialExtremes, LocalFactorHasNoStep) {
   }
 }
 
-// The area-aware law with a contact of no area goes over into the cubic term alone, and with k3 = 0 into no force.
-// As printed: there is no such law; the printed force does not know the area (E7).
+// The area-aware law with a contact of no area: the cubic term alone, and with k3 = 0 no force.
+// As printed: There is no such law: the force does not know the area (E7).
 TEST(MaterialExtremes, AreaAwareLawWithVanishingArea) {
   scene::Contact contact;
   contact.law = scene::ContactLaw::area_aware;
@@ -244,7 +252,10 @@ TEST(MaterialExtremes, AreaAwareLawWithVanishingArea) {
       Rig rig(scene);
       rig.may = StepStatus::anchors_limited;
       rig.to(extremes::punched(0.001));
-      EXPECT_NEAR(rig.force_n().norm() / (8e6 * side_m / std::sqrt(std::numbers::pi) * 0.001), 1.0, 1e-6);
+      const double of_the_foot = rig.force_n().norm() / (8e6 * side_m / std::sqrt(std::numbers::pi) * 0.001);
+      // One sample under the mass centre: all shares as printed are 0, and the flanks count as much as the foot (E6).
+      EXPECT_GT(of_the_foot, formulation == Formulation::corrected ? 1.0 - 1e-6 : 0.25);
+      EXPECT_LT(of_the_foot, 1.0 + 1e-6);
       EXPECT_LT(rig.force_n().norm(), before_n);
       before_n = rig.force_n().norm();
     }

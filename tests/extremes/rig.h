@@ -1,5 +1,5 @@
-// A fast model that is looked at after every tick: whatever the scene and the pose, what it answers is finite and within
-// the law's bound, the surface is whole and what the support holds is at rest.
+// A fast model that is looked at after every tick: whatever the scene and the pose, what it answers is finite and
+// within the law's bound, the surface is whole and what the support holds is at rest.
 #pragma once
 
 #include "fast/equivalent_point.h"
@@ -30,8 +30,8 @@ inline const char* name_of(Formulation formulation) {
 }
 
 /// A test runs its body under both, each named in what it reports.
-#define IN_BOTH_FORMULATIONS(formulation)                                                             \
-  for (const ::touchstone::scene::Formulation formulation : ::touchstone::fast::extremes::both)       \
+#define IN_BOTH_FORMULATIONS(formulation)                                                       \
+  for (const ::touchstone::scene::Formulation formulation : ::touchstone::fast::extremes::both) \
     if (const ::testing::ScopedTrace trace(__FILE__, __LINE__, extremes::name_of(formulation)); true)
 
 /// A coarse surface, since every vertex is looked at after every tick.
@@ -64,8 +64,9 @@ inline void add_box(const Vec3& lower_m, const Vec3& upper_m, scene::TriangleMes
   const auto first = static_cast<std::int32_t>(mesh.points_m.cols());
   mesh.points_m.conservativeResize(3, first + 8);
   for (int i = 0; i < 8; ++i) {
-    mesh.points_m.col(first + i) = Vec3((i & 1) != 0 ? upper_m.x() : lower_m.x(), (i & 2) != 0 ? upper_m.y() : lower_m.y(),
-                                        (i & 4) != 0 ? upper_m.z() : lower_m.z());
+    mesh.points_m.col(first + i) =
+        Vec3((i & 1) != 0 ? upper_m.x() : lower_m.x(), (i & 2) != 0 ? upper_m.y() : lower_m.y(),
+             (i & 4) != 0 ? upper_m.z() : lower_m.z());
   }
   constexpr std::array<std::array<int, 4>, 6> faces{
       {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
@@ -124,7 +125,8 @@ class Rig {
   }
   [[nodiscard]] double largest_displacement_m() const {
     double largest_m = 0.0;
-    for (std::size_t v = 0; v < model.rest.vertex_count(); ++v) largest_m = std::max(largest_m, displacement_m(v).norm());
+    for (std::size_t v = 0; v < model.rest.vertex_count(); ++v)
+      largest_m = std::max(largest_m, displacement_m(v).norm());
     return largest_m;
   }
   /// The largest displacement of an anchor point.
@@ -178,7 +180,8 @@ class Rig {
     for (int i = 0; i < state.region_count; ++i) {
       const ContactRegion& r = region(static_cast<std::size_t>(i));
       const DuffingLaw law_here = law(static_cast<std::size_t>(i));
-      const double limit_m = depth_limit_rel * std::min(widest_m, r.extent.thickness_m > 0.0 ? r.extent.thickness_m : widest_m);
+      const double limit_m =
+          depth_limit_rel * std::min(widest_m, r.extent.thickness_m > 0.0 ? r.extent.thickness_m : widest_m);
       if (!r.force.force_n.allFinite() || !r.force.torque_nm.allFinite() || !std::isfinite(r.force.magnitude_n))
         out << "a force or torque that is not finite";
       if (!r.force.load_center_m.allFinite() || !r.force.tangential_n.allFinite()) out << "a load that is not finite";
@@ -195,7 +198,8 @@ class Rig {
         if (model.formulas.resolve_friction == resolve_friction_corrected) {
           // One potential: F = f(|D|), and never more than the limit of the law, stuck or sliding.
           const double F = law_here.force_n(r.displacement_m.norm());
-          if (r.force.magnitude_n > 0.0 && state.several == nullptr && !(std::abs(r.force.magnitude_n / F - 1.0) <= 1e-9))
+          if (r.force.magnitude_n > 0.0 && state.several == nullptr &&
+              !(std::abs(r.force.magnitude_n / F - 1.0) <= 1e-9))
             out << "force " << r.force.magnitude_n << " N, the law says " << F;
           if (!(F_t <= model.friction->limit_n(F_n) * (1.0 + 1e-9))) out << "friction beyond f_max: " << F_t << " N";
         }
@@ -208,14 +212,16 @@ class Rig {
         if (!(u_i.norm() <= r.displacement_m.norm() * (1.0 + 1e-9))) out << "an anchor point beyond the contact";
     }
     if (!(total_force_n(state).norm() <= (1.0 + (state.several ? later_forces : 1e-9)) * own_n)) out << "a total force";
-    const double most_m = largest_factor * (state.several ? hat_growth : 2.0) * moved_m + 1e-6 * widest_m * (moved_m > 0.0);
+    const double most_m =
+        largest_factor * (state.several ? hat_growth : 2.0) * moved_m + 1e-6 * widest_m * (moved_m > 0.0);
     for (std::size_t v = 0; v < model.rest.vertex_count(); ++v) {
       const Vec3 u_m = displacement_m(v);
       const auto& n = state.field.normal;
       const Vec3 normal(n[0][v], n[1][v], n[2][v]);
       if (!(u_m.norm() <= most_m)) out << "vertex " << v << " moved by " << u_m.norm() << " of " << most_m << " m";
       if (!(std::abs(normal.norm() - 1.0) <= 1e-5)) out << "normal " << v << " of length " << normal.norm();
-      if (model.rest.rest_W_m[2][v] <= support_height_m_ && !u_m.isZero(0.0)) out << "vertex " << v << " left the support";
+      if (model.rest.rest_W_m[2][v] <= support_height_m_ && !u_m.isZero(0.0))
+        out << "vertex " << v << " left the support";
       if (out.tellp() > 400) break;
     }
     return out.str();

@@ -21,15 +21,17 @@ struct Split {
       ASSERT_LE(ends.displacement_m[i].norm(), displacement_m.norm() * (1.0 + 1e-9));
     }
   }
-  [[nodiscard]] double residual(const Vec3& force_n) const { return (support_force_n(ends) + force_n).norm() / force_n.norm(); }
+  [[nodiscard]] double residual(const Vec3& force_n) const {
+    return (support_force_n(ends) + force_n).norm() / force_n.norm();
+  }
 
   FastModel model;
   BeamSkeleton skeleton;
   BeamEnds ends;
 };
 
-// A force straight along one beam is carried in balance: the beams' forces sum to it.
-// As printed: least squares with a residual, here of no more than the force; y_i of that beam is 0 / 0 (E8).
+// A force straight along one beam: carried in balance.
+// As printed: y_i of that beam is 0 / 0; the least squares leave a residual, here of no more than the force (E8).
 TEST(SkeletonExtremes, ForceAlongABeamIsCarried) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig rig(extremes::cube(formulation));
@@ -42,8 +44,8 @@ TEST(SkeletonExtremes, ForceAlongABeamIsCarried) {
   }
 }
 
-// Anchor points all in one plane with the contact, and a force at right angles to it: finite, in balance, all bending.
-// As printed: the axial sum g is 0, so its factor a is 0 / 0 (E8).
+// All anchor points in one plane with the contact, the force at right angles to it: finite, in balance, all bending.
+// As printed: The axial sum g is 0, so its factor a is 0 / 0 (E8).
 TEST(SkeletonExtremes, AllBeamsInAPlaneCarryAForceAcrossIt) {
   IN_BOTH_FORMULATIONS(formulation) {
     Split split(extremes::cube(formulation));
@@ -56,8 +58,8 @@ TEST(SkeletonExtremes, AllBeamsInAPlaneCarryAForceAcrossIt) {
   }
 }
 
-// The contact on an anchor point itself: no beam is shorter than r_R, the split is finite, and it is the same on both
-// sides of the anchor point, since x x^T is even.
+// The contact on an anchor point itself: no beam shorter than r_R, the split finite and the same on both sides of the
+// point.
 // As printed: l_i = 0 and NaN; a hair further one beam takes all (E9).
 TEST(SkeletonExtremes, ContactOnAnAnchorHasNoShortBeam) {
   IN_BOTH_FORMULATIONS(formulation) {
@@ -78,9 +80,9 @@ TEST(SkeletonExtremes, ContactOnAnAnchorHasNoShortBeam) {
   }
 }
 
-// s_c over twelve decades: the force does not know it, and the anchor points move the less the thicker the beams, held
-// back to the contact's displacement where they are too thin.
-// As printed: thin beams tear the body off its contact.
+// s_c over twelve decades: the force does not know it; the thicker the beams the less the anchor points move, never
+// more than the contact.
+// As printed: Thin beams tear the body off its contact (E17).
 TEST(SkeletonExtremes, CrossSectionOverTwelveDecades) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (scene::Scene scene : {extremes::cube(formulation), extremes::ball(formulation)}) {
@@ -94,7 +96,9 @@ TEST(SkeletonExtremes, CrossSectionOverTwelveDecades) {
         ASSERT_TRUE(rig.state.in_contact());
         EXPECT_LE(rig.largest_end_m(), before_m * (1.0 + 1e-9));
         before_m = rig.largest_end_m();
-        if (force_n >= 0.0) EXPECT_EQ(rig.force_n().norm(), force_n);
+        if (force_n >= 0.0) {
+          EXPECT_EQ(rig.force_n().norm(), force_n);
+        }
         force_n = rig.force_n().norm();
       }
       EXPECT_LT(before_m, 1e-9);
@@ -103,7 +107,7 @@ TEST(SkeletonExtremes, CrossSectionOverTwelveDecades) {
 }
 
 // E over twelve decades: the force is the law's, whatever E, and so are the beams' shares of it.
-// As printed: the same; E enters the displacements alone.
+// As printed: The same: E enters the displacements alone.
 TEST(SkeletonExtremes, YoungsModulusOverTwelveDecadesLeavesForceAndSharesAlone) {
   IN_BOTH_FORMULATIONS(formulation) {
     std::vector<Vec3> shares;
@@ -121,8 +125,8 @@ TEST(SkeletonExtremes, YoungsModulusOverTwelveDecadesLeavesForceAndSharesAlone) 
   }
 }
 
-// r_R larger than the body: every beam has that length, and the split stays finite and in balance.
-// As printed: l_i = r_R inside R, so all beams alike.
+// r_R larger than the body: every beam has that length, and the split is finite and in balance.
+// As printed: The same: l_i = r_R inside R.
 TEST(SkeletonExtremes, NeighbourhoodLargerThanTheBody) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::cube(formulation);
@@ -135,7 +139,7 @@ TEST(SkeletonExtremes, NeighbourhoodLargerThanTheBody) {
   }
 }
 
-// r_R of a nanometre: no local factor is left beyond the contact, and the beams keep their own lengths.
+// r_R of a nanometre: nothing is left of the local factor.
 // As printed: 1 + C_n ln(...) is taken over a range of no width.
 TEST(SkeletonExtremes, NeighbourhoodOfANanometre) {
   IN_BOTH_FORMULATIONS(formulation) {
@@ -152,9 +156,8 @@ TEST(SkeletonExtremes, NeighbourhoodOfANanometre) {
   }
 }
 
-// Anchor points that earlier regions have pushed into one place, onto a line or far apart keep cross-sections above 0
-// that sum to s_c.
-// As printed: the shares are 0 / 0 where the areas vanish.
+// Anchor points pushed into one place, onto a line or far apart: cross-sections above 0 that sum to s_c.
+// As printed: The shares are 0 / 0 where the areas vanish.
 TEST(SkeletonExtremes, CollapsedAnchorsKeepTheirCrossSections) {
   const FastModel model(extremes::cube(Formulation::corrected));
   CurrentEnds ends(model.skeleton);
