@@ -30,9 +30,10 @@ inline const char* name_of(Formulation formulation) {
 }
 
 /// A test runs its body under both, each named in what it reports.
-#define IN_BOTH_FORMULATIONS(formulation)                                                       \
-  for (const ::touchstone::scene::Formulation formulation : ::touchstone::fast::extremes::both) \
-    if (const ::testing::ScopedTrace trace(__FILE__, __LINE__, extremes::name_of(formulation)); true)
+#define IN_BOTH_FORMULATIONS(formulation)                                                                           \
+  for (const ::touchstone::scene::Formulation formulation : ::touchstone::fast::extremes::both)                     \
+    if (const ::testing::ScopedTrace trace(__FILE__, __LINE__, ::touchstone::fast::extremes::name_of(formulation)); \
+        true)
 
 /// A coarse surface, since every vertex is looked at after every tick.
 inline scene::Scene coarse(scene::Scene scene) {
@@ -92,10 +93,23 @@ inline scene::Scene pins_on_cube(Formulation formulation, const std::vector<Vec3
   }
   use_mesh(std::move(mesh), scene);
   scene.fast.max_regions = 10;
+  scene.fast.s_c_m2 = 0.03;
   return scene;
 }
 /// Feet at z = 0 of the tool this deep.
 inline scene::Pose sunk(double depth_m, double x_m = 0.0) { return test::at(x_m, 0.0, 0.060 - depth_m); }
+
+/// The tool of one of these scenes with its lowest point this deep under the top of the cube.
+inline scene::Pose in(const scene::Scene& scene, double depth_m, double x_m = 0.0) {
+  switch (scene.tool.shape) {
+    case scene::ToolShape::mesh:
+      return sunk(depth_m, x_m);
+    case scene::ToolShape::box:
+      return punched(depth_m, x_m);
+    default:
+      return test::pressed(depth_m, x_m);
+  }
+}
 
 [[nodiscard]] inline bool has(StepStatus status, StepStatus bit) { return (status | bit) == status; }
 
@@ -148,15 +162,19 @@ class Rig {
       const auto* byte = static_cast<const unsigned char*>(data);
       for (std::size_t i = 0; i < bytes; ++i) sum = (sum ^ byte[i]) * 1099511628211u;
     };
+    mix(state.pose.position_m.data(), 3 * sizeof(double));
+    mix(state.pose.orientation.coeffs().data(), 4 * sizeof(double));
     mix(&state.region_count, sizeof state.region_count);
     for (int i = 0; i < state.region_count; ++i) {
       const ContactRegion& r = region(static_cast<std::size_t>(i));
       mix(&r.id, sizeof r.id);
-      for (const Vec3* v : {&r.d, &r.force.force_n, &r.force.torque_nm, &r.friction.stretch_m, &r.friction.motion,
-                            &r.displacement_m, &r.origin.p0_W_m})
-        mix(v->data(), 3 * sizeof(double));
+      mix(&r.depth_rel, sizeof r.depth_rel);
       mix(&r.friction.sliding, sizeof r.friction.sliding);
+      for (const Vec3* v : {&r.d, &r.force.force_n, &r.force.torque_nm, &r.friction.stretch_m, &r.friction.motion,
+                            &r.friction.d, &r.displacement_m, &r.origin.p0_W_m})
+        mix(v->data(), 3 * sizeof(double));
     }
+    if (state.several) mix(&state.several->bulge_m, sizeof state.several->bulge_m);
     for (const auto& column : state.field.displacement_m) mix(column.data(), column.size() * sizeof column[0]);
     for (const auto& column : state.field.normal) mix(column.data(), column.size() * sizeof column[0]);
     return sum;
