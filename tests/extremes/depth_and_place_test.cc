@@ -30,7 +30,7 @@ TEST(DepthAndPlace, TouchingIsNoForce) {
 }
 
 // All samples of a punch flush with the face: no force, and 1e-15 m further the law's.
-// As printed: Contact is where triangles meet, and flush ones meet nowhere or everywhere.
+// As printed: Contact is where two meshes meet, and flush triangles meet nowhere or everywhere.
 TEST(DepthAndPlace, FlushPunchIsNoForceAndTheNextDigitIsTheLaw) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig rig(extremes::punch_on_cube(formulation));
@@ -65,7 +65,7 @@ TEST(DepthAndPlace, DepthOfTheWholeBodyIsLimited) {
 
 // Driven through the body and out at the far side: the force never turns round, and in the end there is no force, no
 // region and a surface at rest.
-// As printed: The closest side changes half way: the force turns round and throws the tool out.
+// As printed: The direction is not said; the closest side changes half way, and would throw the tool out.
 TEST(DepthAndPlace, ThroughTheBodyAndOutLeavesNothing) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : {extremes::cube(formulation), extremes::ball(formulation)}) {
@@ -136,7 +136,7 @@ TEST(DepthAndPlace, ToolLargerThanTheBodyIsBounded) {
 }
 
 // 50 mm in one tick: pushed back to where the tool came from, along the direction of a slow press.
-// As printed: The closest side of the body decides, which at that depth is any of six.
+// As printed: The direction is not said; the closest side, at that depth, is any of six.
 TEST(DepthAndPlace, JumpOfFiftyMillimetresKnowsWhereItCameFrom) {
   IN_BOTH_FORMULATIONS(formulation) {
     const Vec3 middle_m(0.0, 0.0, 0.03);
@@ -153,7 +153,7 @@ TEST(DepthAndPlace, JumpOfFiftyMillimetresKnowsWhereItCameFrom) {
 }
 
 // 51 mm along the face in one tick: without friction the same as a fresh press there.
-// As printed: The same, once a mesh part has been cut out anew, which takes 5 to 155 ms.
+// As printed: The same, once a new submesh has been separated.
 TEST(DepthAndPlace, TangentialJumpIsAFreshPressElsewhere) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig jumped(extremes::cube(formulation)), fresh(extremes::cube(formulation));
@@ -253,7 +253,7 @@ TEST(DepthAndPlace, SupportFaceStaysPutWhenPressed) {
 
 // A ball led around every free edge of the box at constant depth: in a tick the force changes by at most 4 times slope
 // times step.
-// As printed: The direction is the mean normal of triangles, which jumps by up to a right angle with each of them.
+// As printed: The direction is not said; the normal of a mesh jumps at an edge by up to a right angle.
 TEST(DepthAndPlace, ForceIsContinuousOverEveryEdgeOfABox) {
   IN_BOTH_FORMULATIONS(formulation) {
     struct Edge {

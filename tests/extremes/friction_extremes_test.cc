@@ -42,7 +42,7 @@ TEST(FrictionExtremes, KOfZeroIsFrictionless) {
 }
 
 // mu_D = 0: once it slips it slides without friction, the normal force that of no friction.
-// As printed: The same where no stretch is left; else F_n is that of the stretched depths.
+// As printed: F_n keeps the depths as stretched at the onset (E5).
 TEST(FrictionExtremes, MuOfZeroSlidesWithoutFriction) {
   IN_BOTH_FORMULATIONS(formulation) {
     const scene::Scene plain = extremes::cube(formulation);
@@ -182,8 +182,8 @@ TEST(FrictionExtremes, ClosedPathsAtOneDepthOnlyTake) {
   }
 }
 
-// Random closed paths over the face, the depth swelling on the way: a flat punch gets no work out. A ball that never
-// slips does, less than 1 % of what it turns over: its equivalent depth is a mean, and no way of the tool.
+// Random closed paths over the face, the depth swelling on the way: a flat punch gets no work out; a ball that never
+// slips gets less than 1 % of what it turns over, since its equivalent depth is a mean.
 // As printed: The same.
 TEST(FrictionExtremes, ClosedPathsWithSwellingDepthOnlyTake) {
   IN_BOTH_FORMULATIONS(formulation) {

@@ -18,9 +18,9 @@ scene::Scene live_scene(scene::Formulation formulation) {
   return scene;
 }
 
-// A device that says anything: jumps, NaN, quaternions of no length, no sample. Every force is finite, at most the
-// scene's force_max_n, and changes by at most its slew.
-// As printed: The computed force is sent as it is.
+// A device that jumps, says NaN, quaternions of no length or nothing: every force is finite, at most force_max_n, and
+// changes by at most its slew.
+// As printed: Not spoken of: the computed force goes to the device.
 TEST(LiveExtremes, WhateverTheDeviceSaysTheForceKeepsItsLimits) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const double K : {0.5, 1e6}) {
@@ -55,7 +55,7 @@ TEST(LiveExtremes, WhateverTheDeviceSaysTheForceKeepsItsLimits) {
 }
 
 // A device that falls silent in contact: the force fades to 0 within release_s, never rising, and stays there.
-// As printed: The last force is held for good.
+// As printed: Not spoken of.
 TEST(LiveExtremes, ADeviceThatFallsSilentIsLetGo) {
   IN_BOTH_FORMULATIONS(formulation) {
     const scene::Scene scene = live_scene(formulation);

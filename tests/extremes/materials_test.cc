@@ -147,7 +147,7 @@ TEST(MaterialExtremes, InclusionTouchingTheContact) {
 }
 
 // Past the peak of a softening law: the force rises to its peak and stays there, and the step says so.
-// As printed: |...| makes the force fall to 0 and rise again to 9 times the peak (E1).
+// As printed: The absolute value makes the force fall to 0 and rise again to 9 times the peak (E1).
 TEST(MaterialExtremes, SofteningLawSaturatesAtItsPeak) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::cube(formulation);

@@ -24,8 +24,8 @@ std::vector<Vec3> grid_of(int columns, int rows, double pitch_m, double rise_m =
   return feet_m;
 }
 
-// Twelve pins and room for four regions: four regions are felt, the step says that there are more, and all is bounded.
-// As printed: One region more in every time step, without end.
+// Twelve pins and room for four regions: four are felt, the step says that there are more, and all is bounded.
+// As printed: One new region in a time step is assumed; below 10 the rate is kept.
 TEST(RegionExtremes, MoreRegionsThanThereIsRoomFor) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::pins_on_cube(formulation, grid_of(4, 3, 0.012));
@@ -43,8 +43,8 @@ TEST(RegionExtremes, MoreRegionsThanThereIsRoomFor) {
   }
 }
 
-// Where a region with a place goes, one that had none gets it: pins of different lengths, withdrawn at a tilt.
-// As printed: Regions are numbered by creation and never left out.
+// Four pins rocked over the face with room for two regions: the place of one that goes is taken by one that had none.
+// As printed: One new region in a time step is assumed.
 TEST(RegionExtremes, AFreedPlaceIsTakenAgain) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::pins_on_cube(formulation, grid_of(4, 1, 0.012));
@@ -173,7 +173,7 @@ TEST(RegionExtremes, MirroredPinsHaveMirroredForces) {
 }
 
 // Pins exactly r_th apart, a digit less and a digit more: one region or two, bounded in each case.
-// As printed: Triangles of one cut-out part are one region.
+// As printed: The same: points closer than a threshold are one region.
 TEST(RegionExtremes, ExactlyTheThresholdApart) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const double off : {-1e-9, -1e-16, 0.0, 1e-16, 1e-9}) {

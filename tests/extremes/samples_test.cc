@@ -100,8 +100,10 @@ scene::Scene meshed_punch(Formulation formulation, double apex, int pieces) {
   return scene;
 }
 
-// A tool's mesh of slivers a million times as long as wide, and of triangles without area: the force of the tool
-// itself. As printed: Contact points are the mesh's vertices, "provided that these are evenly distributed".
+// A tool's mesh of slivers a million times as long as wide, and of triangles without area: the corrected force is that
+// of the tool itself.
+// As printed: Contact points are the mesh's vertices, "provided that these vertex points are evenly distributed": each
+// counts the same, whatever its area (E6).
 TEST(SampleExtremes, ToolMeshOfSlivers) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const double tilt : {0.0, 0.05}) {
@@ -126,8 +128,8 @@ TEST(SampleExtremes, ToolMeshOfSlivers) {
 }
 
 // A bar 200 times as long as wide on as few triangles as there may be: normals of length 1, the surface bounded, and
-// the force that of 20000 triangles to the last bit. As printed: Contact and normals come from the body's triangles,
-// and so does the force.
+// the force that of 20000 triangles to the last bit.
+// As printed: Contact is found on the body's mesh, so the force hangs on its triangles.
 TEST(SampleExtremes, BodyOfSliversLeavesTheForceAlone) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::cube(formulation);
@@ -146,7 +148,7 @@ TEST(SampleExtremes, BodyOfSliversLeavesTheForceAlone) {
 }
 
 // As few samples as a tool of each shape may have: a force within the law from every side.
-// As printed: A tool without vertices where it touches is not in contact.
+// As printed: A contact without a vertex of the tool in it has no shares: 0 / 0.
 TEST(SampleExtremes, FewestSamplesOfEveryTool) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::ToolShape shape :

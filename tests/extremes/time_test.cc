@@ -29,7 +29,7 @@ std::vector<scene::Scene> scenes_with_memory(Formulation formulation) {
 }
 // A pose with a number that is NaN or infinite in any place: the last answer to the bit, and the next good pose is
 // answered as if it had never been.
-// As printed: It goes through every formula and comes out at the device.
+// As printed: Not spoken of: it goes through every formula and comes out at the device.
 TEST(TimeExtremes, PoseThatIsNoNumberIsAsIfItHadNeverBeen) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : scenes_with_memory(formulation)) {
@@ -68,7 +68,7 @@ TEST(TimeExtremes, NoGoodPoseAtAllIsNoContact) {
 }
 
 // An orientation of any length from 1e-320 to 1e308: the orientation of length 1, or no pose; one of length 0 is none.
-// As printed: Not spoken of; a matrix that also scales makes the tool smaller or larger.
+// As printed: Not spoken of.
 TEST(TimeExtremes, QuaternionOfAnyLengthTurnsOnly) {
   IN_BOTH_FORMULATIONS(formulation) {
     const scene::Scene scene = extremes::punch_on_cube(formulation);
@@ -95,7 +95,7 @@ TEST(TimeExtremes, QuaternionOfAnyLengthTurnsOnly) {
 }
 
 // As far away as a number goes, and from there into contact in one tick: no contact, then the force of a fresh press.
-// As printed: The triangles a mesh part is cut out of are searched from the last contact on.
+// As printed: Not spoken of: slow motion is assumed.
 TEST(TimeExtremes, FromTheEndOfTheNumbersIntoContact) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : scenes_with_memory(formulation)) {
@@ -115,7 +115,7 @@ TEST(TimeExtremes, FromTheEndOfTheNumbersIntoContact) {
 }
 
 // 50 mm to and fro in every tick, in contact at both ends, with friction: bounded, and no more friction than its limit.
-// As printed: The stretch of a jump is taken as it is, until C4 says it is too much.
+// As printed: Slow motion is assumed; the stretch of a jump is taken as it is, until C4 says that it is too much.
 TEST(TimeExtremes, FiftyMillimetresInEveryTick) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : scenes_with_memory(formulation)) {
@@ -182,9 +182,9 @@ scene::Pose on_the_round(const scene::Scene& scene, int tick, int round) {
   return pose;
 }
 
-// 1e8 ticks of a motion that repeats: after each of two rounds the whole state has equal bits. A tick is a function of
-// state and pose alone, so it has them after every round to come, and 1e8 ticks differ from 1e3 in nothing.
-// As printed: The cut-out mesh part is carried along and refined with every tick.
+// 1e8 ticks of a motion that repeats: the whole state has equal bits one round on. A tick is a function of state and
+// pose alone, so it has them after every round to come, and 1e8 ticks differ from 1e3 in nothing.
+// As printed: Each shape is an update of the last time step's, so errors add up.
 TEST(TimeExtremes, HundredMillionTicksAreTwoRounds) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : scenes_with_memory(formulation)) {
