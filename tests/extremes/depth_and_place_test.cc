@@ -1,6 +1,8 @@
 // The extremes: how deep, and where on the body.
 #include "extremes/rig.h"
 
+#include <numbers>
+
 namespace touchstone::fast {
 namespace {
 

@@ -1,8 +1,6 @@
 // The extremes: how many samples the tool has, how many triangles the body, and slivers among both.
 #include "extremes/rig.h"
 
-#include <numbers>
-
 namespace touchstone::fast {
 namespace {
 

@@ -1,8 +1,6 @@
 // The extremes: bodies that are needles, plates, pointed, tiny or huge.
 #include "extremes/rig.h"
 
-#include <numbers>
-
 namespace touchstone::fast {
 namespace {
 
@@ -10,15 +8,14 @@ using extremes::Rig;
 using scene::Formulation;
 using scene::Vec3;
 
-scene::Scene revolution(Formulation formulation, const scene::Profile& profile, double support_height_m) {
+scene::Scene revolution(Formulation formulation, const scene::Profile& profile) {
   scene::Scene scene = extremes::cube(formulation);
   scene.body.shape = scene::BodyShape::revolution;
   scene.body.profile = profile;
-  scene.body.support_height_m = support_height_m;
   return scene;
 }
 
-/// The tool's samples touch along this way at most this much further in than its outline.
+/// The first sample stands at most this far behind the ball's outline, along any way.
 constexpr double touch_m = 0.0005;
 
 /// Moved towards the body's middle from the given side, to this depth under the point of first touch, and off.
@@ -98,7 +95,7 @@ TEST(ShapeExtremes, SharpApex) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Profile cone;
     cone.rz_m = {{0.0, 0.0}, {0.01, 0.0}, {0.0, 0.1}};
-    scene::Scene scene = revolution(formulation, cone, 0.0);
+    scene::Scene scene = revolution(formulation, cone);
     scene.fast.tool_samples = 50000;  // closer than the cone is thick at this depth
     Rig rig(scene);
     rig.may = StepStatus::anchors_limited | StepStatus::depth_limited;
@@ -120,7 +117,7 @@ TEST(ShapeExtremes, WireAndCoin) {
     for (const auto& [r_m, h_m] : {std::pair(0.0002, 0.1), std::pair(0.03, 0.0002)}) {
       scene::Profile profile;
       profile.rz_m = {{0.0, 0.0}, {r_m, 0.0}, {r_m, h_m}, {0.0, h_m}};
-      Rig rig(revolution(formulation, profile, 0.0));
+      Rig rig(revolution(formulation, profile));
       rig.may = StepStatus::anchors_limited | StepStatus::depth_limited;
       for (const Vec3& side : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0.6, 0, 0.8)}) {
         const double most_n = press_from(rig, side, 0.0);
