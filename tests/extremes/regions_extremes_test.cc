@@ -51,7 +51,11 @@ TEST(RegionExtremes, AFreedPlaceIsTakenAgain) {
     int full = 0;
     for (int i = 0; i <= 100; ++i) {
       const double tilt = 0.25 * (i - 50) / 50.0;
-      rig.to({Vec3(0.0, 0.0, 0.060 - 0.001), Eigen::Quaterniond(Eigen::AngleAxisd(tilt, Vec3::UnitY()))});
+      const StepStatus status =
+          rig.to({Vec3(0.0, 0.0, 0.060 - 0.001), Eigen::Quaterniond(Eigen::AngleAxisd(tilt, Vec3::UnitY()))});
+      if (i == 50) {
+        EXPECT_TRUE(has(status, StepStatus::regions_full));
+      }
       EXPECT_LE(rig.state.region_count, 2);
       EXPECT_GT(rig.state.region_count, 0);
       for (int r = 0; r < rig.state.region_count; ++r) {
