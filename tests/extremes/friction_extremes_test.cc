@@ -17,7 +17,7 @@ scene::Scene rubbing(scene::Scene scene, const scene::Friction& friction) {
 }
 
 /// Pressed in and dragged along x.
-void drag(Rig& rig, double depth_m, double way_m, int ticks = 50) {
+void drag(Rig& rig, double depth_m, double way_m, int ticks = 20) {
   rig.to(test::pressed(-0.001));
   for (int i = 0; i <= ticks && !rig.broken(); ++i) rig.to(test::pressed(depth_m, way_m * i / ticks));
 }
@@ -61,7 +61,7 @@ TEST(FrictionExtremes, MuOfZeroSlidesWithoutFriction) {
   }
 }
 
-// f_max going to 0 by decades: the force goes to that without friction, by no more than what f_max leaves.
+// f_max going to 0: the force goes to that without friction, by no more than what f_max leaves.
 // As printed: The normal force goes to 0 with f_max, since F_n = f_max / mu_D (E5).
 TEST(FrictionExtremes, VanishingLimitGoesToTheFrictionlessForce) {
   IN_BOTH_FORMULATIONS(formulation) {
@@ -70,7 +70,7 @@ TEST(FrictionExtremes, VanishingLimitGoesToTheFrictionlessForce) {
     without.may = StepStatus::anchors_limited;
     drag(without, 0.002, 0.01);
     const Vec3 plain_n = without.force_n();
-    for (double K = 1e-1; K > 1e-15; K /= 10.0) {
+    for (double K = 1e-1; K > 1e-15; K /= 100.0) {
       Rig with(rubbing(plain, {K, 0.75, 0.4}));
       with.may = StepStatus::anchors_limited;
       drag(with, 0.002, 0.01);
@@ -84,7 +84,7 @@ TEST(FrictionExtremes, VanishingLimitGoesToTheFrictionlessForce) {
   }
 }
 
-// K as large as a scene may have it: never slips, and 1e4 ticks to and fro end where they began to 1e-12.
+// K as large as a scene may have it: never slips, and 1e3 ticks to and fro end where they began to 1e-12.
 // As printed: The same: Table I's K alone puts f_max at 4 to 13 times F_n (E5).
 TEST(FrictionExtremes, HugeKNeverSlips) {
   IN_BOTH_FORMULATIONS(formulation) {
@@ -93,8 +93,8 @@ TEST(FrictionExtremes, HugeKNeverSlips) {
     rig.to(test::pressed(-0.001));
     rig.to(test::pressed(0.002));
     const Vec3 start_n = rig.force_n();
-    for (int i = 1; i <= 10000; ++i) {
-      step(rig.model, test::pressed(0.002, 0.003 * std::sin(2.0 * std::numbers::pi * i / 100.0)), rig.state);
+    for (int i = 1; i <= 1000; ++i) {
+      step_force(rig.model, test::pressed(0.002, 0.003 * std::sin(2.0 * std::numbers::pi * i / 100.0)), rig.state);
       ASSERT_FALSE(rig.region().friction.sliding);
     }
     rig.to(test::pressed(0.002));
@@ -129,7 +129,7 @@ struct Work {
   double net_j = 0.0, turned_over_j = 0.0;
 };
 Work closed_path(Rig& rig, unsigned seed, double swell_m) {
-  constexpr int ticks = 600;
+  constexpr int ticks = 300;
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   Eigen::Array<double, 3, 4> amplitude_m, phase;
@@ -166,12 +166,12 @@ Work closed_path(Rig& rig, unsigned seed, double swell_m) {
 // As printed: Sliding is against the motion, so it takes; at the onset the force jumps (E5).
 TEST(FrictionExtremes, ClosedPathsAtOneDepthOnlyTake) {
   IN_BOTH_FORMULATIONS(formulation) {
-    for (const double K : {1e-3, 0.3, 3.0, 1e6}) {
+    for (const double K : {1e-3, 0.3, 1e6}) {
       scene::Scene scene = rubbing(extremes::cube(formulation), {K, 0.75, std::min(0.4, K)});
       scene.fast.tool_samples = 300;
       Rig rig(scene);
       rig.may = StepStatus::anchors_limited;
-      for (unsigned seed = 0; seed < 4; ++seed) {
+      for (unsigned seed = 0; seed < 2; ++seed) {
         const Work work = closed_path(rig, seed, 0.0);
         EXPECT_GE(work.net_j, -1e-4 * work.turned_over_j) << "K = " << K << ", seed " << seed;
         if (K < 1.0) {
@@ -194,7 +194,7 @@ TEST(FrictionExtremes, ClosedPathsWithSwellingDepthOnlyTake) {
         scene.fast.tool_samples = 300;
         Rig rig(scene);
         rig.may = StepStatus::anchors_limited;
-        for (unsigned seed = 0; seed < 4; ++seed) {
+        for (unsigned seed = 0; seed < 2; ++seed) {
           const Work work = closed_path(rig, seed, 0.0005);
           EXPECT_GE(work.net_j, (flat || K < 1.0 ? -1e-4 : -0.01) * work.turned_over_j)
               << "K = " << K << ", seed " << seed;

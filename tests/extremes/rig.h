@@ -12,10 +12,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
+#include <functional>
 #include <memory>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace touchstone::fast::extremes {
@@ -35,9 +36,10 @@ inline const char* name_of(Formulation formulation) {
     if (const ::testing::ScopedTrace trace(__FILE__, __LINE__, ::touchstone::fast::extremes::name_of(formulation)); \
         true)
 
-/// A coarse surface, since every vertex is looked at after every tick.
+/// A coarse surface and tool, since every vertex is looked at after every tick.
 inline scene::Scene coarse(scene::Scene scene) {
-  scene.fast.triangles = 600;
+  scene.fast.triangles = 300;
+  scene.fast.tool_samples = 1000;
   return scene;
 }
 inline scene::Scene cube(Formulation formulation) { return coarse(test::ball_on_cube(formulation)); }
@@ -157,10 +159,9 @@ class Rig {
   }
   /// Of all that the next tick or the user may see.
   [[nodiscard]] std::uint64_t hash() const {
-    std::uint64_t sum = 1469598103934665603u;
+    std::uint64_t sum = 0;
     const auto mix = [&](const void* data, std::size_t bytes) {
-      const auto* byte = static_cast<const unsigned char*>(data);
-      for (std::size_t i = 0; i < bytes; ++i) sum = (sum ^ byte[i]) * 1099511628211u;
+      sum = 31 * sum + std::hash<std::string_view>{}({static_cast<const char*>(data), bytes});
     };
     mix(state.pose.position_m.data(), 3 * sizeof(double));
     mix(state.pose.orientation.coeffs().data(), 4 * sizeof(double));

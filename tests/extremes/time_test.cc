@@ -75,7 +75,7 @@ TEST(TimeExtremes, QuaternionOfAnyLengthTurnsOnly) {
     const Eigen::Quaterniond tilt(Eigen::AngleAxisd(0.05, Vec3(1, 2, 3).normalized()));
     const Vec3 place_m = extremes::punched(0.002).position_m;
     int taken = 0;
-    for (int power = -320; power <= 308; power += 4) {
+    for (int power = -320; power <= 308; power += 10) {
       const double length = std::pow(10.0, power);
       Rig rig(scene), unit(scene);
       rig.may = unit.may = StepStatus::anchors_limited;
@@ -88,7 +88,7 @@ TEST(TimeExtremes, QuaternionOfAnyLengthTurnsOnly) {
       ++taken;
       EXPECT_LE((rig.force_n() - unit.force_n()).norm(), 1e-9 * unit.force_n().norm()) << power;
     }
-    EXPECT_GT(taken, 40);
+    EXPECT_GT(taken, 20);
     Rig rig(scene);
     EXPECT_EQ(rig.to({place_m, Eigen::Quaterniond(0.0, 0.0, 0.0, 0.0)}), StepStatus::not_finite);
   }
@@ -140,7 +140,7 @@ TEST(TimeExtremes, AnyPoseInAnyTick) {
       rig.may = StepStatus::anchors_limited | StepStatus::depth_limited;
       std::mt19937 random(5);
       std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-      for (int i = 0; i < 400; ++i) {
+      for (int i = 0; i < 150; ++i) {
         const Vec3 place_m = Vec3(0.0, 0.0, 0.03) + 0.045 * Vec3(uniform(random), uniform(random), uniform(random));
         const Eigen::Vector4d turn(uniform(random), uniform(random), uniform(random), uniform(random));
         rig.to({place_m, Eigen::Quaterniond(turn)});
@@ -151,7 +151,7 @@ TEST(TimeExtremes, AnyPoseInAnyTick) {
   }
 }
 
-// A tool that does not move for 1000 ticks: equal bits from the third tick on, stuck or sliding.
+// A tool that does not move: equal bits from the third tick on, stuck or sliding.
 // As printed: The same while stuck; one that has slid goes on rubbing against its last motion (E5).
 TEST(TimeExtremes, APauseRepeatsTheAnswer) {
   IN_BOTH_FORMULATIONS(formulation) {
@@ -164,7 +164,7 @@ TEST(TimeExtremes, APauseRepeatsTheAnswer) {
         rig.to(in(scene, 0.002, drag_m));
         rig.to(in(scene, 0.002, drag_m));
         const std::uint64_t still = rig.hash();
-        for (int i = 0; i < 1000; ++i) {
+        for (int i = 0; i < 10; ++i) {
           step(rig.model, in(scene, 0.002, drag_m), rig.state);
           ASSERT_EQ(rig.hash(), still) << i;
         }
@@ -183,12 +183,12 @@ scene::Pose on_the_round(const scene::Scene& scene, int tick, int round) {
 }
 
 // 1e8 ticks of a motion that repeats: the whole state has equal bits one round on. A tick is a function of state and
-// pose alone, so it has them after every round to come, and 1e8 ticks differ from 1e3 in nothing.
+// pose alone, so it has them after every round to come, and 1e8 ticks differ from 300 in nothing.
 // As printed: Each shape is an update of the last time step's, so errors add up.
 TEST(TimeExtremes, HundredMillionTicksAreTwoRounds) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : scenes_with_memory(formulation)) {
-      constexpr int round = 500;
+      constexpr int round = 150;
       Rig rig(scene);
       rig.may = StepStatus::anchors_limited;
       std::array<std::uint64_t, round> first{};
@@ -205,24 +205,28 @@ TEST(TimeExtremes, HundredMillionTicksAreTwoRounds) {
   }
 }
 
-// The same, walked: 1e5 ticks at a stretch, with the same bits after every round.
+// The same, walked: 1e5 ticks, half of them in each formulation, with the same bits after every round.
 // As printed: As above.
 TEST(TimeExtremes, HundredThousandTicksDoNotDrift) {
   IN_BOTH_FORMULATIONS(formulation) {
-    for (scene::Scene scene : scenes_with_memory(formulation)) {
-      scene.fast.tool_samples = 100;
-      scene.fast.triangles = 12;
-      constexpr int round = 100, rounds = 170;  // 1e5 ticks over all scenes and formulations
-      Rig rig(scene);
-      std::uint64_t first = 0;
-      for (int k = 0; k <= rounds; ++k) {
-        for (int tick = 0; tick < round; ++tick) step(rig.model, on_the_round(scene, tick, round), rig.state);
-        if (k == 1) first = rig.hash();
-        if (k > 1) {
-          ASSERT_EQ(rig.hash(), first) << "round " << k;
-        }
+    scene::Scene scene = scenes_with_memory(formulation)[1];
+    scene.fast.tool_samples = 20;
+    scene.fast.triangles = 12;
+    constexpr int round = 100, rounds = 500;
+    Rig rig(scene);
+    std::uint64_t first = 0;
+    double most_n = 0.0;
+    for (int k = 0; k < rounds; ++k) {
+      for (int tick = 0; tick < round; ++tick) {
+        step(rig.model, on_the_round(scene, tick, round), rig.state);
+        most_n = std::max(most_n, rig.force_n().norm());
+      }
+      if (k == 1) first = rig.hash();
+      if (k > 1) {
+        ASSERT_EQ(rig.hash(), first) << "round " << k;
       }
     }
+    EXPECT_GT(most_n, 0.01);
   }
 }
 
