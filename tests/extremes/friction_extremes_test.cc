@@ -185,7 +185,7 @@ TEST(FrictionExtremes, ClosedPathsAtOneDepthOnlyTake) {
 // Random closed paths over the face, the depth swelling on the way: a flat punch gets no work out; a ball that never
 // slips gets less than 1 % of what it turns over, since its equivalent depth is a mean.
 // As printed: The same.
-TEST(FrictionExtremes, ClosedPathsWithSwellingDepthOnlyTake) {
+TEST(FrictionExtremes, ClosedPathsWithSwellingDepth) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const bool flat : {true, false}) {
       for (const double K : {1e-3, 0.3, 1e6}) {

@@ -74,13 +74,15 @@ TEST(TimeExtremes, QuaternionOfAnyLengthTurnsOnly) {
     const scene::Scene scene = extremes::punch_on_cube(formulation);
     const Eigen::Quaterniond tilt(Eigen::AngleAxisd(0.05, Vec3(1, 2, 3).normalized()));
     const Vec3 place_m = extremes::punched(0.002).position_m;
+    Rig unit(scene);
+    unit.may = StepStatus::anchors_limited;
+    unit.to({place_m, tilt});
     int taken = 0;
     for (int power = -320; power <= 308; power += 10) {
       const double length = std::pow(10.0, power);
-      Rig rig(scene), unit(scene);
-      rig.may = unit.may = StepStatus::anchors_limited;
+      Rig rig(scene);
+      rig.may = StepStatus::anchors_limited;
       const StepStatus status = rig.to({place_m, Eigen::Quaterniond(length * tilt.coeffs())});
-      unit.to({place_m, tilt});
       if (has(status, StepStatus::not_finite)) {
         EXPECT_FALSE(rig.state.placed);
         continue;
