@@ -53,6 +53,7 @@ scene::Figures figures(const Run& run) {
       {"fast.regions_max", static_cast<double>(run.regions_max), "", ""},
       {"fast.status", 0.0, status_text(run.status), ""},
   };
+  if (run.first_contact_s) out.push_back({"fast.first_contact_s", *run.first_contact_s, "", "s"});
   if (run.order_spread_rel) out.push_back({"fast.order_spread_rel", *run.order_spread_rel, "", ""});
   if (run.equilibrium_rel) out.push_back({"fast.equilibrium_rel", *run.equilibrium_rel, "", ""});
   return out;

@@ -126,6 +126,7 @@ Run run(const scene::Scene& scene, const std::function<void(double)>& progress) 
   run.memory_bytes = model.memory_bytes() + state.memory_bytes();
 
   const Separation separation(*model.body, run.surface, scene::tool_surface(scene.tool, scene.fast.tool_samples));
+  run.first_contact_s = separation.first_contact_s(scene.track);
   const std::vector<Tick> ticks = ticks_of(scene);
   std::vector<double> step_us, force_us;
   step_us.reserve(ticks.size());

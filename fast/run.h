@@ -39,6 +39,7 @@ struct Run {
   std::size_t memory_bytes = 0;                ///< model and state
   int ticks = 0;
   int regions_max = 0;
+  std::optional<double> first_contact_s;  ///< by Separation; absent where the tool stays apart
   /// What the paper leaves open about several regions (errata E18), worst over the instants; see OrderSpread. Absent
   /// where no instant had several.
   std::optional<double> order_spread_rel, equilibrium_rel;
