@@ -7,7 +7,7 @@ namespace touchstone::fast {
 
 /// A weight this large keeps the hat of a point to the patches of that anchor point; from smaller ones on it spreads
 /// over the edge that the point comes near to. No weight of a hat's top is below it for every anchor point.
-inline constexpr double hat_weight = 0.25;
+inline constexpr double hat_weight = 0.1;
 
 /// A hat on one patch: the least of `ceiling`, per_free PatchPlace::free and base + slope weight for every weight, and
 /// 0 where that is negative.
