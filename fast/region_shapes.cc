@@ -59,11 +59,13 @@ Vec3 vector_at(const SurfacePatches& rest, const Displacements& anchor_m, std::s
 }
 
 /// Lays the region on the stack and lets the factorisation grow by its row and column.
-void grow(const RegionShape& region, ShapeStack& stack) noexcept {
+template <class Factor>
+void grow(const RegionShape& region, const LocalConstants* local, ShapeStack& stack) noexcept {
   const std::size_t i = stack.count++, n = stack.capacity;
   stack.region[i] = region;
   stack.takes_part[i] = region.contact.displacement_m.squaredNorm() > 0.0 && !region.contact.place.held();
   stack.inverse_edge[i] = Hat::inverse_edges(region.contact.place);
+  if (local != nullptr) stack.reach[i] = {Factor::terms(*local, region.size), region.p0_W_m.cast<float>()};
   std::vector<double>& a = stack.factor;
   for (std::size_t k = 0; k < i; ++k) {
     double below = hat_at_contact(stack, k, i), above = hat_at_contact(stack, i, k);
@@ -93,8 +95,9 @@ void solve(ShapeStack& stack) noexcept {
   }
 }
 
-void add_corrected(const SurfacePatches& rest, const RegionShape& region, ShapeStack& stack) noexcept {
-  grow(region, stack);
+void add_corrected(const SurfacePatches& rest, const LocalConstants* local, const RegionShape& region,
+                   ShapeStack& stack) noexcept {
+  grow<FactorCorrected>(region, local, stack);
   const std::size_t last = stack.count - 1;
   Vec3* c_m = stack.vector_c_m.data() + last * stack.capacity;
   for (std::size_t j = 0; j <= last; ++j) {
@@ -111,6 +114,7 @@ void add_corrected(const SurfacePatches& rest, const RegionShape& region, ShapeS
   }
   for (std::size_t j = 0; j <= last; ++j) {
     stack.vector_total_m[j] += c_m[j];
+    stack.vector_total_short_m[j] = stack.vector_total_m[j].cast<float>();
     stack.vector_c_short_m[last * stack.capacity + j] = c_m[j].cast<float>();
   }
   for (std::size_t k = 0; k < stack.anchor_total_m.size(); ++k) {
@@ -118,8 +122,9 @@ void add_corrected(const SurfacePatches& rest, const RegionShape& region, ShapeS
   }
 }
 
-void add_published(const SurfacePatches& rest, const RegionShape& region, ShapeStack& stack) noexcept {
-  grow(region, stack);
+void add_published(const SurfacePatches& rest, const LocalConstants* local, const RegionShape& region,
+                   ShapeStack& stack) noexcept {
+  grow<FactorPublished>(region, local, stack);
   const std::size_t last = stack.count - 1;
   ShapeStack::Printed* printed = stack.printed.data() + last * rest.patches.size();
   for (std::size_t p = 0; p < rest.patches.size(); ++p) {
@@ -212,6 +217,17 @@ struct Published {
     }
   }
 
+  /// Sum of all u_i.
+  TOUCHSTONE_INLINE static void whole(const SurfacePatches& rest, const ShapeStack& stack, std::size_t p,
+                                      const VertexBlock& block, Lane3& out) noexcept {
+    Lane3 u;
+    out = {};
+    for (std::size_t i = 0; i < stack.count; ++i) {
+      increment(rest, stack, i, p, block, u);
+      for (std::size_t axis = 0; axis < 3; ++axis) add(1.0f, u[axis].data(), block_vertices, out[axis]);
+    }
+  }
+
   static Vec3 increment_at(const SurfacePatches& rest, const ShapeStack& stack, std::size_t i,
                            const scene::SurfaceQuery& at, const PatchPlace& place) noexcept {
     const auto p = static_cast<std::size_t>(at.patch);
@@ -247,12 +263,25 @@ struct Corrected {
 
   TOUCHSTONE_INLINE static void increment(const SurfacePatches& rest, const ShapeStack& stack, std::size_t i,
                                           std::size_t p, const VertexBlock&, Lane3& out) noexcept {
+    sum(rest, stack, stack.region[i].anchor_displacement_m, stack.vector_c_short_m.data() + i * stack.capacity, i + 1,
+        p, out);
+  }
+
+  /// Sum of all u_i.
+  TOUCHSTONE_INLINE static void whole(const SurfacePatches& rest, const ShapeStack& stack, std::size_t p,
+                                      const VertexBlock&, Lane3& out) noexcept {
+    sum(rest, stack, stack.anchor_total_m, stack.vector_total_short_m.data(), stack.count, p, out);
+  }
+
+  /// W U and the first hats by their coefficients.
+  TOUCHSTONE_INLINE static void sum(const SurfacePatches& rest, const ShapeStack& stack,
+                                    std::span<const Vec3> anchor_displacement_m, const Eigen::Vector3f* c_m,
+                                    std::size_t hats, std::size_t p, Lane3& out) noexcept {
     const Patch& patch = rest.patches[p];
     std::array<Eigen::Vector3f, corners_max> corner;
     for (std::size_t k = 0; k < patch.corners; ++k) {
-      corner[k] = stack.region[i].anchor_displacement_m[static_cast<std::size_t>(patch.anchor[k])].cast<float>();
+      corner[k] = anchor_displacement_m[static_cast<std::size_t>(patch.anchor[k])].cast<float>();
     }
-    const Eigen::Vector3f* c_m = stack.vector_c_short_m.data() + i * stack.capacity;
     // Whole lanes, their sums in registers; a lane's last places may be idle.
     for (std::size_t v = 0; v < block_vertices; v += lanes_at_once) {
       Several x{}, y{}, z{};
@@ -264,7 +293,7 @@ struct Corrected {
         z += s * by_m.z();
       };
       for (std::size_t k = 0; k < patch.corners; ++k) add_vector(corner[k], stack.corner_weight[k]);
-      for (std::size_t k = 0; k <= i; ++k) {
+      for (std::size_t k = 0; k < hats; ++k) {
         if (on_patch(stack, k, p)) add_vector(c_m[k], stack.height[k]);
       }
       std::memcpy(out[0].data() + v, &x, sizeof x);
@@ -352,18 +381,16 @@ TOUCHSTONE_INLINE void distances_m(const SurfacePatches& rest, const VertexBlock
   }
 }
 
-/// Adds the sum of (w_i - 1) u_i over one block, i the near regions.
+/// Adds the sum of (w_i - 1) u_i over one block, i the near regions. The weights of its corners have been taken.
 template <class Formulation>
-TOUCHSTONE_INLINE void apply_to_block(const SurfacePatches& rest, float r_R_m, std::size_t p, const VertexBlock& block,
-                                      ShapeStack& stack, SurfaceField& field) noexcept {
+TOUCHSTONE_INLINE void add_changes(const SurfacePatches& rest, float r_R_m, std::size_t p, const VertexBlock& block,
+                                   ShapeStack& stack, Lane3& sum) noexcept {
   using Factor = typename Formulation::Factor;
-  const auto begin = static_cast<std::size_t>(block.begin), count = static_cast<std::size_t>(block.end) - begin;
   // What the hats and the contact points of the regions before this one are here.
   std::size_t known = 0;
-  take_weights(rest, block, stack);
   Lane r_m{}, change, room;
   room.fill(1.0f);
-  Lane3 u{}, sum{};
+  Lane3 u{};
   for (const std::size_t i : stack.near) {
     const ShapeStack::Reach& own = stack.reach[i];
     if (block.distance2_m2(own.p0_W_m) >= r_R_m * r_R_m) continue;
@@ -389,6 +416,15 @@ TOUCHSTONE_INLINE void apply_to_block(const SurfacePatches& rest, float r_R_m, s
       for (std::size_t v = 0; v < change.size(); ++v) sum[axis][v] += change[v] * u[axis][v];
     }
   }
+}
+
+template <class Formulation>
+TOUCHSTONE_INLINE void apply_to_block(const SurfacePatches& rest, float r_R_m, std::size_t p, const VertexBlock& block,
+                                      ShapeStack& stack, SurfaceField& field) noexcept {
+  const auto begin = static_cast<std::size_t>(block.begin), count = static_cast<std::size_t>(block.end) - begin;
+  Lane3 sum{};
+  take_weights(rest, block, stack);
+  add_changes<Formulation>(rest, r_R_m, p, block, stack, sum);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     float* out = field.displacement_m[axis].data() + begin;
 #pragma GCC ivdep
@@ -400,10 +436,6 @@ template <class Formulation>
 TOUCHSTONE_INLINE void apply_factors(const SurfacePatches& rest, const LocalConstants& local, ShapeStack& stack,
                                      SurfaceField& field) noexcept {
   const auto r_R_m = static_cast<float>(local.r_R_m);
-  for (std::size_t i = 0; i < stack.count; ++i) {
-    const RegionShape& region = stack.region[i];
-    stack.reach[i] = {Formulation::Factor::terms(local, region.size), region.p0_W_m.cast<float>()};
-  }
   for (std::size_t p = 0; p < rest.patches.size(); ++p) {
     const Patch& patch = rest.patches[p];
     // Never beyond the capacity it was given.
@@ -454,6 +486,66 @@ Vec3 displacement_at(const SurfacePatches& rest, const AnchorPoints& anchors, co
   return u_m;
 }
 
+/// Lays the points on the stack's block of vertices.
+void take_points(const AnchorPoints& anchors, int patch, const PointLanes& lanes, SurfacePatches& points) noexcept {
+  for (std::size_t v = 0; v < PointLanes::size; ++v) {
+    const PatchPlace place = anchors.at(patch, Vec3(lanes.point_m[0][v], lanes.point_m[1][v], lanes.point_m[2][v]));
+    for (std::size_t k = 0; k < corners_max; ++k) {
+      points.weight[k][v] = static_cast<float>(place.weight[k]);
+      points.edge[k][v] = static_cast<float>(place.edge[k]);
+    }
+  }
+  VertexBlock& block = points.blocks[0];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    float* point_m = points.rest_W_m[axis].data();
+    float low_m = static_cast<float>(lanes.point_m[axis][0]), high_m = low_m;
+    for (std::size_t v = 0; v < PointLanes::size; ++v) {
+      point_m[v] = static_cast<float>(lanes.point_m[axis][v]);
+      points.normal[axis][v] = static_cast<float>(lanes.normal[axis][v]);
+      low_m = std::min(low_m, point_m[v]);
+      high_m = std::max(high_m, point_m[v]);
+    }
+    block.low_W_m[static_cast<int>(axis)] = low_m;
+    block.high_W_m[static_cast<int>(axis)] = high_m;
+  }
+}
+
+template <class Formulation>
+TOUCHSTONE_INLINE void displacements_at(const AnchorPoints& anchors, const LocalConstants* local, int patch,
+                                        ShapeStack& stack, PointLanes& lanes) noexcept {
+  const auto p = static_cast<std::size_t>(patch);
+  SurfacePatches& points = stack.points;
+  take_points(anchors, patch, lanes, points);
+  const VertexBlock& block = points.blocks[0];
+  take_weights(points, block, stack);
+  if (stack.count > 0) raise_hats(points, 0, stack.count - 1, p, block, stack);
+  Lane3 sum;
+  Formulation::whole(points, stack, p, block, sum);
+  if (local != nullptr) {
+    const auto r_R_m = static_cast<float>(local->r_R_m);
+    stack.near.clear();
+    for (std::size_t i = 0; i < stack.count; ++i) {
+      if (block.distance2_m2(stack.reach[i].p0_W_m) < r_R_m * r_R_m) stack.near.push_back(i);
+    }
+    if (!stack.near.empty()) add_changes<Formulation>(points, r_R_m, p, block, stack, sum);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t v = 0; v < PointLanes::size; ++v) lanes.displacement_m[axis][v] = sum[axis][v];
+  }
+}
+
+TOUCHSTONE_WIDE_LOOPS
+void displacements_at_published(const AnchorPoints& anchors, const LocalConstants* local, int patch, ShapeStack& stack,
+                                PointLanes& lanes) noexcept {
+  displacements_at<Published>(anchors, local, patch, stack, lanes);
+}
+
+TOUCHSTONE_WIDE_LOOPS
+void displacements_at_corrected(const AnchorPoints& anchors, const LocalConstants* local, int patch, ShapeStack& stack,
+                                PointLanes& lanes) noexcept {
+  displacements_at<Corrected>(anchors, local, patch, stack, lanes);
+}
+
 }  // namespace
 
 ShapeStack::ShapeStack(const SurfacePatches& rest, const AnchorPoints& anchors, int max_regions)
@@ -466,6 +558,7 @@ ShapeStack::ShapeStack(const SurfacePatches& rest, const AnchorPoints& anchors, 
       vector_c_m(capacity * capacity, Vec3(Vec3::Zero())),
       vector_c_short_m(capacity * capacity),
       vector_total_m(capacity, Vec3(Vec3::Zero())),
+      vector_total_short_m(capacity),
       anchor_total_m(anchors.points_m().size(), Vec3(Vec3::Zero())),
       length_c_m(capacity * capacity, 0.0),
       angle_c_rad(capacity * capacity, 0.0),
@@ -473,6 +566,10 @@ ShapeStack::ShapeStack(const SurfacePatches& rest, const AnchorPoints& anchors, 
       height(capacity),
       reach(capacity) {
   near.reserve(capacity);
+  points.patches = rest.patches;
+  points.blocks = {{0, block_vertices, Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()}};
+  for (Columns3* columns : {&points.rest_W_m, &points.normal}) columns->fill(std::vector<float>(block_vertices));
+  for (Columns4* columns : {&points.weight, &points.edge}) columns->fill(std::vector<float>(block_vertices));
 }
 
 void ShapeStack::clear() noexcept {
@@ -486,12 +583,14 @@ std::size_t ShapeStack::memory_bytes() const noexcept {
          capacity * (sizeof(RegionShape) + sizeof(Vec3) + 5 * sizeof(double) + sizeof(Lane) + sizeof(Reach) +
                      sizeof(std::size_t)) +
          capacity * capacity * (sizeof(Vec3) + sizeof(Eigen::Vector3f) + 3 * sizeof(double)) +
-         anchor_total_m.size() * sizeof(Vec3) + printed.size() * sizeof(Printed);
+         anchor_total_m.size() * sizeof(Vec3) + printed.size() * sizeof(Printed) + points.memory_bytes();
 }
 
 const SeveralRegions several_regions_published{add_published, interpolate_several_published,
-                                               apply_local_factors_published, displacement_at<Published>};
+                                               apply_local_factors_published, displacement_at<Published>,
+                                               displacements_at_published};
 const SeveralRegions several_regions_corrected{add_corrected, interpolate_several_corrected,
-                                               apply_local_factors_corrected, displacement_at<Corrected>};
+                                               apply_local_factors_corrected, displacement_at<Corrected>,
+                                               displacements_at_corrected};
 
 }  // namespace touchstone::fast
