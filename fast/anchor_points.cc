@@ -54,6 +54,17 @@ FaceAxes face_axes(int patch) noexcept {
 
 bool AnchorPoints::first_between_its_anchors(int) const { return true; }
 
+void AnchorPoints::at(int patch, const std::array<std::span<const double>, 3>& p_m,
+                      const PlaceColumns& out) const noexcept {
+  for (std::size_t i = 0; i < p_m[0].size(); ++i) {
+    const PatchPlace place = at(patch, Vec3(p_m[0][i], p_m[1][i], p_m[2][i]));
+    for (std::size_t k = 0; k < patch_corners_max; ++k) {
+      out.weight[k][i] = static_cast<float>(place.weight[k]);
+      out.edge[k][i] = static_cast<float>(place.edge[k]);
+    }
+  }
+}
+
 void AnchorPoints::add(const Vec3& point_m, bool held, AnchorReason reason) {
   points_m_.push_back(point_m);
   held_.push_back(held);
@@ -93,6 +104,35 @@ PatchPlace BoxAnchors::at(int patch, const Vec3& p_m) const noexcept {
   at.weight = {(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v};
   if (patch != bottom_face) at.edge = {u, 1.0 - u, v, 1.0 - v};
   return at;
+}
+
+void BoxAnchors::at(int patch, const std::array<std::span<const double>, 3>& p_m,
+                    const PlaceColumns& out) const noexcept {
+  const auto axes = face_axes(patch);
+  const double* along_u = p_m[static_cast<std::size_t>(axes.u)].data();
+  const double* along_v = p_m[static_cast<std::size_t>(axes.v)].data();
+  const double per_u = 0.5 / box_.half_m()[axes.u], per_v = 0.5 / box_.half_m()[axes.v];
+  const double center_u = box_.center_m()[axes.u], center_v = box_.center_m()[axes.v];
+  const float edge = patch == bottom_face ? 0.0f : 1.0f;
+  const auto [w0, w1, w2, w3] = out.weight;
+  const auto [e0, e1, e2, e3] = out.edge;
+  // Columns never overlap.
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < p_m[0].size(); ++i) {
+    const double from_u = (along_u[i] - center_u) * per_u + 0.5, from_v = (along_v[i] - center_v) * per_v + 0.5;
+    const double below_u = from_u > 0.0 ? from_u : 0.0, below_v = from_v > 0.0 ? from_v : 0.0;
+    const auto u = static_cast<float>(below_u < 1.0 ? below_u : 1.0);
+    const auto v = static_cast<float>(below_v < 1.0 ? below_v : 1.0);
+    const float past_u = 1.0f - u, past_v = 1.0f - v;
+    w0[i] = past_u * past_v;
+    w1[i] = u * past_v;
+    w2[i] = past_u * v;
+    w3[i] = u * v;
+    e0[i] = edge * u;
+    e1[i] = edge * past_u;
+    e2[i] = edge * v;
+    e3[i] = edge * past_v;
+  }
 }
 
 EllipsoidAnchors::EllipsoidAnchors(const scene::Sphere& sphere, double support_height_m)

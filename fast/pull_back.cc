@@ -21,20 +21,30 @@ constexpr double slope_step_rel = 1e-4;
 /// is a few micrometres.
 constexpr double settled_rel = 5e-3;
 constexpr int steps_max = 6;
+/// A quadratic that leaves less of the displacement than this, in parts of its half width, has the right slope to about
+/// a tenth, which costs half a hundredth of the distance.
+constexpr double bend_max = 0.015;
+/// How far aside from its foot a point may stand, in parts of its distance.
+constexpr double foot_off_max = 0.05;
 
 SurfaceQuery closest(const scene::Shape& shape, const Vec3& p_m) noexcept { return shape.query(p_m); }
-SurfaceQuery closest(const scene::Box& box, const Vec3& p_m) noexcept {
+/// Of a point inside the box or straight over a face, without a branch.
+inline SurfaceQuery closest(const scene::Box& box, const Vec3& p_m) noexcept {
   const Vec3 local = p_m - box.center_m(), above_face = local.cwiseAbs() - box.half_m();
+  if ((above_face.x() > 0.0) + (above_face.y() > 0.0) + (above_face.z() > 0.0) > 1) return box.query(p_m);
   const bool x = above_face.x() >= above_face.y() && above_face.x() >= above_face.z();
-  const int axis = x ? 0 : above_face.y() >= above_face.z() ? 1 : 2;
-  // A point over a face, or inside.
-  const double height_m = above_face[axis];
-  if (above_face[(axis + 1) % 3] > 0.0 || above_face[(axis + 2) % 3] > 0.0) return box.query(p_m);
-  const bool positive = !(local[axis] < 0.0);
-  SurfaceQuery at{height_m, p_m, Vec3::Zero(), 2 * axis + (positive ? 1 : 0)};
-  at.point_m[axis] = box.center_m()[axis] + (positive ? box.half_m()[axis] : -box.half_m()[axis]);
-  at.normal[axis] = positive ? 1.0 : -1.0;
-  return at;
+  const bool y = !x && above_face.y() >= above_face.z();
+  const bool z = !x && !y;
+  const bool low = (x ? local.x() : y ? local.y() : local.z()) < 0.0;
+  const Vec3 face_m = box.center_m() + (low ? Vec3(-box.half_m()) : box.half_m());
+  const double sign = low ? -1.0 : 1.0;
+  return {above_face.maxCoeff(),
+          {x ? face_m.x() : p_m.x(), y ? face_m.y() : p_m.y(), z ? face_m.z() : p_m.z()},
+          {x ? sign : 0.0, y ? sign : 0.0, z ? sign : 0.0},
+          (x   ? 0
+           : y ? 2
+               : 4) +
+              (low ? 0 : 1)};
 }
 
 Vec3 at_lane(const PointLanes::Lane3& lane, std::size_t v) noexcept { return {lane[0][v], lane[1][v], lane[2][v]}; }
@@ -93,44 +103,91 @@ struct Slope {
   }
 };
 
-/// Guesses feet by the displacement across the region, taken as affine.
-template <class Body>
-class Guess {
+/// The displacement across a region as a quadratic of the place over the plane that touches the rest surface in the
+/// region's middle, by least squares from one block of points. It tells which points are outside for sure, and guesses
+/// the feet of the others.
+class Sheet {
  public:
-  Guess(const Body& body, const DisplacedSurface& surface, const RegionPoints& points, double step_m,
+  template <class Body>
+  Sheet(const Body& body, const DisplacedSurface& surface, const RegionPoints& points, const QuadraticFit& fit,
         PointLanes& lanes) noexcept {
     Vec3 low_m = points.p_W_m(0), high_m = low_m;
     for (std::size_t i = 1; i < static_cast<std::size_t>(points.count); ++i) {
       low_m = low_m.cwiseMin(points.p_W_m(i));
       high_m = high_m.cwiseMax(points.p_W_m(i));
     }
-    const double reach_m = std::max(0.5 * (high_m - low_m).maxCoeff(), step_m);
     const SurfaceQuery middle = closest(body, 0.5 * (low_m + high_m));
     middle_m_ = middle.point_m;
     const Tangents t(middle.normal);
-    const std::array<Vec3, 5> places = {Vec3::Zero(), t.t1, -t.t1, t.t2, -t.t2};
+    t1_ = t.t1.normalized();
+    t2_ = t.t2.normalized();
+    const Vec3 half_m = 0.5 * (high_m - low_m);
+    reach_m_ = std::max({half_m.dot(t1_.cwiseAbs()), half_m.dot(t2_.cwiseAbs()), 1e-6 * half_m.norm(), 1e-9});
     for (std::size_t v = 0; v < PointLanes::size; ++v) {
-      set_lane(lanes.point_m, v, middle_m_ + reach_m * places[std::min<std::size_t>(v, 4)]);
-      set_lane(lanes.normal, v, middle.normal);
+      const SurfaceQuery at = closest(body, middle_m_ + reach_m_ * (fit.place[v].x() * t1_ + fit.place[v].y() * t2_));
+      set_lane(lanes.point_m, v, at.point_m);
+      set_lane(lanes.normal, v, at.normal);
     }
     surface.displace(middle.patch, lanes);
-    const auto u = [&](std::size_t v) { return at_lane(lanes.displacement_m, v); };
-    const Vec3 u1 = (u(1) - u(2)) / (2.0 * reach_m), u2 = (u(3) - u(4)) / (2.0 * reach_m);
-    const double t2 = t.t1.squaredNorm();
-    u_m_ = u(0);
-    per_m_ = (u1 * t.t1.transpose() + u2 * t.t2.transpose()) / t2;
-    lean_ = Slope(middle.normal, t, t.t1 + u1, t.t2 + u2).way * middle.normal;
+    Eigen::Matrix<double, PointLanes::size, 4> samples;
+    double aside_m = 0.0;
+    for (std::size_t v = 0; v < PointLanes::size; ++v) {
+      const Vec3 u_m = at_lane(lanes.displacement_m, v), normal = at_lane(lanes.normal, v);
+      const double up_m = u_m.dot(normal);
+      aside_m = std::max(aside_m, (u_m - up_m * normal).norm());
+      samples.row(static_cast<Eigen::Index>(v)) << u_m.transpose(), up_m;
+    }
+    u_m_.noalias() = fit.solve.lazyProduct(samples);
+    const double off_m = (fit.terms.lazyProduct(u_m_.col(3)) - samples.col(3)).cwiseAbs().maxCoeff();
+    const auto up = u_m_.col(3).cwiseAbs();
+    const double slope = (std::max(up[1], up[2]) + up[4] + 2.0 * std::max(up[3], up[5])) / reach_m_;
+    margin_m_ = 2.0 * off_m + 2.0 * slope * aside_m;
+    patch_ = middle.patch;
+    normal_ = middle.normal;
+    knows_slope_ = off_m < bend_max * reach_m_;
   }
-  /// A point whose closest rest point is about the foot of p. @param rest closest rest point of p itself
-  [[nodiscard]] Vec3 operator()(const Vec3& p_m, const SurfaceQuery& rest) const noexcept {
-    const Vec3 back_m = p_m - u_m_ - per_m_ * (rest.point_m - middle_m_);
-    return back_m + (back_m - rest.point_m).dot(rest.normal) * lean_;
+
+  /// Whether its slope is that of the displaced surface within a tenth or so, at a point of the rest surface.
+  [[nodiscard]] bool knows_slope(const SurfaceQuery& rest) const noexcept {
+    return knows_slope_ && rest.patch == patch_ && rest.normal.dot(normal_) > 0.9;
+  }
+  /// Outward normal of the displaced surface there.
+  [[nodiscard]] Vec3 normal(const SurfaceQuery& rest) const noexcept {
+    const double a = (rest.point_m - middle_m_).dot(t1_) / reach_m_, b = (rest.point_m - middle_m_).dot(t2_) / reach_m_;
+    const auto up = u_m_.col(3);
+    const double rise1 = (up[1] + 2.0 * a * up[3] + b * up[4]) / reach_m_;
+    const double rise2 = (up[2] + 2.0 * b * up[5] + a * up[4]) / reach_m_;
+    return (rest.normal - rise1 * t1_ - rise2 * t2_).normalized();
+  }
+
+  /// False where the point stands over the displaced surface for sure. @param depth_m beneath the rest surface
+  [[nodiscard]] bool may_be_inside(const Vec3& p_m, double depth_m) const noexcept {
+    const double a = (p_m - middle_m_).dot(t1_) / reach_m_, b = (p_m - middle_m_).dot(t2_) / reach_m_;
+    const auto up = u_m_.col(3);
+    const double up_m = up[0] + a * (up[1] + a * up[3] + b * up[4]) + b * (up[2] + b * up[5]);
+    return -depth_m - up_m < margin_m_;
+  }
+  /// A point whose closest rest point is about the foot of p.
+  [[nodiscard]] Vec3 operator()(const Vec3& p_m, const Vec3& normal, double depth_m) const noexcept {
+    const double a = (p_m - middle_m_).dot(t1_) / reach_m_, b = (p_m - middle_m_).dot(t2_) / reach_m_;
+    const auto value = [&](int axis) {
+      const auto c = u_m_.col(axis);
+      return c[0] + a * (c[1] + a * c[3] + b * c[4]) + b * (c[2] + b * c[5]);
+    };
+    const Vec3 u_m(value(0), value(1), value(2));
+    const auto up = u_m_.col(3);
+    const double rise1 = (up[1] + 2.0 * a * up[3] + b * up[4]) / reach_m_;
+    const double rise2 = (up[2] + 2.0 * b * up[5] + a * up[4]) / reach_m_;
+    const double over_m = (-depth_m - u_m.dot(normal)) / (1.0 + rise1 * rise1 + rise2 * rise2);
+    return p_m - u_m + over_m * (rise1 * t1_ + rise2 * t2_);
   }
 
  private:
-  Vec3 middle_m_, u_m_;
-  scene::Mat3 per_m_;  ///< of the displacement
-  Vec3 lean_;          ///< how far a foot lies aside per depth
+  Vec3 middle_m_, normal_, t1_, t2_;
+  int patch_;
+  bool knows_slope_;
+  double reach_m_, margin_m_;
+  Eigen::Matrix<double, 6, 4> u_m_;  ///< coefficients of 1, a, b, a^2, a b, b^2; of the vector and along the normal
 };
 
 /// Not if it stands over the surface in the cone that no surface of a slope below 45 degrees reaches into.
@@ -140,6 +197,17 @@ bool may_be_inside(const Vec3& off_m, const Vec3& normal) noexcept {
 }
 
 }  // namespace
+
+QuadraticFit::QuadraticFit() {
+  for (std::size_t v = 0; v < PointLanes::size; ++v) {
+    // A grid of 6 by 5, and the middle.
+    const double a = v < 30 ? -1.0 + 0.4 * static_cast<double>(v % 6) : 0.0;
+    const double b = v < 30 ? -1.0 + 0.5 * static_cast<double>(v / 6) : 0.0;
+    place[v] = {a, b};
+    terms.row(static_cast<Eigen::Index>(v)) << 1.0, a, b, a * a, a * b, b * b;
+  }
+  solve = (terms.transpose() * terms).ldlt().solve(terms.transpose());
+}
 
 PullBackScratch::PullBackScratch(int points) : foot(static_cast<std::size_t>(points)) {
   seeking.reserve(foot.size());
@@ -162,13 +230,17 @@ InsideSummary pull_back(const scene::Shape& shape, const DisplacedSurface& surfa
   const auto p_W_m = [&](std::int32_t i) { return points.p_W_m(static_cast<std::size_t>(i)); };
   const auto foot = [&](std::int32_t i) -> Foot& { return scratch.foot[static_cast<std::size_t>(i)]; };
 
-  const Guess<Body> guess(body, surface, points, step_m, scratch.lanes);
+  const Sheet sheet(body, surface, points, scratch.fit, scratch.lanes);
   scratch.seeking.clear();
   for (std::int32_t i = 0; i < points.count; ++i) {
     const Vec3 p_m = p_W_m(i);
-    foot(i).rest = closest(body, guess(p_m, closest(body, p_m)));
-    foot(i).distance_m = 0.0;
-    foot(i).settled = false;
+    const double depth_m = points.depth_m[i];
+    Foot& here = foot(i);
+    here.distance_m = 0.0;
+    if (!sheet.may_be_inside(p_m, depth_m)) continue;
+    const Vec3 normal = closest(body, p_m).normal;
+    here.rest = closest(body, sheet(p_m, normal, depth_m));
+    here.settled = false;
     scratch.seeking.push_back(i);
   }
   PointLanes &lanes = scratch.lanes, &beside = scratch.beside, &across = scratch.across;
@@ -181,6 +253,14 @@ InsideSummary pull_back(const scene::Shape& shape, const DisplacedSurface& surfa
         const Vec3 off_m = p_W_m(block[v]) - here.rest.point_m - at_lane(lanes.displacement_m, v);
         here.overshot = step > 1 && off_m.squaredNorm() > here.off_m.squaredNorm();
         if (!here.overshot) here.off_m = off_m;
+        if (!here.overshot && sheet.knows_slope(here.rest)) {
+          const double over_m = off_m.dot(sheet.normal(here.rest));
+          const double aside_m2 = off_m.squaredNorm() - over_m * over_m;
+          if (aside_m2 < foot_off_max * foot_off_max * over_m * over_m + step_m * step_m) {
+            here.distance_m = over_m;
+            continue;
+          }
+        }
         const bool last = here.settled || step == steps_max;
         if (last && here.overshot) {
           here.rest = closest(body, here.from_m);

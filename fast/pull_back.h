@@ -30,6 +30,14 @@ class DisplacedSurface {
   virtual void displace(int patch, PointLanes& lanes) const noexcept = 0;
 };
 
+/// Places in the square of half side 1 and the least-squares fit of a quadratic to what is found there.
+struct QuadraticFit {
+  QuadraticFit();
+  std::array<Eigen::Vector2d, PointLanes::size> place;
+  Eigen::Matrix<double, PointLanes::size, 6> terms;  ///< 1, a, b, a^2, a b, b^2 at each place
+  Eigen::Matrix<double, 6, PointLanes::size> solve;  ///< its pseudo-inverse
+};
+
 /// What pull_back() writes on its way; its content does not outlast a call. Storage is fixed at construction.
 struct PullBackScratch {
   /// @param points at most
@@ -50,6 +58,7 @@ struct PullBackScratch {
   std::vector<std::int32_t> seeking;  ///< points whose foot is not yet the closest one
   std::vector<std::int32_t> near;     ///< of them those that may be inside
   PointLanes lanes, beside, across;
+  QuadraticFit fit;
 };
 
 /// Takes every point back beside the rest point c whose displaced place c + u(c) is closest to it, as far from the body
@@ -57,8 +66,9 @@ struct PullBackScratch {
 /// points and the rest shape (Summarise, MeasureDepths) is true of the given points and the deformed one. World
 /// coordinates and depth_m change; tool coordinates stay, for forces act where the tool is.
 ///
-/// The foot of a point is first guessed from the displacement across the region, taken as affine, and then followed
+/// The foot of a point is first guessed from the displacement across the region, taken as quadratic, and then followed
 /// down the slope of the displaced surface by Newton's method.
+/// @param points with depth_m to the rest surface
 template <class Body>
 InsideSummary pull_back(const scene::Shape& shape, const DisplacedSurface& surface, RegionPoints& points,
                         PullBackScratch& scratch) noexcept;

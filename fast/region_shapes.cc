@@ -24,7 +24,7 @@ using Several [[gnu::vector_size(32)]] = float;
 constexpr std::size_t lanes_at_once = sizeof(Several) / sizeof(float);
 
 bool on_patch(const ShapeStack& stack, std::size_t k, std::size_t patch) noexcept {
-  return stack.takes_part[k] && static_cast<std::size_t>(stack.region[k].contact.patch) == patch;
+  return stack.hat_patch[k] == static_cast<std::int32_t>(patch);
 }
 
 /// h_k at a place of the patch that holds p0_k.
@@ -64,6 +64,7 @@ void grow(const RegionShape& region, const LocalConstants* local, ShapeStack& st
   const std::size_t i = stack.count++, n = stack.capacity;
   stack.region[i] = region;
   stack.takes_part[i] = region.contact.displacement_m.squaredNorm() > 0.0 && !region.contact.place.held();
+  stack.hat_patch[i] = stack.takes_part[i] ? region.contact.patch : -1;
   stack.inverse_edge[i] = Hat::inverse_edges(region.contact.place);
   if (local != nullptr) stack.reach[i] = {Factor::terms(*local, region.size), region.p0_W_m.cast<float>()};
   std::vector<double>& a = stack.factor;
@@ -487,26 +488,35 @@ Vec3 displacement_at(const SurfacePatches& rest, const AnchorPoints& anchors, co
 }
 
 /// Lays the points on the stack's block of vertices.
-void take_points(const AnchorPoints& anchors, int patch, const PointLanes& lanes, SurfacePatches& points) noexcept {
-  for (std::size_t v = 0; v < PointLanes::size; ++v) {
-    const PatchPlace place = anchors.at(patch, Vec3(lanes.point_m[0][v], lanes.point_m[1][v], lanes.point_m[2][v]));
-    for (std::size_t k = 0; k < corners_max; ++k) {
-      points.weight[k][v] = static_cast<float>(place.weight[k]);
-      points.edge[k][v] = static_cast<float>(place.edge[k]);
-    }
+TOUCHSTONE_INLINE void take_points(const AnchorPoints& anchors, int patch, const PointLanes& lanes,
+                                   SurfacePatches& points) noexcept {
+  PlaceColumns places;
+  for (std::size_t k = 0; k < corners_max; ++k) {
+    places.weight[k] = points.weight[k].data();
+    places.edge[k] = points.edge[k].data();
   }
+  anchors.at(patch, {lanes.point_m[0], lanes.point_m[1], lanes.point_m[2]}, places);
   VertexBlock& block = points.blocks[0];
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    float* point_m = points.rest_W_m[axis].data();
-    float low_m = static_cast<float>(lanes.point_m[axis][0]), high_m = low_m;
+    const double *from_m = lanes.point_m[axis].data(), *from_normal = lanes.normal[axis].data();
+    float *point_m = points.rest_W_m[axis].data(), *normal = points.normal[axis].data();
+    std::array<float, lanes_at_once> low_m, high_m;
+    low_m.fill(static_cast<float>(from_m[0]));
+    high_m = low_m;
+    // Columns never overlap.
+#pragma GCC ivdep
     for (std::size_t v = 0; v < PointLanes::size; ++v) {
-      point_m[v] = static_cast<float>(lanes.point_m[axis][v]);
-      points.normal[axis][v] = static_cast<float>(lanes.normal[axis][v]);
-      low_m = std::min(low_m, point_m[v]);
-      high_m = std::max(high_m, point_m[v]);
+      point_m[v] = static_cast<float>(from_m[v]);
+      normal[v] = static_cast<float>(from_normal[v]);
     }
-    block.low_W_m[static_cast<int>(axis)] = low_m;
-    block.high_W_m[static_cast<int>(axis)] = high_m;
+    for (std::size_t v = 0; v < PointLanes::size; v += lanes_at_once) {
+      for (std::size_t k = 0; k < lanes_at_once; ++k) {
+        low_m[k] = point_m[v + k] < low_m[k] ? point_m[v + k] : low_m[k];
+        high_m[k] = point_m[v + k] > high_m[k] ? point_m[v + k] : high_m[k];
+      }
+    }
+    block.low_W_m[static_cast<int>(axis)] = *std::min_element(low_m.begin(), low_m.end());
+    block.high_W_m[static_cast<int>(axis)] = *std::max_element(high_m.begin(), high_m.end());
   }
 }
 
@@ -552,6 +562,7 @@ ShapeStack::ShapeStack(const SurfacePatches& rest, const AnchorPoints& anchors, 
     : capacity(static_cast<std::size_t>(max_regions)),
       region(capacity),
       takes_part(capacity, false),
+      hat_patch(capacity, -1),
       factor(capacity * capacity, 0.0),
       inverse_edge(capacity),
       right(capacity, 0.0),

@@ -68,6 +68,7 @@ class PullBack : public testing::TestWithParam<bool> {
       points.y_W_m[i] = places_m[i].y();
       points.z_W_m[i] = places_m[i].z();
       points.area_m2[i] = 1e-6;
+      points.depth_m[i] = -body->signed_distance_m(places_m[i]);
       points.sample[i] = static_cast<std::int32_t>(i);
     }
   }
