@@ -162,8 +162,7 @@ ClusterCount cluster(const ClusterGrid& grid, RegionPoints& all, ClusterScratch&
         if (neighbour.certain != certain || b.first < 0) continue;
         if (certain) {
           scratch.join(a, neighbour.cell);
-        } else if (scratch.root(a) != scratch.root(neighbour.cell) &&
-                   scratch.near(grid, all, a, neighbour.cell)) {
+        } else if (scratch.root(a) != scratch.root(neighbour.cell) && scratch.near(grid, all, a, neighbour.cell)) {
           scratch.join(a, neighbour.cell);
         }
       }

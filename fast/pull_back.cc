@@ -28,6 +28,12 @@ constexpr double bend_max = 0.015;
 constexpr double foot_off_max = 0.05;
 
 SurfaceQuery closest(const scene::Shape& shape, const Vec3& p_m) noexcept { return shape.query(p_m); }
+SurfaceQuery closest(const scene::Ellipsoid& ellipsoid, const Vec3& p_m) noexcept {
+  const RestDistance rest = rest_distance(ellipsoid, p_m);
+  const Vec3& n = rest.normal;
+  const int patch = (n.x() < 0.0 ? 1 : 0) | (n.y() < 0.0 ? 2 : 0) | (n.z() < 0.0 ? 4 : 0);
+  return {rest.signed_distance_m, p_m - rest.signed_distance_m * n, n, patch};
+}
 /// Of a point inside the box or straight over a face, without a branch.
 inline SurfaceQuery closest(const scene::Box& box, const Vec3& p_m) noexcept {
   const Vec3 local = p_m - box.center_m(), above_face = local.cwiseAbs() - box.half_m();

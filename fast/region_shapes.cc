@@ -23,6 +23,8 @@ using Lane3 = std::array<Lane, 3>;
 using Several [[gnu::vector_size(32)]] = float;
 constexpr std::size_t lanes_at_once = sizeof(Several) / sizeof(float);
 
+bool takes_part(const ShapeStack& stack, std::size_t k) noexcept { return stack.hat_patch[k] >= 0; }
+
 bool on_patch(const ShapeStack& stack, std::size_t k, std::size_t patch) noexcept {
   return stack.hat_patch[k] == static_cast<std::int32_t>(patch);
 }
@@ -37,8 +39,8 @@ double hat_at(const ShapeStack& stack, std::size_t k, const PatchPlace& place) n
 /// h_k(p0_j)
 double hat_at_contact(const ShapeStack& stack, std::size_t k, std::size_t j) noexcept {
   const ContactPoint& at = stack.region[j].contact;
-  return stack.takes_part[j] && on_patch(stack, k, static_cast<std::size_t>(at.patch)) ? hat_at(stack, k, at.place)
-                                                                                       : 0.0;
+  return takes_part(stack, j) && on_patch(stack, k, static_cast<std::size_t>(at.patch)) ? hat_at(stack, k, at.place)
+                                                                                        : 0.0;
 }
 
 double at_place(const std::array<double, corners_max>& corner, const PatchPlace& place) noexcept {
@@ -63,8 +65,8 @@ template <class Factor>
 void grow(const RegionShape& region, const LocalConstants* local, ShapeStack& stack) noexcept {
   const std::size_t i = stack.count++, n = stack.capacity;
   stack.region[i] = region;
-  stack.takes_part[i] = region.contact.displacement_m.squaredNorm() > 0.0 && !region.contact.place.held();
-  stack.hat_patch[i] = stack.takes_part[i] ? region.contact.patch : -1;
+  const bool moves = region.contact.displacement_m.squaredNorm() > 0.0 && !region.contact.place.held();
+  stack.hat_patch[i] = moves ? region.contact.patch : -1;
   stack.inverse_edge[i] = Hat::inverse_edges(region.contact.place);
   if (local != nullptr) stack.reach[i] = {Factor::terms(*local, region.size), region.p0_W_m.cast<float>()};
   std::vector<double>& a = stack.factor;
@@ -104,7 +106,7 @@ void add_corrected(const SurfacePatches& rest, const LocalConstants* local, cons
   for (std::size_t j = 0; j <= last; ++j) {
     const ContactPoint& contact = stack.region[j].contact;
     c_m[j].setZero();
-    if (!stack.takes_part[j]) continue;
+    if (!takes_part(stack, j)) continue;
     c_m[j] = (j == last ? contact.displacement_m : Vec3(Vec3::Zero())) -
              vector_at(rest, region.anchor_displacement_m, static_cast<std::size_t>(contact.patch), contact.place);
   }
@@ -144,7 +146,7 @@ void add_published(const SurfacePatches& rest, const LocalConstants* local, cons
   for (std::size_t j = 0; j <= last; ++j) {
     const ContactPoint& contact = stack.region[j].contact;
     length_c_m[j] = angle_c_rad[j] = 0.0;
-    if (!stack.takes_part[j]) continue;
+    if (!takes_part(stack, j)) continue;
     const ShapeStack::Printed& here = printed[static_cast<std::size_t>(contact.patch)];
     const bool own = j == last;
     length_c_m[j] = (own ? contact.displacement_m.norm() : 0.0) - at_place(here.length_m, contact.place);
@@ -351,7 +353,7 @@ void interpolate_several_corrected(const SurfacePatches& rest, ShapeStack& stack
   interpolate_corrected(rest, stack.anchor_total_m, ContactPoint{}, field);
   float *x = field.displacement_m[0].data(), *y = field.displacement_m[1].data(), *z = field.displacement_m[2].data();
   for (std::size_t k = 0; k < stack.count; ++k) {
-    if (!stack.takes_part[k]) continue;
+    if (!takes_part(stack, k)) continue;
     const ContactPoint& contact = stack.region[k].contact;
     const Patch& patch = rest.patches[static_cast<std::size_t>(contact.patch)];
     const Hat hat(rest, stack.inverse_edge[k]);
@@ -397,7 +399,7 @@ TOUCHSTONE_INLINE void add_changes(const SurfacePatches& rest, float r_R_m, std:
     if (block.distance2_m2(own.p0_W_m) >= r_R_m * r_R_m) continue;
     raise_hats(rest, known, i, p, block, stack);
     for (std::size_t k = known == 0 ? 0 : known - 1; k < i; ++k) {
-      if (!stack.takes_part[k]) continue;
+      if (!takes_part(stack, k)) continue;
       const ShapeStack::Reach& earlier = stack.reach[k];
       const float rim_m = earlier.terms.rim_m + earlier.terms.C_r_m;
       if (block.distance2_m2(earlier.p0_W_m) > rim_m * rim_m) continue;
@@ -480,7 +482,7 @@ Vec3 displacement_at(const SurfacePatches& rest, const AnchorPoints& anchors, co
     if (own_m2 >= local->r_R_m * local->r_R_m) continue;
     double change = Formulation::factor(*local, stack.region[i].size, std::sqrt(own_m2)) - 1.0;
     for (std::size_t k = 0; k < i; ++k) {
-      if (stack.takes_part[k]) change *= Formulation::room(*local, stack.region[k].size, std::sqrt(r2_m2(k)));
+      if (takes_part(stack, k)) change *= Formulation::room(*local, stack.region[k].size, std::sqrt(r2_m2(k)));
     }
     u_m += change * Formulation::increment_at(rest, stack, i, at, place);
   }
@@ -561,7 +563,6 @@ void displacements_at_corrected(const AnchorPoints& anchors, const LocalConstant
 ShapeStack::ShapeStack(const SurfacePatches& rest, const AnchorPoints& anchors, int max_regions)
     : capacity(static_cast<std::size_t>(max_regions)),
       region(capacity),
-      takes_part(capacity, false),
       hat_patch(capacity, -1),
       factor(capacity * capacity, 0.0),
       inverse_edge(capacity),

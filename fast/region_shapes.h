@@ -47,8 +47,7 @@ struct ShapeStack {
   std::size_t count = 0;  ///< regions so far
   std::size_t capacity = 0;
   std::vector<RegionShape> region;
-  std::vector<bool> takes_part;         ///< has a hat
-  std::vector<std::int32_t> hat_patch;  ///< the patch with its hat, -1 for none
+  std::vector<std::int32_t> hat_patch;  ///< the patch with its hat, -1 for one that takes no part
   std::vector<double> factor;           ///< L below and U above the diagonal, rows of `capacity`
   std::vector<std::array<double, patch_corners_max>> inverse_edge;  ///< of the distances of p0 to its patch's edges
   std::vector<double> right;                                        ///< work space, `capacity`

@@ -115,14 +115,16 @@ StepStatus press_next(const FastModel& model, const Motion& motion, bool created
     model.formulas.split_force(skeleton, p0_current_m, -region.force.force_n, region.displacement_m, region.ends);
     if (region.ends.limited) status |= StepStatus::anchors_limited;
   }
-  beam_stresses(skeleton, region.ends, stress);
+  // Only earlier regions feel them.
+  if (shapes.count > 0) beam_stresses(skeleton, region.ends, stress);
   RegionShape shape;
   shape.anchor_displacement_m = region.ends.displacement_m;
   shape.contact = contact_point(model, region);
   shape.p0_W_m = region.origin.p0_W_m;
   shape.size = {region.points.count, region.extent.area_m2};
   model.formulas.several.add(model.rest, local, shape, shapes);
-  several.ends.update(model.skeleton, shapes.anchor_total_m);
+  const bool last = static_cast<int>(shapes.count) == state.region_count;
+  if (!last) several.ends.update(model.skeleton, shapes.anchor_total_m);
   state.lap(Stage::skeleton);
   return status;
 }
@@ -264,7 +266,6 @@ OrderSpread order_spread(const FastModel& model, FastState& state) {
   std::copy(created.begin(), created.end(), several.order.begin());
   std::copy(regions.begin(), regions.end(), state.regions.begin());
   several.shapes = shapes;
-  several.ends.update(model.skeleton, shapes.anchor_total_m);
   return spread;
 }
 
