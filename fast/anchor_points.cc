@@ -1,5 +1,7 @@
 #include "fast/anchor_points.h"
 
+#include "fast/patch_kernels.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -48,6 +50,33 @@ struct FaceAxes {
 FaceAxes face_axes(int patch) noexcept {
   const int axis = patch / 2;
   return {(axis + 1) % 3, (axis + 2) % 3};
+}
+
+/// Bilinear places on a face. @param edge 0 for a held face, else 1
+TOUCHSTONE_WIDE_LOOPS
+void face_places(std::span<const double> u_m, std::span<const double> v_m, const Eigen::Vector2d& center_m,
+                 const Eigen::Vector2d& half_m, float edge, const PlaceColumns& out) noexcept {
+  const double per_u = 0.5 / half_m.x(), per_v = 0.5 / half_m.y(), u0 = center_m.x(), v0 = center_m.y();
+  const auto [w0, w1, w2, w3] = out.weight;
+  const auto [e0, e1, e2, e3] = out.edge;
+  const std::size_t count = u_m.size();
+  // Columns never overlap.
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto from_u = static_cast<float>((u_m[i] - u0) * per_u + 0.5);
+    const auto from_v = static_cast<float>((v_m[i] - v0) * per_v + 0.5);
+    const float above_u = from_u > 0.0f ? from_u : 0.0f, above_v = from_v > 0.0f ? from_v : 0.0f;
+    const float u = above_u < 1.0f ? above_u : 1.0f, v = above_v < 1.0f ? above_v : 1.0f;
+    const float past_u = 1.0f - u, past_v = 1.0f - v;
+    w0[i] = past_u * past_v;
+    w1[i] = u * past_v;
+    w2[i] = past_u * v;
+    w3[i] = u * v;
+    e0[i] = edge * u;
+    e1[i] = edge * past_u;
+    e2[i] = edge * v;
+    e3[i] = edge * past_v;
+  }
 }
 
 }  // namespace
@@ -109,30 +138,11 @@ PatchPlace BoxAnchors::at(int patch, const Vec3& p_m) const noexcept {
 void BoxAnchors::at(int patch, const std::array<std::span<const double>, 3>& p_m,
                     const PlaceColumns& out) const noexcept {
   const auto axes = face_axes(patch);
-  const double* along_u = p_m[static_cast<std::size_t>(axes.u)].data();
-  const double* along_v = p_m[static_cast<std::size_t>(axes.v)].data();
-  const double per_u = 0.5 / box_.half_m()[axes.u], per_v = 0.5 / box_.half_m()[axes.v];
-  const double center_u = box_.center_m()[axes.u], center_v = box_.center_m()[axes.v];
-  const float edge = patch == bottom_face ? 0.0f : 1.0f;
-  const auto [w0, w1, w2, w3] = out.weight;
-  const auto [e0, e1, e2, e3] = out.edge;
-  // Columns never overlap.
-#pragma GCC ivdep
-  for (std::size_t i = 0; i < p_m[0].size(); ++i) {
-    const double from_u = (along_u[i] - center_u) * per_u + 0.5, from_v = (along_v[i] - center_v) * per_v + 0.5;
-    const double below_u = from_u > 0.0 ? from_u : 0.0, below_v = from_v > 0.0 ? from_v : 0.0;
-    const auto u = static_cast<float>(below_u < 1.0 ? below_u : 1.0);
-    const auto v = static_cast<float>(below_v < 1.0 ? below_v : 1.0);
-    const float past_u = 1.0f - u, past_v = 1.0f - v;
-    w0[i] = past_u * past_v;
-    w1[i] = u * past_v;
-    w2[i] = past_u * v;
-    w3[i] = u * v;
-    e0[i] = edge * u;
-    e1[i] = edge * past_u;
-    e2[i] = edge * v;
-    e3[i] = edge * past_v;
-  }
+  const std::span<const double> u_m = p_m[static_cast<std::size_t>(axes.u)],
+                                v_m = p_m[static_cast<std::size_t>(axes.v)];
+  const Eigen::Vector2d center_m(box_.center_m()[axes.u], box_.center_m()[axes.v]);
+  const Eigen::Vector2d half_m(box_.half_m()[axes.u], box_.half_m()[axes.v]);
+  face_places(u_m, v_m, center_m, half_m, patch == bottom_face ? 0.0f : 1.0f, out);
 }
 
 EllipsoidAnchors::EllipsoidAnchors(const scene::Sphere& sphere, double support_height_m)

@@ -109,6 +109,23 @@ struct Slope {
   }
 };
 
+/// Heights of points over the rest surface less a quadratic of their places a and b, each given as a plane.
+TOUCHSTONE_WIDE_LOOPS
+void heights_m(const RegionPoints& points, const std::array<double, 4>& a_of, const std::array<double, 4>& b_of,
+               const std::array<double, 6>& quadratic, double* out) noexcept {
+  const double *x = points.x_W_m, *y = points.y_W_m, *z = points.z_W_m, *depth_m = points.depth_m;
+  const auto [ax, ay, az, a0] = a_of;
+  const auto [bx, by, bz, b0] = b_of;
+  const auto [c0, c1, c2, c3, c4, c5] = quadratic;
+  const int count = points.count;
+  // Columns never overlap.
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    const double a = ax * x[i] + ay * y[i] + az * z[i] + a0, b = bx * x[i] + by * y[i] + bz * z[i] + b0;
+    out[i] = -depth_m[i] - (c0 + a * (c1 + a * c3 + b * c4) + b * (c2 + b * c5));
+  }
+}
+
 /// The displacement across a region as a quadratic of the place over the plane that touches the rest surface in the
 /// region's middle, by least squares from one block of points. It tells which points are outside for sure, and guesses
 /// the feet of the others.
@@ -166,12 +183,13 @@ class Sheet {
     return (rest.normal - rise1 * t1_ - rise2 * t2_).normalized();
   }
 
-  /// False where the point stands over the displaced surface for sure. @param depth_m beneath the rest surface
-  [[nodiscard]] bool may_be_inside(const Vec3& p_m, double depth_m) const noexcept {
-    const double a = (p_m - middle_m_).dot(t1_) / reach_m_, b = (p_m - middle_m_).dot(t2_) / reach_m_;
+  /// Heights of the points over the displaced surface, less than which it may be; where that is above 0, the point is
+  /// outside for sure.
+  void least_heights_m(const RegionPoints& points, double* out) const noexcept {
+    const Vec3 t1 = t1_ / reach_m_, t2 = t2_ / reach_m_;
     const auto up = u_m_.col(3);
-    const double up_m = up[0] + a * (up[1] + a * up[3] + b * up[4]) + b * (up[2] + b * up[5]);
-    return -depth_m - up_m < margin_m_;
+    heights_m(points, {t1.x(), t1.y(), t1.z(), -t1.dot(middle_m_)}, {t2.x(), t2.y(), t2.z(), -t2.dot(middle_m_)},
+              {up[0] + margin_m_, up[1], up[2], up[3], up[4], up[5]}, out);
   }
   /// A point whose closest rest point is about the foot of p.
   [[nodiscard]] Vec3 operator()(const Vec3& p_m, const Vec3& normal, double depth_m) const noexcept {
@@ -215,13 +233,13 @@ QuadraticFit::QuadraticFit() {
   solve = (terms.transpose() * terms).ldlt().solve(terms.transpose());
 }
 
-PullBackScratch::PullBackScratch(int points) : foot(static_cast<std::size_t>(points)) {
+PullBackScratch::PullBackScratch(int points) : foot(static_cast<std::size_t>(points)), height_m(foot.size()) {
   seeking.reserve(foot.size());
   near.reserve(foot.size());
 }
 
 std::size_t PullBackScratch::memory_bytes() const noexcept {
-  return sizeof(PullBackScratch) + foot.size() * (sizeof(Foot) + 2 * sizeof(std::int32_t));
+  return sizeof(PullBackScratch) + foot.size() * (sizeof(Foot) + sizeof(double) + 2 * sizeof(std::int32_t));
 }
 
 template <class Body>
@@ -237,13 +255,14 @@ InsideSummary pull_back(const scene::Shape& shape, const DisplacedSurface& surfa
   const auto foot = [&](std::int32_t i) -> Foot& { return scratch.foot[static_cast<std::size_t>(i)]; };
 
   const Sheet sheet(body, surface, points, scratch.fit, scratch.lanes);
+  sheet.least_heights_m(points, scratch.height_m.data());
   scratch.seeking.clear();
   for (std::int32_t i = 0; i < points.count; ++i) {
-    const Vec3 p_m = p_W_m(i);
-    const double depth_m = points.depth_m[i];
     Foot& here = foot(i);
     here.distance_m = 0.0;
-    if (!sheet.may_be_inside(p_m, depth_m)) continue;
+    if (scratch.height_m[static_cast<std::size_t>(i)] >= 0.0) continue;
+    const Vec3 p_m = p_W_m(i);
+    const double depth_m = points.depth_m[i];
     const Vec3 normal = closest(body, p_m).normal;
     here.rest = closest(body, sheet(p_m, normal, depth_m));
     here.settled = false;

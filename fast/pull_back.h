@@ -55,6 +55,7 @@ struct PullBackScratch {
     bool settled;               ///< the last step was short
   };
   std::vector<Foot> foot;             ///< per point
+  std::vector<double> height_m;       ///< per point, over the displaced surface at least
   std::vector<std::int32_t> seeking;  ///< points whose foot is not yet the closest one
   std::vector<std::int32_t> near;     ///< of them those that may be inside
   PointLanes lanes, beside, across;

@@ -78,6 +78,11 @@ template <class Body>
   return body.signed_distance_m(p_m) <= radius_m;
 }
 
+[[nodiscard]] inline bool may_touch(const scene::Box& box, const scene::Vec3& p_m, double radius_m) noexcept {
+  const scene::Vec3 beyond_m = ((p_m - box.center_m()).cwiseAbs() - box.half_m()).cwiseMax(0.0);
+  return beyond_m.squaredNorm() <= radius_m * radius_m;
+}
+
 /// True only if the point is outside by more than margin_m: a cheap first question.
 template <class Body>
 [[nodiscard]] bool surely_beyond(const Body&, const scene::Vec3&, double) noexcept {
