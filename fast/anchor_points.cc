@@ -1,5 +1,7 @@
 #include "fast/anchor_points.h"
 
+#include "fast/patch_kernels.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -50,6 +52,30 @@ FaceAxes face_axes(int patch) noexcept {
   return {(axis + 1) % 3, (axis + 2) % 3};
 }
 
+/// Bilinear places on a face. @param free 1 for every corner that can move, else 0
+TOUCHSTONE_WIDE_LOOPS
+void face_places(std::span<const double> u_m, std::span<const double> v_m, const Eigen::Vector2d& center_m,
+                 const Eigen::Vector2d& half_m, const std::array<float, patch_corners_max>& free,
+                 const PlaceColumns& out) noexcept {
+  const double per_u = 0.5 / half_m.x(), per_v = 0.5 / half_m.y(), u0 = center_m.x(), v0 = center_m.y();
+  const auto [w0, w1, w2, w3] = out.weight;
+  const auto [f0, f1, f2, f3] = free;
+  float* f = out.free;
+  const std::size_t count = u_m.size();
+  // Columns never overlap.
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto from_u = static_cast<float>((u_m[i] - u0) * per_u + 0.5);
+    const auto from_v = static_cast<float>((v_m[i] - v0) * per_v + 0.5);
+    const float above_u = from_u > 0.0f ? from_u : 0.0f, above_v = from_v > 0.0f ? from_v : 0.0f;
+    const float u = above_u < 1.0f ? above_u : 1.0f, v = above_v < 1.0f ? above_v : 1.0f;
+    const float past_u = 1.0f - u, past_v = 1.0f - v;
+    const float a = past_u * past_v, b = u * past_v, c = past_u * v, d = u * v;
+    w0[i] = a, w1[i] = b, w2[i] = c, w3[i] = d;
+    f[i] = f0 * a + f1 * b + f2 * c + f3 * d;
+  }
+}
+
 }  // namespace
 
 bool AnchorPoints::first_between_its_anchors(int) const { return true; }
@@ -61,6 +87,17 @@ PatchPlace AnchorPoints::place(int patch, const std::array<double, patch_corners
     if (!held_[static_cast<std::size_t>(corner[k])]) place.free += weight[k];
   }
   return place;
+}
+
+void AnchorPoints::at(int patch, const std::array<std::span<const double>, 3>& p_m,
+                      const PlaceColumns& out) const noexcept {
+  for (std::size_t i = 0; i < p_m[0].size(); ++i) {
+    const PatchPlace place = at(patch, Vec3(p_m[0][i], p_m[1][i], p_m[2][i]));
+    for (std::size_t k = 0; k < patch_corners_max; ++k) {
+      out.weight[k][i] = static_cast<float>(place.weight[k]);
+    }
+    out.free[i] = static_cast<float>(place.free);
+  }
 }
 
 void AnchorPoints::add(const Vec3& point_m, bool held, AnchorReason reason) {
@@ -99,6 +136,20 @@ PatchPlace BoxAnchors::at(int patch, const Vec3& p_m) const noexcept {
   const double u = std::clamp(0.5 * (local[axes.u] + 1.0), 0.0, 1.0);
   const double v = std::clamp(0.5 * (local[axes.v] + 1.0), 0.0, 1.0);
   return place(patch, {(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v});
+}
+
+void BoxAnchors::at(int patch, const std::array<std::span<const double>, 3>& p_m,
+                    const PlaceColumns& out) const noexcept {
+  const auto axes = face_axes(patch);
+  const std::span<const double> u_m = p_m[static_cast<std::size_t>(axes.u)],
+                                v_m = p_m[static_cast<std::size_t>(axes.v)];
+  const Eigen::Vector2d center_m(box_.center_m()[axes.u], box_.center_m()[axes.v]);
+  const Eigen::Vector2d half_m(box_.half_m()[axes.u], box_.half_m()[axes.v]);
+  std::array<float, patch_corners_max> free;
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    free[k] = held_[static_cast<std::size_t>(patches_[static_cast<std::size_t>(patch)][k])] ? 0.0f : 1.0f;
+  }
+  face_places(u_m, v_m, center_m, half_m, free, out);
 }
 
 EllipsoidAnchors::EllipsoidAnchors(const scene::Sphere& sphere, double support_height_m)

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace touchstone::fast {
@@ -21,6 +22,12 @@ struct PatchPlace {
 
   /// True on held surface.
   [[nodiscard]] bool held() const noexcept { return free <= 0.0; }
+};
+
+/// Where PatchPlaces go by component, in single precision.
+struct PlaceColumns {
+  std::array<float*, patch_corners_max> weight;
+  float* free;
 };
 
 /// The anchor points p_i of a body, the patches they bound, and which of them the support holds.
@@ -45,6 +52,8 @@ class AnchorPoints {
   [[nodiscard]] virtual scene::Vec3 halfway_m(int patch, int i, int j) const = 0;
   /// @param p_m a point of the rest surface on that patch
   [[nodiscard]] virtual PatchPlace at(int patch, const scene::Vec3& p_m) const noexcept = 0;
+  /// The same of many points, by component.
+  virtual void at(int patch, const std::array<std::span<const double>, 3>& p_m, const PlaceColumns& out) const noexcept;
 
  protected:
   /// Adds an anchor point that the rule has found, at its exact place.
@@ -67,6 +76,8 @@ class BoxAnchors final : public AnchorPoints {
   [[nodiscard]] std::vector<int> around(int patch) const override;
   [[nodiscard]] scene::Vec3 halfway_m(int patch, int i, int j) const override;
   [[nodiscard]] PatchPlace at(int patch, const scene::Vec3& p_m) const noexcept override;
+  void at(int patch, const std::array<std::span<const double>, 3>& p_m,
+          const PlaceColumns& out) const noexcept override;
 
  private:
   scene::Box box_;
@@ -83,6 +94,7 @@ class EllipsoidAnchors final : public AnchorPoints {
   EllipsoidAnchors(const scene::Ellipsoid& ellipsoid, double support_height_m);
   [[nodiscard]] std::vector<int> around(int patch) const override;
   [[nodiscard]] scene::Vec3 halfway_m(int patch, int i, int j) const override;
+  using AnchorPoints::at;
   [[nodiscard]] PatchPlace at(int patch, const scene::Vec3& p_m) const noexcept override;
 
  private:
@@ -113,6 +125,7 @@ class RevolutionAnchors final : public AnchorPoints {
   [[nodiscard]] std::vector<int> around(int patch) const override;
   [[nodiscard]] bool first_between_its_anchors(int patch) const override;
   [[nodiscard]] scene::Vec3 halfway_m(int patch, int i, int j) const override;
+  using AnchorPoints::at;
   [[nodiscard]] PatchPlace at(int patch, const scene::Vec3& p_m) const noexcept override;
 
  private:

@@ -5,6 +5,7 @@
 #include "fast/hat.h"
 #include "fast/interpolation.h"
 #include "fast/local_factor.h"
+#include "fast/pull_back.h"
 #include "scene/shape.h"
 
 #include <array>
@@ -48,16 +49,17 @@ struct ShapeStack {
   std::size_t capacity = 0;
   std::size_t patches = 0;
   std::vector<RegionShape> region;
-  std::vector<bool> takes_part;                   ///< has a hat
-  std::vector<HatPart> hat;                       ///< rows of one per patch
-  std::vector<double> factor;                     ///< L below and U above the diagonal, rows of `capacity`
-  std::vector<double> right;                      ///< work space, `capacity`
-  std::vector<scene::Vec3> vector_c_m;            ///< c_ik of the corrected form, rows of `capacity`
-  std::vector<Eigen::Vector3f> vector_c_short_m;  ///< the same in single precision
-  std::vector<scene::Vec3> vector_total_m;        ///< sum over i of c_ik
-  std::vector<scene::Vec3> anchor_total_m;        ///< sum of U_i
-  std::vector<double> length_c_m, angle_c_rad;    ///< c_ik of the printed form, rows of `capacity`
-  std::vector<Printed> printed;                   ///< rows of one per patch
+  std::vector<char> takes_part;                       ///< has a hat
+  std::vector<HatPart> hat;                           ///< rows of one per patch
+  std::vector<double> factor;                         ///< L below and U above the diagonal, rows of `capacity`
+  std::vector<double> right;                          ///< work space, `capacity`
+  std::vector<scene::Vec3> vector_c_m;                ///< c_ik of the corrected form, rows of `capacity`
+  std::vector<Eigen::Vector3f> vector_c_short_m;      ///< the same in single precision
+  std::vector<scene::Vec3> vector_total_m;            ///< sum over i of c_ik
+  std::vector<Eigen::Vector3f> vector_total_short_m;  ///< the same in single precision
+  std::vector<scene::Vec3> anchor_total_m;            ///< sum of U_i
+  std::vector<double> length_c_m, angle_c_rad;        ///< c_ik of the printed form, rows of `capacity`
+  std::vector<Printed> printed;                       ///< rows of one per patch
 
   /// Work space of the passes: numbers of one block of vertices.
   using Lane = std::array<float, block_vertices>;
@@ -67,15 +69,18 @@ struct ShapeStack {
     Eigen::Vector3f p0_W_m;
   };
   std::array<Lane, patch_corners_max> corner_weight{};
-  std::vector<Lane> height;  ///< of the hats, one per region
-  std::vector<Reach> reach;
+  std::vector<Lane> height;       ///< of the hats, one per region
+  std::vector<Reach> reach;       ///< of the regions so far, where there is a local factor
   std::vector<std::size_t> near;  ///< regions whose R reaches the patch at hand
+  SurfacePatches points;          ///< the body's patches, with one block of vertices: the points asked for
 
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };
 
-/// Takes the next region in. At most `max_regions` times between clears.
-using AddRegion = void (*)(const SurfacePatches&, const RegionShape&, ShapeStack&) noexcept;
+/// Takes the next region in. At most `max_regions` times between clears. @param local null where there is no local
+/// factor
+using AddRegion = void (*)(const SurfacePatches&, const LocalConstants* local, const RegionShape&,
+                           ShapeStack&) noexcept;
 /// Fills field.displacement_m with the global deformation of all regions.
 using InterpolateSeveral = void (*)(const SurfacePatches&, ShapeStack&, SurfaceField&) noexcept;
 /// Adds (w_i - 1) u_i inside every region's R_i to it. A point in contact with region i or an earlier one keeps u_i: it
@@ -88,12 +93,17 @@ using ApplyLocalFactors = void (*)(const SurfacePatches&, const LocalConstants&,
 using DisplacementAt = scene::Vec3 (*)(const SurfacePatches&, const AnchorPoints&, const ShapeStack&,
                                        const LocalConstants* local, const scene::SurfaceQuery& at) noexcept;
 
+/// The same of a block of points of one patch, in single precision.
+using DisplacementsAt = void (*)(const AnchorPoints&, const LocalConstants* local, int patch, ShapeStack&,
+                                 PointLanes&) noexcept;
+
 /// One formulation of the above. With a single region both passes equal interpolate_* and apply_local_factor_*.
 struct SeveralRegions {
   AddRegion add = nullptr;
   InterpolateSeveral interpolate = nullptr;
   ApplyLocalFactors apply_local_factors = nullptr;
   DisplacementAt displacement_at = nullptr;
+  DisplacementsAt displacements_at = nullptr;
 };
 
 /// As printed: lengths and angles, region upon region at every vertex, an earlier contact point entering with length

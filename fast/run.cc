@@ -102,10 +102,11 @@ void add_beams(const FastModel& model, const FastState& state, double time_s, st
   for (std::size_t k = 0; k < static_cast<std::size_t>(state.region_count); ++k) {
     const ContactRegion& region = state.regions[k];
     if (!region.pressing()) continue;
-    if (state.several != nullptr) {
-      stress = state.several->stress_pa[k];
-    } else {
+    // The first region meets the body at rest; only what later ones do to the others is kept.
+    if (state.several == nullptr || state.several->order[0] == static_cast<int>(k)) {
       beam_stresses(model.skeleton, region.ends, stress);
+    } else {
+      stress = state.several->stress_pa[k];
     }
     for (std::size_t i = 0; i < stress.size(); ++i) {
       beams.push_back({time_s, region.id, static_cast<int>(i), model.skeleton.anchor_m[i],
