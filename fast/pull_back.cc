@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 namespace touchstone::fast {
@@ -146,6 +147,15 @@ class Sheet {
     t2_ = t.t2.normalized();
     const Vec3 half_m = 0.5 * (high_m - low_m);
     reach_m_ = std::max({half_m.dot(t1_.cwiseAbs()), half_m.dot(t2_.cwiseAbs()), 1e-6 * half_m.norm(), 1e-9});
+    // As far as the closest rest point of any of the points can lie.
+    const double deepest_m = *std::max_element(points.depth_m, points.depth_m + points.count);
+    const double all_m = reach_m_ + std::max(deepest_m, 0.0);
+    bool one_patch = true;
+    for (const double a : {-all_m, all_m}) {
+      for (const double b : {-all_m, all_m}) {
+        one_patch = one_patch && closest(body, middle_m_ + a * t1_ + b * t2_).patch == middle.patch;
+      }
+    }
     for (std::size_t v = 0; v < PointLanes::size; ++v) {
       const SurfaceQuery at = closest(body, middle_m_ + reach_m_ * (fit.place[v].x() * t1_ + fit.place[v].y() * t2_));
       set_lane(lanes.point_m, v, at.point_m);
@@ -164,10 +174,11 @@ class Sheet {
     const double off_m = (fit.terms.lazyProduct(u_m_.col(3)) - samples.col(3)).cwiseAbs().maxCoeff();
     const auto up = u_m_.col(3).cwiseAbs();
     const double slope = (std::max(up[1], up[2]) + up[4] + 2.0 * std::max(up[3], up[5])) / reach_m_;
-    margin_m_ = 2.0 * off_m + 2.0 * slope * aside_m;
+    // Across the border of a patch it only guesses.
+    margin_m_ = one_patch ? 2.0 * off_m + 2.0 * slope * aside_m : std::numeric_limits<double>::infinity();
     patch_ = middle.patch;
     normal_ = middle.normal;
-    knows_slope_ = off_m < bend_max * reach_m_;
+    knows_slope_ = one_patch && off_m < bend_max * reach_m_;
   }
 
   /// Whether its slope is that of the displaced surface within a tenth or so, at a point of the rest surface.
