@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 namespace touchstone::fast {
@@ -146,6 +147,15 @@ class Sheet {
     t2_ = t.t2.normalized();
     const Vec3 half_m = 0.5 * (high_m - low_m);
     reach_m_ = std::max({half_m.dot(t1_.cwiseAbs()), half_m.dot(t2_.cwiseAbs()), 1e-6 * half_m.norm(), 1e-9});
+    // As far as the closest rest point of any of the points can lie.
+    const double deepest_m = *std::max_element(points.depth_m, points.depth_m + points.count);
+    const double all_m = reach_m_ + std::max(deepest_m, 0.0);
+    one_patch_ = true;
+    for (const double a : {-all_m, all_m}) {
+      for (const double b : {-all_m, all_m}) {
+        one_patch_ = one_patch_ && closest(body, middle_m_ + a * t1_ + b * t2_).patch == middle.patch;
+      }
+    }
     for (std::size_t v = 0; v < PointLanes::size; ++v) {
       const SurfaceQuery at = closest(body, middle_m_ + reach_m_ * (fit.place[v].x() * t1_ + fit.place[v].y() * t2_));
       set_lane(lanes.point_m, v, at.point_m);
@@ -164,12 +174,14 @@ class Sheet {
     const double off_m = (fit.terms.lazyProduct(u_m_.col(3)) - samples.col(3)).cwiseAbs().maxCoeff();
     const auto up = u_m_.col(3).cwiseAbs();
     const double slope = (std::max(up[1], up[2]) + up[4] + 2.0 * std::max(up[3], up[5])) / reach_m_;
-    margin_m_ = 2.0 * off_m + 2.0 * slope * aside_m;
+    margin_m_ = one_patch_ ? 2.0 * off_m + 2.0 * slope * aside_m : std::numeric_limits<double>::infinity();
     patch_ = middle.patch;
     normal_ = middle.normal;
-    knows_slope_ = off_m < bend_max * reach_m_;
+    knows_slope_ = one_patch_ && off_m < bend_max * reach_m_;
   }
 
+  /// Else another patch may move otherwise, and nothing is known of the points.
+  [[nodiscard]] bool one_patch() const noexcept { return one_patch_; }
   /// Whether its slope is that of the displaced surface within a tenth or so, at a point of the rest surface.
   [[nodiscard]] bool knows_slope(const SurfaceQuery& rest) const noexcept {
     return knows_slope_ && rest.patch == patch_ && rest.normal.dot(normal_) > 0.9;
@@ -209,7 +221,7 @@ class Sheet {
  private:
   Vec3 middle_m_, normal_, t1_, t2_;
   int patch_;
-  bool knows_slope_;
+  bool one_patch_, knows_slope_;
   double reach_m_, margin_m_;
   Eigen::Matrix<double, 6, 4> u_m_;  ///< coefficients of 1, a, b, a^2, a b, b^2; of the vector and along the normal
 };
@@ -263,8 +275,8 @@ InsideSummary pull_back(const scene::Shape& shape, const DisplacedSurface& surfa
     if (scratch.height_m[static_cast<std::size_t>(i)] >= 0.0) continue;
     const Vec3 p_m = p_W_m(i);
     const double depth_m = points.depth_m[i];
-    const Vec3 normal = closest(body, p_m).normal;
-    here.rest = closest(body, sheet(p_m, normal, depth_m));
+    here.rest = closest(body, p_m);
+    if (sheet.one_patch()) here.rest = closest(body, sheet(p_m, here.rest.normal, depth_m));
     here.settled = false;
     scratch.seeking.push_back(i);
   }

@@ -188,6 +188,36 @@ TEST_P(PullBack, DropsWhatIsNoLongerInsideAndKeepsTheRest) {
   EXPECT_NEAR(summary.deepest_m, again.deepest_m, 1e-14);
 }
 
+/// A box whose top has gone down, and nothing else.
+struct SunkenTop final : DisplacedSurface {
+  void displace(int patch, PointLanes& lanes) const noexcept override {
+    lanes.displacement_m = {};
+    if (patch == 5) lanes.displacement_m[2].fill(-0.0015);
+  }
+};
+
+TEST(PullBackOfABox, APointBesideTheEdgeBelongsToItsOwnFace) {
+  const scene::Box box(Vec3(0.0, 0.0, 0.03), Vec3(0.06, 0.06, 0.06));
+  const Vec3 places_m[] = {{0.0240, 0.0, 0.0598}, {0.0295, 0.0, 0.0590}, {0.0240, 0.001, 0.0582}};
+  test::OwnedPoints points(3);
+  points.count = 3;
+  for (std::size_t i = 0; i < 3; ++i) {
+    points.x_W_m[i] = places_m[i].x();
+    points.y_W_m[i] = places_m[i].y();
+    points.z_W_m[i] = places_m[i].z();
+    points.area_m2[i] = 1e-6;
+    points.sample[i] = static_cast<std::int32_t>(i);
+    points.depth_m[i] = -box.signed_distance_m(places_m[i]);
+  }
+  PullBackScratch scratch(3);
+  detection_for(box).pull_back(box, SunkenTop(), points, scratch);
+  ASSERT_EQ(points.count, 2);  // the first stands over the sunken top
+  EXPECT_EQ(points.sample[0], 1);
+  EXPECT_NEAR(points.depth_m[0], 0.0005, 1e-12);
+  EXPECT_EQ(points.sample[1], 2);
+  EXPECT_NEAR(points.depth_m[1], 0.0003, 1e-12);
+}
+
 INSTANTIATE_TEST_SUITE_P(Bodies, PullBack, testing::Bool(),
                          [](const auto& parameter) { return parameter.param ? "Box" : "Ellipsoid"; });
 
