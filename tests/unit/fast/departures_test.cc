@@ -306,9 +306,9 @@ TEST(Departures, E7) {
     return walk.force_n().z();
   };
   states("E7 |", "173.8 N", mallet_n("head", false));
-  states("E7 |", "33.8 N", mallet_n("tail", false));
+  states("E7 |", "35.2 N", mallet_n("tail", false));
   states("E7 |", "2.16 N", mallet_n("head", true));
-  states("E7 |", "0.93 N", mallet_n("tail", true));
+  states("E7 |", "1.03 N", mallet_n("tail", true));
 }
 
 /// Stiffness of a contact's common end.
@@ -518,11 +518,11 @@ Off direction_off(const TwoFields& fields) {
 TEST(Departures, E15_Direction) {
   EXPECT_LT(direction_off(TwoFields("ball-on-cube-press", 1.1)).worst_deg, 1e-4);
   const Off ellipsoid = direction_off(TwoFields("ellipsoid-rubber", 0.9));
-  states("E15 |", "9.3 degrees", ellipsoid.mean_deg);
+  states("E15 |", "8.7 degrees", ellipsoid.mean_deg);
   states("E15 |", "18.4 degrees", ellipsoid.worst_deg);
   const Off mallet = direction_off(TwoFields("mallet-along-ellipsoid", 0.9));
-  states("E15 |", "17.2 degrees", mallet.mean_deg);
-  states("E15 |", "40.5 degrees", mallet.worst_deg);
+  states("E15 |", "16.9 degrees", mallet.mean_deg);
+  states("E15 |", "43.4 degrees", mallet.worst_deg);
 }
 
 double median_us(const std::function<void()>& what) {
@@ -594,14 +594,14 @@ TEST(Departures, E18) {
     return run(scene);
   };
   const auto published = run_of(Formulation::published), corrected = run_of(Formulation::corrected);
-  states("E18 |", "0.73", published.order_spread_rel.value());
+  states("E18 |", "0.62", published.order_spread_rel.value());
   states("E18 |", "0.41", corrected.order_spread_rel.value());
   states("E18 |", "1.6e-3", published.equilibrium_rel.value());
-  states("E18 |", "9.0e-5", corrected.equilibrium_rel.value());
+  states("E18 |", "9.4e-5", corrected.equilibrium_rel.value());
   Walk walk("compass-two-pins", Formulation::corrected);
   walk.go(1.0, 50);
-  states("E18 |", "0.81 N", walk.region(0).force.force_n.norm());
-  states("E18 |", "0.22 N", walk.region(1).force.force_n.norm());
+  states("E18 |", "0.83 N", walk.region(0).force.force_n.norm());
+  states("E18 |", "0.24 N", walk.region(1).force.force_n.norm());
 }
 
 TEST(Departures, E19) {
@@ -729,7 +729,7 @@ TEST(Departures, AreasOfTheCurrentBody) {
   for (std::size_t i = 0; i < walk.model.skeleton.area_m2.size(); ++i) {
     change = std::max(change, std::abs(walk.state.several->ends.area_m2[i] / walk.model.skeleton.area_m2[i] - 1.0));
   }
-  states("none | App. IV, current body", "0.04 %", 100.0 * change);
+  states("none | App. IV, current body", "0.02 %", 100.0 * change);
 }
 
 /// At the rest in the midst of the track.
@@ -742,8 +742,8 @@ TEST(Departures, RegionsOfTheCompass) {
     EXPECT_EQ(walk.state.region_count, std::min(max_regions, 2));
     return walk.force_n().norm();
   };
-  states("none | II-B, regions", "1.03 N", force_n(10));
-  states("none | II-B, regions", "0.82 N", force_n(1));
+  states("none | II-B, regions", "1.07 N", force_n(10));
+  states("none | II-B, regions", "0.83 N", force_n(1));
 }
 
 TEST(Departures, LaterRegionsPushOnEarlierOnes) {
@@ -752,7 +752,7 @@ TEST(Departures, LaterRegionsPushOnEarlierOnes) {
   walk.go(1.0, 50);
   const ContactRegion& first = walk.region(0);
   const double alone_n = first.force.normal_n, later_n = (first.force.force_n + alone_n * first.d).norm();
-  states("none | VI-A", "2.8e-5 N", later_n);
+  states("none | VI-A", "3.1e-5 N", later_n);
 }
 
 TEST(Departures, SeparationBeforeContact) {
