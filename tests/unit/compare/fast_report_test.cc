@@ -39,6 +39,7 @@ struct Case {
   std::string scene;
   scene::Formulation formulation;
 };
+void PrintTo(const Case& it, std::ostream* out) { *out << it.scene; }
 
 class FastReportOfAShippedScene : public ::testing::TestWithParam<Case> {};
 
