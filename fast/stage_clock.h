@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 
 namespace touchstone::fast {
 
@@ -18,13 +19,18 @@ class StageClock {
  public:
   void start() noexcept {
     spent_.fill(Duration::zero());
-    last_ = Clock::now();
+    resume();
   }
+  /// What has passed since the last lap goes to no stage.
+  void resume() noexcept { last_ = Clock::now(); }
   /// What has passed since the last lap goes to this stage.
   void lap(Stage stage) noexcept {
     const Clock::time_point now = Clock::now();
     spent_[static_cast<std::size_t>(stage)] += now - last_;
     last_ = now;
+  }
+  [[nodiscard]] std::int64_t spent_ns(Stage stage) const noexcept {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(spent_[static_cast<std::size_t>(stage)]).count();
   }
   /// [us]
   [[nodiscard]] double spent_us(Stage stage) const noexcept {

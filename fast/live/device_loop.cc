@@ -66,6 +66,10 @@ void do_tick(const Tick& tick, std::int64_t begin_ns, std::int64_t lateness_ns, 
   ledger.status |= record.status;
   ledger.force.add(record.force_ns);
   ledger.shape.add(record.shape_ns);
+  for (std::size_t s = 0; good && s < fast::stage_count; ++s) {
+    const std::int64_t spent_ns = ports.engine.stages().spent_ns(static_cast<fast::Stage>(s));
+    if (spent_ns > 0) ledger.stages[s].add(spent_ns);
+  }
   if (ports.progress != nullptr) {
     ports.progress->ticks.store(ledger.ticks, std::memory_order_relaxed);
     ports.progress->missed.store(ledger.missed, std::memory_order_relaxed);

@@ -15,6 +15,7 @@ void Engine::FreeHash::operator()(XXH3_state_s* hash) const noexcept { XXH3_free
 Engine::Engine(const scene::Scene& scene) : model_(scene), state_(model_), hash_(XXH3_createState()) {
   if (!hash_) throw std::bad_alloc();
   XXH3_64bits_reset(hash_.get());
+  state_.clock = &stages_;
   const fast::ToolSamples& tool = model_.tool;
   for (std::size_t i = 0; i < tool.x_T_m.size(); ++i) {
     tool_reach_m_ = std::max(tool_reach_m_, scene::Vec3(tool.x_T_m[i], tool.y_T_m[i], tool.z_T_m[i]).norm());
@@ -24,6 +25,7 @@ Engine::Engine(const scene::Scene& scene) : model_(scene), state_(model_), hash_
 Engine::~Engine() = default;
 
 fast::StepStatus Engine::step_force(const scene::Pose& pose) noexcept {
+  stages_.start();
   const fast::StepStatus status = fast::step_force(model_, pose, state_);
   const Wrench w = wrench();
   const std::array<double, 6> numbers{w.force_n.x(),   w.force_n.y(),   w.force_n.z(),
@@ -32,7 +34,10 @@ fast::StepStatus Engine::step_force(const scene::Pose& pose) noexcept {
   return status;
 }
 
-fast::StepStatus Engine::step_shape() noexcept { return fast::step_shape(model_, state_); }
+fast::StepStatus Engine::step_shape() noexcept {
+  stages_.resume();
+  return fast::step_shape(model_, state_);
+}
 
 Wrench Engine::wrench() const noexcept { return {fast::total_force_n(state_), fast::total_torque_nm(state_)}; }
 

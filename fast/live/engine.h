@@ -29,6 +29,8 @@ class Engine {
   /// Of the body on the tool.
   [[nodiscard]] Wrench wrench() const noexcept;
   [[nodiscard]] const fast::SurfaceField& field() const noexcept { return state_.field; }
+  /// Time per stage of the last force and shape steps; 0 for those that did not run.
+  [[nodiscard]] const fast::StageClock& stages() const noexcept { return stages_; }
   /// The farthest point of the tool from its mass centre [m].
   [[nodiscard]] double tool_reach_m() const noexcept { return tool_reach_m_; }
   /// Hash over the wrench of every step so far and the shape now: equal when a replay is. Not for the tick.
@@ -40,6 +42,7 @@ class Engine {
   };
   fast::FastModel model_;
   fast::FastState state_;
+  fast::StageClock stages_;
   double tool_reach_m_ = 0.0;
   std::unique_ptr<XXH3_state_s, FreeHash> hash_;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fast/percentiles.h"
+#include "fast/stage_clock.h"
 
 #include <array>
 #include <cstddef>
@@ -39,6 +40,7 @@ struct Ledger {
   DurationHistogram force;     ///< read to published force
   DurationHistogram shape;     ///< shape step and its publication
   DurationHistogram step;      ///< the whole tick
+  std::array<DurationHistogram, fast::stage_count> stages;  ///< of the model, over the ticks in which they ran
 
   std::int64_t ticks = 0;          ///< done
   std::int64_t missed = 0;         ///< grid points without a tick

@@ -244,6 +244,9 @@ scene::Figures figures(const LiveResult& result, const LiveOptions& options) {
   add("live.step_us", ledger.step);
   add("live.force_us", ledger.force);
   add("live.shape_us", ledger.shape);
+  for (std::size_t s = 0; s < fast::stage_count; ++s) {
+    if (ledger.stages[s].count() > 0) add(std::string("live.stage.") + fast::stage_names[s] + "_us", ledger.stages[s]);
+  }
   add("live.shape_age_us", result.shape_age);
   const std::vector<scene::Figure> rest{
       {"live.shapes_read", static_cast<double>(result.shapes_read), "", ""},
@@ -288,6 +291,9 @@ std::string summary_text(const LiveResult& result) {
   row("pose to force", ledger.force);
   row("shape", ledger.shape);
   row("whole tick", ledger.step);
+  for (std::size_t s = 0; s < fast::stage_count; ++s) {
+    if (ledger.stages[s].count() > 0) row((std::string("  ") + fast::stage_names[s]).c_str(), ledger.stages[s]);
+  }
   row("age of the shape", result.shape_age);
   std::snprintf(line, sizeof line,
                 "Largest force sent %.4g N (model %.4g N); %lld ticks limited, %lld bad poses, %llu records dropped\n"

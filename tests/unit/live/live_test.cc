@@ -42,6 +42,34 @@ TEST_F(LiveRun, EveryGridPointIsDoneOrMissedAndEveryTickIsWritten) {
   EXPECT_GE(result.ledger.step.count(), log.ticks.size());
 }
 
+TEST_F(LiveRun, TheLedgerHasEveryStageOfTheSceneAndNoOther) {
+  scene::Scene scene = live_scene();
+  LiveOptions options;
+  options.seconds = 0.3;
+  const auto runs = [](const LiveResult& result, fast::Stage stage) {
+    return result.ledger.stages[static_cast<std::size_t>(stage)].count();
+  };
+  using enum fast::Stage;
+  for (const bool friction : {false, true}) {
+    if (friction) scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
+    const LiveResult result = run(options, scene);
+    const auto ticks = static_cast<std::uint64_t>(result.ledger.ticks);
+    EXPECT_EQ(runs(result, detection), ticks);
+    EXPECT_EQ(runs(result, regions), 0u);
+    EXPECT_EQ(runs(result, fast::Stage::friction), friction ? runs(result, force) : 0u);
+    for (const fast::Stage stage : {force, skeleton, interpolation, local_factor, normals}) {
+      EXPECT_GT(2 * runs(result, stage), ticks);
+      EXPECT_LE(runs(result, stage), ticks);
+    }
+    std::int64_t longest_ns = 0;
+    for (const DurationHistogram& stage : result.ledger.stages) longest_ns = std::max(longest_ns, stage.max_ns());
+    EXPECT_LE(longest_ns, result.ledger.step.max_ns());
+    std::size_t keys = 0;
+    for (const scene::Figure& figure : figures(result, options)) keys += figure.key.starts_with("live.stage.") ? 1 : 0;
+    EXPECT_EQ(keys, friction ? 28u : 24u);
+  }
+}
+
 TEST_F(LiveRun, AReplayOfItEqualsItsLog) {
   LiveOptions options;
   options.seconds = 0.4;  // of 0.5: in contact since 0.04
