@@ -116,12 +116,6 @@ struct Detection {
 };
 /// For bodies of that shape, as scene::body_shape makes them.
 [[nodiscard]] Detection detection_for(scene::BodyShape shape) noexcept;
-[[nodiscard]] inline Detection detection_for(const scene::Box&) noexcept {
-  return detection_for(scene::BodyShape::box);
-}
-[[nodiscard]] inline Detection detection_for(const scene::Sphere&) noexcept {
-  return detection_for(scene::BodyShape::sphere);
-}
 
 /// Direction of deformation the rest surface asks for: against the mean of its normals.
 /// Falls back on `otherwise` where the normals cancel (a tool around the middle of the body).

@@ -210,7 +210,7 @@ TEST(PullBackOfABox, APointBesideTheEdgeBelongsToItsOwnFace) {
     points.depth_m[i] = -box.signed_distance_m(places_m[i]);
   }
   PullBackScratch scratch(3);
-  detection_for(box).pull_back(box, SunkenTop(), points, scratch);
+  detection_for(scene::BodyShape::box).pull_back(box, SunkenTop(), points, scratch);
   ASSERT_EQ(points.count, 2);  // the first stands over the sunken top
   EXPECT_EQ(points.sample[0], 1);
   EXPECT_NEAR(points.depth_m[0], 0.0005, 1e-12);
