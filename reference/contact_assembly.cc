@@ -250,7 +250,7 @@ void ContactProblem<dim>::assemble(const State<dim>& state) {
   for (const int node : contact_nodes_) {
     if (eliminated_[node] < 0) continue;
     const int unknown = unknown_[node * dim + eliminated_[node]];
-    lanes_[0].value[matrix_.column_begin[unknown]] = material_.shear_modulus_pa() * tool_->radius_m;
+    lanes_[0].value[matrix_.column_begin[unknown]] = material_.shear_modulus_pa() * tool_->half_width_m();
   }
 }
 

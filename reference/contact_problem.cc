@@ -142,18 +142,11 @@ Gap<dim> ContactProblem<dim>::gap(const State<dim>& state, int node) const {
 }
 
 template <int dim>
-bool ContactProblem<dim>::tool_reaches_rest_surface() const {
-  const State<dim> at_rest = rest();
-  return std::any_of(contact_nodes_.begin(), contact_nodes_.end(),
-                     [&](int node) { return gap(at_rest, node).value_m < 0.0; });
-}
-
-template <int dim>
 double ContactProblem<dim>::update_touching(State<dim>& state, int iteration, bool& changed) const {
   changed = false;
   double open_m = 0.0;
   if (!tool_) return open_m;
-  const double c_pa_per_m = material_.youngs_modulus_pa / tool_->radius_m;
+  const double c_pa_per_m = material_.youngs_modulus_pa / tool_->half_width_m();
   double largest_pa = 0.0;
   for (const int node : contact_nodes_) {
     if (area_m2_[node] > 0.0) largest_pa = std::max(largest_pa, lambda_n_[node] / area_m2_[node]);
@@ -208,7 +201,7 @@ std::array<double, 2> ContactProblem<dim>::residual(const State<dim>& state, con
 template <int dim>
 NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
   NewtonReport report;
-  const double length_m = tool_ ? tool_->radius_m : largest_extent_m_;
+  const double length_m = tool_ ? tool_->half_width_m() : largest_extent_m_;
   const double smallest_scale_n = 1e-10 * material_.shear_modulus_pa() * length_m * length_m;
   constexpr double volume_tolerance = 1e-9, gap_tolerance = 1e-10, place_tolerance = 1e-12;
   constexpr int most_indefinite = 3;

@@ -31,10 +31,11 @@ TEST(ModelChoice, UsesEverySymmetryOfTheWholeTrack) {
 
 TEST(ModelChoice, EveryLevelIsFinerUnderTheTool) {
   const scene::Scene scene = cube({0, 0, .07}, {0, 0, .068});
+  const ModelChoice choice = choose_model(scene);
   int cells = 0;
   for (int level = 0; level < 3; ++level) {
-    EXPECT_DOUBLE_EQ(element_size_m(scene, level), 2.0 * element_size_m(scene, level + 1));
-    const Mesh<3> mesh = box_level(scene, choose_model(scene), level);
+    EXPECT_DOUBLE_EQ(element_size_m(scene, choice, level), 2.0 * element_size_m(scene, choice, level + 1));
+    const Mesh<3> mesh = box_level(scene, choice, level);
     EXPECT_GT(mesh.cell_count(), cells);
     cells = mesh.cell_count();
   }

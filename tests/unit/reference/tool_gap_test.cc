@@ -6,10 +6,11 @@ namespace touchstone::reference {
 namespace {
 
 TEST(BallTool, GradientAndHessianAreTheSlopes) {
-  const BallTool<3> tool{0.7, {0.1, -0.2, 1.5}};
+  const Eigen::Vector3d center(0.1, -0.2, 1.5);
+  const RigidTool<3> tool = ball_tool<3>(0.7, center);
   const Eigen::Vector3d x(0.3, 0.2, 0.9);
   const Gap<3> g = tool.gap(x);
-  EXPECT_NEAR(g.value_m, (x - tool.center_m).norm() - 0.7, 1e-15);
+  EXPECT_NEAR(g.value_m, (x - center).norm() - 0.7, 1e-15);
   const double step = 1e-6;
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d dx = step * Eigen::Vector3d::Unit(i);
@@ -20,7 +21,7 @@ TEST(BallTool, GradientAndHessianAreTheSlopes) {
 }
 
 TEST(BallTool, GapAlongTheNormalIsHertzsBoundaryCondition) {
-  const BallTool<2> tool{1.0, {0.0, 1.9}};
+  const RigidTool<2> tool = ball_tool<2>(1.0, {0.0, 1.9});
   const Gap<2> below = tool.gap_along({0.0, 1.0}, {0.0, 1.0}, {0.0, -0.04});
   EXPECT_NEAR(below.value_m, -0.06, 1e-15);
   // Sideways motion does not matter, and what is not under the ball never touches.
