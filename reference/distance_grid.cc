@@ -81,18 +81,17 @@ class SignedTriangles {
   std::vector<std::array<Vec3, 3>> edge_normals_;
 };
 
-/// Values at equal steps along a line become coefficients of the cubic B-splines through them, mirrored at both ends.
+/// Values at equal steps along a line become coefficients of the cubic B-splines through them, without bend at the ends.
 void to_spline(std::vector<double>& line, std::vector<double>& scratch) {
-  // Thomas algorithm for (c[i-1] + 4 c[i] + c[i+1]) / 6 = f[i], where c[-1] = c[1] and c[n] = c[n-2].
+  // Thomas algorithm for (c[i-1] + 4 c[i] + c[i+1]) / 6 = f[i] between the ends, where c = f.
   const int n = static_cast<int>(line.size());
-  scratch.resize(n);
-  for (int i = 0; i < n; ++i) {
-    const double below = i == 0 ? 0.0 : i == n - 1 ? 2.0 : 1.0, above = i == 0 ? 2.0 : 1.0;
-    const double pivot = 4.0 - (i > 0 ? below * scratch[i - 1] : 0.0);
-    scratch[i] = above / pivot;
-    line[i] = (6.0 * line[i] - (i > 0 ? below * line[i - 1] : 0.0)) / pivot;
+  scratch.assign(n, 0.0);
+  for (int i = 1; i + 1 < n; ++i) {
+    const double pivot = 4.0 - scratch[i - 1];
+    scratch[i] = 1.0 / pivot;
+    line[i] = (6.0 * line[i] - line[i - 1]) / pivot;
   }
-  for (int i = n - 2; i >= 0; --i) line[i] -= scratch[i] * line[i + 1];
+  for (int i = n - 2; i > 0; --i) line[i] -= scratch[i] * line[i + 1];
 }
 
 /// The four B-splines that reach a place t in [0, 1) of an interval, with two derivatives by t.

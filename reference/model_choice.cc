@@ -73,7 +73,7 @@ void add_discs(const Scene& scene, const ModelChoice& choice, int level, Grading
       if (choice.dim == 2) place_m = {place_m.head<2>().norm(), 0.0, place_m.z()};
       const Vec3 cube = place_m / (2.0 * rim_m);
       if (!taken.insert({std::lround(cube.x()), std::lround(cube.y()), std::lround(cube.z())}).second) continue;
-      add(place_m, patch.normal, 2.0 * rim_m, rim_m);
+      add(place_m, patch.normal, 0.0, rim_m);
     }
   }
 }

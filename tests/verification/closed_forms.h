@@ -47,6 +47,27 @@ inline Indentation sneddon(double E_star_pa, double R_m, double d_m) {
   return {sneddon_force_n(E_star_pa, R_m, a_m), a_m};
 }
 
+/// Flat punch of flat radius b with a fillet of radius e, contact radius a between b and b + e, in small strain:
+/// Sneddon's solution for any profile f(r), d = a I[f'], F = 2 E* I[r^2 f'], I[g] = integral of g / sqrt(a^2 - r^2)
+/// from 0 to a, with f' = (r - b) / sqrt(e^2 - (r - b)^2) on the fillet. By r = a sin t the integrals are smooth.
+struct RoundedPunch {
+  double depth_m = 0.0, force_n = 0.0;
+};
+inline RoundedPunch rounded_punch(double E_star_pa, double b_m, double e_m, double a_m) {
+  RoundedPunch punch;
+  const double begin = std::asin(b_m / a_m);
+  constexpr int intervals = 2000;
+  const double step = (M_PI_2 - begin) / intervals;
+  for (int k = 0; k <= intervals; ++k) {  // Simpson's rule
+    const double weight = (k == 0 || k == intervals ? 1.0 : k % 2 == 1 ? 4.0 : 2.0) * step / 3.0;
+    const double r_m = a_m * std::sin(begin + k * step), up_m = r_m - b_m;
+    const double slope = up_m / std::sqrt(e_m * e_m - up_m * up_m);
+    punch.depth_m += weight * a_m * slope;
+    punch.force_n += weight * 2.0 * E_star_pa * r_m * r_m * slope;
+  }
+  return punch;
+}
+
 /// Incompressible neo-Hookean bar: force over rest area at stretch lam, P = mu (lam - lam^-2); negative in compression.
 /// Laterally free, P = lam sigma_1 / lam with sigma_1 - sigma_2 = mu (lam^2 - 1/lam) and sigma_2 = 0.
 inline double neo_hookean_bar_pa(double mu_pa, double lam) { return mu_pa * (lam - 1.0 / (lam * lam)); }
