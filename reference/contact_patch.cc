@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <set>
 
 namespace touchstone::reference {
 namespace {
@@ -18,22 +16,11 @@ namespace {
 using scene::Vec3;
 
 /// Points on a lattice over every triangle. A triangle bends as much as the normals at its corners differ; an edge
-/// between faces more than sharp apart is as round as the grid makes it.
+/// that is sharp is as round as the grid makes it.
 ToolPoints mesh_points(const scene::TriangleMesh& mesh, double spacing_m) {
-  constexpr double sharp = 0.5;  // [rad]
   const double sharp_bend_m = grid_spacing_m(mesh);
   const Eigen::Matrix3Xd normals = vertex_normals(mesh).colwise().normalized();
-  std::map<std::pair<int, int>, Vec3> first_face;  // per edge, the normal of one of its faces
-  std::set<std::pair<int, int>> sharp_edges;
-  const auto edge = [](int a, int b) { return std::pair(std::min(a, b), std::max(a, b)); };
-  for (const auto& t : mesh.triangles) {
-    const Vec3 a = mesh.points_m.col(t[0]), b = mesh.points_m.col(t[1]), c = mesh.points_m.col(t[2]);
-    const Vec3 normal = (b - a).cross(c - a).normalized();
-    for (int k = 0; k < 3; ++k) {
-      const auto [other, alone] = first_face.try_emplace(edge(t[k], t[(k + 1) % 3]), normal);
-      if (!alone && other->second.dot(normal) < std::cos(sharp)) sharp_edges.insert(other->first);
-    }
-  }
+  const auto angles = edge_angles(mesh);
   std::vector<Vec3> points_m;
   ToolPoints out;
   out.spacing_m = spacing_m;
@@ -47,7 +34,7 @@ ToolPoints mesh_points(const scene::TriangleMesh& mesh, double spacing_m) {
       const double length_m = (corner_m[next] - corner_m[k]).norm();
       longest_m = std::max(longest_m, length_m);
       bend_per_m = std::max(bend_per_m, (normals.col(t[next]) - normals.col(t[k])).norm() / length_m);
-      is_sharp[k] = sharp_edges.contains(edge(t[k], t[next]));
+      is_sharp[k] = angles.at(std::minmax(t[k], t[next])) > sharp_angle;
     }
     const int steps = static_cast<int>(std::ceil(longest_m / spacing_m));
     for (int i = 0; i <= steps; ++i) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace touchstone::reference {
 namespace {
@@ -81,7 +80,8 @@ class SignedTriangles {
   std::vector<std::array<Vec3, 3>> edge_normals_;
 };
 
-/// Values at equal steps along a line become coefficients of the cubic B-splines through them, without bend at the ends.
+/// Values at equal steps along a line become coefficients of the cubic B-splines through them, without bend at the
+/// ends.
 void to_spline(std::vector<double>& line, std::vector<double>& scratch) {
   // Thomas algorithm for (c[i-1] + 4 c[i] + c[i+1]) / 6 = f[i] between the ends, where c = f.
   const int n = static_cast<int>(line.size());
@@ -122,19 +122,43 @@ Eigen::Matrix3Xd vertex_normals(const TriangleMesh& mesh) {
   return normals;
 }
 
+std::map<std::pair<int, int>, double> edge_angles(const TriangleMesh& mesh) {
+  std::map<std::pair<int, int>, Vec3> first_normal;
+  std::map<std::pair<int, int>, double> angles;
+  for (const auto& t : mesh.triangles) {
+    const Vec3 a = mesh.points_m.col(t[0]), b = mesh.points_m.col(t[1]), c = mesh.points_m.col(t[2]);
+    const Vec3 normal = (b - a).cross(c - a);
+    for (int k = 0; k < 3; ++k) {
+      const std::pair<int, int> edge = std::minmax(t[k], t[(k + 1) % 3]);
+      const auto [other, alone] = first_normal.try_emplace(edge, normal);
+      if (!alone) angles[edge] = std::atan2(other->second.cross(normal).norm(), other->second.dot(normal));
+    }
+  }
+  return angles;
+}
+
 double grid_spacing_m(const TriangleMesh& mesh) {
-  std::vector<double> shortest_m;
+  constexpr double flat_angle = 0.01;
+  const auto angles = edge_angles(mesh);
+  std::vector<double> shortest_m;  // of the facets of bent surfaces
   for (const auto& t : mesh.triangles) {
     double edge_m = std::numeric_limits<double>::infinity();
+    bool bent = false;
     for (int k = 0; k < 3; ++k) {
       edge_m = std::min(edge_m, (mesh.points_m.col(t[(k + 1) % 3]) - mesh.points_m.col(t[k])).norm());
+      const double angle = angles.at(std::minmax(t[k], t[(k + 1) % 3]));
+      bent = bent || (angle > flat_angle && angle < sharp_angle);
     }
-    shortest_m.push_back(edge_m);
+    if (bent) shortest_m.push_back(edge_m);
   }
-  std::nth_element(shortest_m.begin(), shortest_m.begin() + shortest_m.size() / 2, shortest_m.end());
   const scene::Bounds bounds = mesh.bounds();
   const Vec3 extent_m = bounds.upper_m - bounds.lower_m;
-  double spacing_m = std::min(0.5 * shortest_m[shortest_m.size() / 2], extent_m.minCoeff() / 20.0);
+  double spacing_m = extent_m.minCoeff() / 20.0;
+  if (!shortest_m.empty()) {
+    const auto middle = shortest_m.begin() + static_cast<std::ptrdiff_t>(shortest_m.size() / 2);
+    std::nth_element(shortest_m.begin(), middle, shortest_m.end());
+    spacing_m = std::min(*middle, extent_m.minCoeff() / 4.0);
+  }
   const auto points = [&] { return (extent_m.array() / spacing_m + 2.0 * margin + 2.0).prod(); };
   while (points() > grid_points_max) spacing_m *= 1.05;
   return spacing_m;

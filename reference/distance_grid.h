@@ -6,12 +6,15 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 namespace touchstone::reference {
 
-/// Half the typical short edge of the triangles, but no more than a twentieth of the mesh's smallest extent, and so
-/// coarse that the grid keeps below grid_points_max points.
+/// Facets of a bent surface should melt into one another, or every one of their edges would be a tight bend that keeps
+/// Newton from converging: their typical short edge, up to a quarter of the mesh's smallest extent. Flat faces between
+/// sharp edges should stay so: a twentieth of that extent. In any case the grid keeps below grid_points_max points.
 [[nodiscard]] double grid_spacing_m(const scene::TriangleMesh& mesh);
 inline constexpr double grid_points_max = 2e6;
 
@@ -43,6 +46,10 @@ class DistanceGrid final : public ToolDistance {
   std::array<int, 3> count_{};
   std::vector<double> coefficient_m_;
 };
+
+/// The angle between the two faces at every edge [rad]; vertices of an edge in ascending order.
+[[nodiscard]] std::map<std::pair<int, int>, double> edge_angles(const scene::TriangleMesh& mesh);
+inline constexpr double sharp_angle = 0.5;  ///< no facets of a bent surface from here on
 
 /// Angle-weighted outward normals of the vertices, not of unit length: they do not depend on how a flat face is cut.
 [[nodiscard]] Eigen::Matrix3Xd vertex_normals(const scene::TriangleMesh& mesh);

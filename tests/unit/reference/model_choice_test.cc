@@ -1,8 +1,13 @@
 #include "reference/model_choice.h"
 
 #include "reference/sampling.h"
+#include "reference/tool_distance.h"
+#include "unit/reference/mesh_tools.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace touchstone::reference {
 namespace {
@@ -52,6 +57,88 @@ TEST(ModelChoice, NamesWhatItCannotDo) {
   scene.body.support_height_m = 0.006;
   ASSERT_EQ(unsupported_parts(scene).size(), 1u);
   EXPECT_NE(unsupported_parts(scene)[0].message.find("z axis"), std::string::npos);
+}
+
+TEST(ModelChoice, NeedsTheToolsSymmetryToo) {
+  scene::Scene scene = cube({0, 0, .07}, {0, 0, .064});
+  scene.tool.shape = scene::ToolShape::box;
+  scene.tool.size_m = {.01, .012, .01};
+  EXPECT_TRUE(choose_model(scene).mirror_x && choose_model(scene).mirror_y);
+  scene.tool.mass_center_m = scene::Vec3(.001, 0, 0);
+  EXPECT_FALSE(choose_model(scene).mirror_x);
+  EXPECT_TRUE(choose_model(scene).mirror_y);
+  scene.tool.mass_center_m.reset();
+  // Turning about z by half a turn, it is symmetric only at both ends.
+  scene.track[1].pose.orientation = turned(3.14159265358979, {0, 0, 1});
+  EXPECT_FALSE(choose_model(scene).mirror_x || choose_model(scene).mirror_y);
+  scene.tool = mesh_tool(scene::Box(scene::Vec3::Zero(), {.01, .012, .01}), 100);
+  scene.track[1].pose.orientation.setIdentity();
+  EXPECT_TRUE(choose_model(scene).mirror_x && choose_model(scene).mirror_y);
+
+  scene.body.shape = scene::BodyShape::sphere;
+  scene.body.radius_m = 0.03;
+  scene.tool = {};
+  scene.tool.shape = scene::ToolShape::capsule;
+  scene.tool.radius_m = 0.005;
+  scene.tool.length_m = 0.01;
+  EXPECT_EQ(choose_model(scene).dim, 2);
+  scene.track[1].pose.orientation = turned(0.01, {1, 0, 0});
+  EXPECT_EQ(choose_model(scene).dim, 3);
+}
+
+TEST(ModelChoice, RefusesAPinTooSharp) {
+  scene::Scene scene = cube({0, 0, .08}, {0, 0, .074});
+  scene.tool.shape = scene::ToolShape::cylinder;
+  scene.tool.length_m = 0.03;
+  scene.tool.edge_radius_m = 0.0025;
+  EXPECT_TRUE(unsupported_parts(scene).empty());
+  scene.tool.edge_radius_m = 0.0024;
+  ASSERT_EQ(unsupported_parts(scene).size(), 1u);
+  const std::string text = unsupported_parts(scene)[0].message;
+  EXPECT_TRUE(text.starts_with("tool.edge_radius_m: a sharp rim")) << text;
+  EXPECT_NE(text.find("expected at least a quarter of the radius, 0.0025 m, found 0.0024 m"), std::string::npos)
+      << text;
+}
+
+TEST(ContactPatch, IsHertzsForSmoothToolsAndTheFaceOfAFlatOne) {
+  const scene::Box body({0, 0, .03}, {.06, .06, .06});
+  const auto patches = [&](const scene::Tool& tool, const scene::Pose& pose) {
+    return contact_patches(body, tool_points(tool, *tool_distance(tool)), pose, 0.004);
+  };
+  const double R_m = 0.01, depth_m = 0.001;
+  const scene::Pose above{{0.004, -0.002, .06 + R_m - depth_m}, Eigen::Quaterniond::Identity()};
+  const auto ball = patches(mesh_tool(scene::Sphere(scene::Vec3::Zero(), R_m), 5120), above);
+  ASSERT_EQ(ball.size(), 1u);
+  EXPECT_NEAR(ball[0].half_width_m, std::sqrt(R_m * depth_m), 0.1 * std::sqrt(R_m * depth_m));
+  EXPECT_LT((ball[0].center_m - scene::Vec3(0.004, -0.002, .06)).norm(), 2e-4);
+  EXPECT_NEAR(ball[0].depth_m, depth_m, 2e-5);
+  EXPECT_EQ(ball[0].discs.size(), 1u);
+  EXPECT_TRUE(ball[0].rims.empty());
+
+  scene::Tool tool;
+  tool.shape = scene::ToolShape::cylinder;
+  tool.radius_m = R_m;
+  tool.length_m = 2.0 * R_m;
+  tool.edge_radius_m = 0.0025;
+  const auto pin = patches(tool, above);
+  ASSERT_EQ(pin.size(), 1u);
+  EXPECT_GT(pin[0].half_width_m, R_m - tool.edge_radius_m);
+  EXPECT_LT(pin[0].half_width_m, R_m);
+  ASSERT_FALSE(pin[0].rims.empty());
+  for (const ContactPatch::Rim& rim : pin[0].rims) EXPECT_NEAR(rim.bend_radius_m, tool.edge_radius_m, 1e-9);
+
+  // Lying along x: as wide as a ball's contact, and covered by several discs.
+  tool.shape = scene::ToolShape::capsule;
+  tool.length_m = 0.02;
+  const auto line = patches(tool, {above.position_m, turned(1.5707963267949, {0, 1, 0})});
+  ASSERT_EQ(line.size(), 1u);
+  EXPECT_NEAR(line[0].half_width_m, std::sqrt(R_m * depth_m), 0.1 * std::sqrt(R_m * depth_m));
+  EXPECT_GT(line[0].discs.size(), 3u);
+  for (const double x_m : {-0.01, 0.0, 0.01}) {
+    const scene::Vec3 p_m(0.004 + x_m, -0.002, .06);
+    EXPECT_TRUE(std::any_of(line[0].discs.begin(), line[0].discs.end(),
+                            [&](const auto& disc) { return (disc.center_m - p_m).norm() < disc.radius_m; }));
+  }
 }
 
 TEST(BallMesh, LiesInsideTheBallAndHoldsItsSupport) {
