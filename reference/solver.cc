@@ -11,6 +11,7 @@
 #include "scene/hash.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <iomanip>
@@ -202,20 +203,27 @@ std::vector<double> region_depths_m(const Scene& scene, const scene::Shape& body
     return std::vector<double>(regions.size(), scene::rest_depth_m(body, tool, pose));
   }
   const scene::TriangleMesh mesh = scene::tool_mesh(tool);
-  std::vector<scene::TriangleMesh> parts(regions.size());
+  std::vector<std::vector<std::array<std::int32_t, 3>>> parts(regions.size());
   for (const auto& t : mesh.triangles) {
     const scene::Vec3 middle_T_m = (mesh.points_m.col(t[0]) + mesh.points_m.col(t[1]) + mesh.points_m.col(t[2])) / 3.0;
     const scene::Vec3 middle_m = pose.orientation * middle_T_m + pose.position_m;
     const auto nearest = std::min_element(regions.begin(), regions.end(), [&](const auto& a, const auto& b) {
       return (a.center_m - middle_m).squaredNorm() < (b.center_m - middle_m).squaredNorm();
     });
-    parts[nearest - regions.begin()].triangles.push_back(t);
+    parts[nearest - regions.begin()].push_back(t);
   }
   std::vector<double> depths_m;
-  for (scene::TriangleMesh& part : parts) {
-    part.points_m = mesh.points_m;
+  for (const auto& part : parts) {
+    // Loose triangles, so that no vertex is without one.
+    scene::TriangleMesh piece;
+    piece.points_m.resize(3, 3 * static_cast<Eigen::Index>(part.size()));
+    for (const auto& t : part) {
+      const auto first = static_cast<std::int32_t>(3 * piece.triangles.size());
+      for (int k = 0; k < 3; ++k) piece.points_m.col(first + k) = mesh.points_m.col(t[k]);
+      piece.triangles.push_back({first, first + 1, first + 2});
+    }
     scene::Tool one = tool;
-    one.mesh = std::make_shared<scene::TriangleMesh>(std::move(part));
+    one.mesh = std::make_shared<scene::TriangleMesh>(std::move(piece));
     one.mass_center_m = scene::Vec3::Zero();
     depths_m.push_back(scene::rest_depth_m(body, one, pose));
   }
