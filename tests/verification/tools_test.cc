@@ -61,7 +61,8 @@ struct Pressed {
   int iterations = 0;
 };
 Pressed press(const scene::Tool& tool, double above_m, double depth_m, double cell_m, bool mirror_x = true,
-              const Eigen::Quaterniond& orientation = Eigen::Quaterniond::Identity(), int steps = 3) {
+              const Eigen::Quaterniond& orientation = Eigen::Quaterniond::Identity(), double x_m = 0.0) {
+  constexpr int steps = 3;
   const double half_m = 0.03;
   BlockSpec spec{{mirror_x ? 0.0 : -half_m, 0.0, 0.0}, Vec3::Constant(half_m), mirror_x, true, {{}, 0.9, half_m / 2.0}};
   spec.grading.discs.push_back({{0, 0, half_m}, {0, 0, 1}, 0.004, cell_m});
@@ -70,7 +71,7 @@ Pressed press(const scene::Tool& tool, double above_m, double depth_m, double ce
   Pressed pressed;
   State<3> state = body.rest();
   for (int step = 1; step <= steps; ++step) {
-    body.set_tool({distance, {Vec3(0, 0, half_m + above_m - depth_m * step / steps), orientation}});
+    body.set_tool({distance, {Vec3(x_m, 0, half_m + above_m - depth_m * step / steps), orientation}});
     const NewtonReport report = body.solve(state);
     EXPECT_TRUE(report.converged) << report.trouble << " in step " << step;
     pressed.iterations += report.iterations;
@@ -93,6 +94,15 @@ TEST(Tools, TheBallInThreeGuises) {
   EXPECT_LT(mesh.seen.equilibrium_rel, 1e-6);
   RecordProperty("ball", std::to_string(ball.seen.force_n.z()) + " " + std::to_string(ball.iterations));
   RecordProperty("mesh", std::to_string(mesh.seen.force_n.z()) + " " + std::to_string(mesh.iterations));
+}
+
+TEST(Tools, AFrictionlessBallFeelsNoTorqueAboutItsCentre) {
+  const double R_m = 0.01;
+  const Pressed aside =
+      press(round_tool(ToolShape::sphere, R_m, 0, 0), R_m, 0.003, 0.004, false, Eigen::Quaterniond::Identity(), 0.015);
+  ASSERT_GT(aside.seen.force_n.z(), 50.0);
+  EXPECT_GT(std::abs(aside.seen.force_n.x()), 0.5);
+  EXPECT_LT(aside.seen.torque_nm.norm(), 1e-9 * R_m * aside.seen.force_n.z());
 }
 
 TEST(Tools, TheBoxAndItsMesh) {
