@@ -39,8 +39,9 @@ inline constexpr double smallest_fillet_share = 0.25;
 
 /// Edge of the cells at the rim of the deepest contact on a level, 0 the coarsest; each level halves it. Cells are
 /// smaller towards the middle, so that shallower contacts are resolved by as many cells as the deepest, down to a
-/// tenth of its depth; and smaller where the tool bends tightly: rim_share of the bend's radius on the coarsest level.
-/// From scene.reference.element_size_m; automatic: a / 1.5 in three dimensions, a / 4 in two.
+/// tenth of its depth; and smaller where the tool bends tightly: rim_share of the bend's radius on the coarsest level,
+/// but at least a sixteenth of the others. From scene.reference.element_size_m; automatic: a / 1.5 in three dimensions,
+/// a / 4 in two.
 [[nodiscard]] double element_size_m(const scene::Scene& scene, const ModelChoice& choice, int level);
 inline constexpr double rim_share = 0.4;
 
