@@ -55,6 +55,11 @@ constexpr Meaning meanings[] = {
     {"fast.memory_bytes", "Memory of the fast model and its state."},
     {"fast.triangles", "Triangles of the body's surface.", true},
     {"fast.regions_max", "Most contact regions at one time.", true},
+    {"fast.first_contact_s", "When the tool first meets the body at rest, time of the track."},
+    {"fast.order_spread_rel",
+     "Largest change of the total force if the regions had been created in another order, relative to it."},
+    {"fast.equilibrium_rel",
+     "Several regions: force on the tool and force of the support should cancel; what is left."},
     {"fast.status", "Warnings of the fast model over the whole track."},
 };
 

@@ -1,7 +1,6 @@
 #include "compare/picture.h"
 
 #include "compare/section.h"
-#include "compare/svg_plot.h"
 #include "compare/text.h"
 
 #include <fmt/format.h>
@@ -11,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 namespace touchstone::compare {
 namespace {
@@ -37,6 +35,10 @@ constexpr std::array<Rgb, 6> heat = {
     {{255, 247, 226}, {254, 217, 142}, {253, 166, 84}, {237, 100, 57}, {189, 34, 48}, {103, 0, 31}}};
 
 enum class Map { displacement, error };
+
+// A half-cut view, from the top: title, drawing, colour bar.
+constexpr double view_top_px = 36, view_px = 350, bar_top_px = view_top_px + view_px + 10;
+constexpr double view_height_px = bar_top_px + 52;
 
 Rgb colour_of(Map map, double share) {
   const auto lookup = [share](const auto& table) {
@@ -87,29 +89,16 @@ class Camera {
     for (const Vec3& p : places_m) out += fmt::format("{}{:.1f} {:.1f}", out.empty() ? "M" : "L", x_px(p), y_px(p));
     return out + "Z";
   }
+  [[nodiscard]] std::string path(const Outlines& outlines_m) const {
+    std::string out;
+    for (const std::vector<Vec3>& outline_m : outlines_m) out += path(outline_m);
+    return out;
+  }
 
  private:
   Vec3 towards_, right_, up_;
   double px_per_m_ = 1.0, x0_px_ = 0.0, y0_px_ = 0.0;
 };
-
-/// The tool's outline in the plane y = its centre.
-std::vector<Vec3> tool_cut(const scene::Scene& scene, const scene::Pose& pose) {
-  std::vector<Vec3> outline;
-  constexpr int steps = 96;
-  for (int i = 0; i < steps; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / steps;
-    outline.push_back(pose.position_m + scene.tool.radius_m * Vec3(std::cos(angle), 0.0, std::sin(angle)));
-  }
-  return outline;
-}
-
-/// The plane of the cut, a hair off the tool's centre so that no rest point lies on it.
-double cut_y_m(const scene::Surface& surface, const scene::Pose& pose) {
-  const double low_m = surface.points_m.row(1).minCoeff(), high_m = surface.points_m.row(1).maxCoeff();
-  const double hair_m = 1e-7 * (high_m - low_m);
-  return std::clamp(pose.position_m.y(), low_m + 2 * hair_m, high_m - 2 * hair_m) - hair_m;
-}
 
 struct Face {
   double nearness_m;
@@ -191,18 +180,85 @@ double largest(const Eigen::VectorXd& values) {
   return found;
 }
 
+/// What a half-cut view is made of, but for the displacement.
+struct HalfCut {
+  const scene::Surface& surface;
+  double y_m;
+  Outlines tool_m, inclusions_m;
+  std::vector<Vec3> seen_m;  ///< what the view must show: the rest body's rear half, and the tool near it
+
+  HalfCut(const scene::Scene& scene, const scene::Surface& rest, const scene::Pose& pose)
+      : surface(rest),
+        y_m(cut_y_m(rest, pose)),
+        tool_m(tool_outlines_m(scene.tool, pose, y_m)),
+        inclusions_m(inclusion_outlines_m(scene.body, y_m)) {
+    const double top_m = tool_shown_below_m(surface);
+    for (const auto& outline_m : tool_m) {
+      for (const Vec3& p_m : outline_m) seen_m.emplace_back(p_m.x(), p_m.y(), std::min(p_m.z(), top_m));
+    }
+    for (Eigen::Index i = 0; i < surface.points_m.cols(); ++i) {
+      if (surface.points_m(1, i) >= y_m) seen_m.push_back(surface.points_m.col(i));
+    }
+    for (const auto& outline : cut_at_y(surface, y_m)) {
+      for (const EdgePoint& p : outline) seen_m.push_back(p.of(surface.points_m));
+    }
+  }
+
+  /// One view under its title.
+  [[nodiscard]] std::string panel(const std::string& title, const Eigen::Matrix3Xd& displacement_m,
+                                  const Eigen::VectorXd& shade_by_m, double full_m, Map map, double left_px,
+                                  double width_px) const {
+    const Camera camera(seen_m, left_px + 14, view_top_px, width_px - 28, view_px);
+    std::string out = label(left_px + 0.5 * width_px, 20, "middle", title, " font-size=\"14\" font-weight=\"600\"");
+    // A viewport of its own keeps a body gone wild out of its neighbours.
+    out += fmt::format(
+        "<svg x=\"{0:.0f}\" y=\"{1:.0f}\" width=\"{2:.0f}\" height=\"{3:.0f}\" viewBox=\"{0:.0f} {1:.0f} {2:.0f} "
+        "{3:.0f}\" "
+        "overflow=\"hidden\">\n",
+        left_px, view_top_px - 6, width_px, view_px + 12);
+    out += half_body(surface, displacement_m, y_m, shade_by_m, full_m, map, camera);
+    if (!inclusions_m.empty()) {
+      out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.4\" stroke-dasharray=\"6 3\"/>\n",
+                         camera.path(inclusions_m), colour(Look::inclusion));
+    }
+    if (!tool_m.empty()) {
+      out += fmt::format(
+          "<path d=\"{}\" fill=\"#8a8a8a\" fill-opacity=\"0.22\" fill-rule=\"evenodd\" stroke=\"#8a8a8a\" "
+          "stroke-width=\"1.4\"/>\n",
+          camera.path(tool_m));
+    }
+    return out + "</svg>\n";
+  }
+};
+
+void add_outlines(Plot& plot, const std::string& name, Look look, const Outlines& outlines_m, bool filled = false) {
+  if (outlines_m.empty()) return;
+  Curve curve{name, look, {}, {}, false, filled};
+  constexpr double lift_pen = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& outline_m : outlines_m) {
+    for (std::size_t i = 0; i <= outline_m.size(); ++i) {
+      const Vec3& p_m = outline_m[i % outline_m.size()];
+      curve.x.push_back(1e3 * p_m.x());
+      curve.y.push_back(1e3 * p_m.z());
+    }
+    curve.x.push_back(lift_pen);
+    curve.y.push_back(lift_pen);
+  }
+  plot.curves.push_back(std::move(curve));
+}
+
 }  // namespace
+
+double tool_shown_below_m(const scene::Surface& surface) {
+  const Vec3 lower_m = surface.points_m.rowwise().minCoeff(), upper_m = surface.points_m.rowwise().maxCoeff();
+  return upper_m.z() + 0.5 * (upper_m - lower_m).maxCoeff();
+}
 
 std::string half_cut_svg(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
                          std::size_t instant) {
-  constexpr double panel_px = 380, drawing_px = 350, top_px = 36, bar_top_px = top_px + drawing_px + 10;
-  constexpr double width_px = 3 * panel_px, height_px = bar_top_px + 52;
-  const scene::Surface& surface = run.surface;
+  constexpr double panel_px = 380;
   const Eigen::Matrix3Xd& fast_m = run.instants[instant].displacement_m;
   const Eigen::Matrix3Xd& reference_m = result.instants[instant].displacement_m;
-  const scene::Pose& pose = result.instants[instant].tool;
-  const double y_m = cut_y_m(surface, pose);
-
   const Eigen::VectorXd fast_size_m = fast_m.colwise().norm();
   const Eigen::VectorXd reference_size_m = reference_m.colwise().norm();
   const Eigen::VectorXd error_m = (fast_m - reference_m).colwise().norm();
@@ -211,86 +267,60 @@ std::string half_cut_svg(const scene::Scene& scene, const fast::Run& run, const 
   const double full_error_m = largest(error_m);
   const bool clipped = largest(fast_size_m) > 1.001 * full_m;
 
-  // One view for all panels: the rest body's rear half and the tool.
-  std::vector<Vec3> seen_m = tool_cut(scene, pose);
-  for (Eigen::Index i = 0; i < surface.points_m.cols(); ++i) {
-    if (surface.points_m(1, i) >= y_m) seen_m.push_back(surface.points_m.col(i));
-  }
-  for (const auto& outline : cut_at_y(surface, y_m)) {
-    for (const EdgePoint& p : outline) seen_m.push_back(p.of(surface.points_m));
-  }
-
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-      "font-family=\"system-ui, sans-serif\" font-size=\"12\" role=\"img\">\n<title>Both deformed bodies, cut in half, "
-      "and the error between them</title>\n",
-      width_px, height_px);
-  struct Panel {
-    std::string title;
-    const Eigen::Matrix3Xd& displacement_m;
-    const Eigen::VectorXd& shade_by_m;
-    double full_m;
-    Map map;
-  };
-  const Panel panels[] = {{"Reference", reference_m, reference_size_m, full_m, Map::displacement},
-                          {"Fast model", fast_m, fast_size_m, full_m, Map::displacement},
-                          {"Error, on the reference's shape", reference_m, error_m, full_error_m, Map::error}};
-  double left_px = 0.0;
-  for (const Panel& panel : panels) {
-    const Camera camera(seen_m, left_px + 14, top_px, panel_px - 28, drawing_px);
-    out += label(left_px + 0.5 * panel_px, 20, "middle", panel.title, " font-size=\"14\" font-weight=\"600\"");
-    // A viewport of its own keeps a body gone wild out of its neighbours.
-    out += fmt::format(
-        "<svg x=\"{0:.0f}\" y=\"{1:.0f}\" width=\"{2:.0f}\" height=\"{3:.0f}\" viewBox=\"{0:.0f} {1:.0f} {2:.0f} "
-        "{3:.0f}\" "
-        "overflow=\"hidden\">\n",
-        left_px, top_px - 6, panel_px, drawing_px + 12);
-    out += half_body(surface, panel.displacement_m, y_m, panel.shade_by_m, panel.full_m, panel.map, camera);
-    out +=
-        fmt::format("<path d=\"{}\" fill=\"#8a8a8a\" fill-opacity=\"0.22\" stroke=\"#8a8a8a\" stroke-width=\"1.4\"/>\n",
-                    camera.path(tool_cut(scene, pose)));
-    out += "</svg>\n";
-    left_px += panel_px;
-  }
+  const HalfCut cut(scene, run.surface, result.instants[instant].tool);
+  std::string out = svg_opening("Both deformed bodies, cut in half, and the error between them",
+                                static_cast<int>(3 * panel_px), static_cast<int>(view_height_px));
+  out += cut.panel("Reference", reference_m, reference_size_m, full_m, Map::displacement, 0.0, panel_px);
+  out += cut.panel("Fast model", fast_m, fast_size_m, full_m, Map::displacement, panel_px, panel_px);
+  out += cut.panel("Error, on the reference's shape", reference_m, error_m, full_error_m, Map::error, 2 * panel_px,
+                   panel_px);
   out += colour_bar(Map::displacement, full_m, clipped, "displacement", 0.5 * panel_px, bar_top_px, panel_px);
   out += colour_bar(Map::error, full_error_m, false, "distance between the two sides' points", 2 * panel_px + 40,
                     bar_top_px, panel_px - 80);
   return out + "</svg>\n";
 }
 
-std::string section_svg(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
-                        std::size_t instant, double half_width_m) {
-  const scene::Surface& surface = run.surface;
-  const scene::Pose& pose = result.instants[instant].tool;
-  const double y_m = cut_y_m(surface, pose);
-  const Eigen::Matrix3Xd rest_m = Eigen::Matrix3Xd::Zero(3, surface.points_m.cols());
+std::string half_cut_svg(const scene::Scene& scene, const scene::Surface& surface, const scene::InstantRecord& record,
+                         const std::string& title) {
+  constexpr double width_px = 560;
+  const Eigen::VectorXd size_m = record.displacement_m.colwise().norm();
+  std::string out = svg_opening(title, static_cast<int>(width_px), static_cast<int>(view_height_px));
+  out += HalfCut(scene, surface, record.tool)
+             .panel(title, record.displacement_m, size_m, largest(size_m), Map::displacement, 0.0, width_px);
+  out +=
+      colour_bar(Map::displacement, largest(size_m), false, "displacement", 0.2 * width_px, bar_top_px, 0.6 * width_px);
+  return out + "</svg>\n";
+}
 
+Plot section_plot(const scene::Scene& scene, const scene::Surface& surface, const scene::Pose& pose,
+                  const std::vector<DeformedBody>& bodies) {
+  const double y_m = cut_y_m(surface, pose);
+  const auto cut = cut_at_y(surface, y_m);
+  const auto moved_m = [&](const Eigen::Matrix3Xd& displacement_m) {
+    Outlines outlines_m;
+    for (const auto& outline : cut) {
+      outlines_m.emplace_back();
+      for (const EdgePoint& p : outline) outlines_m.back().push_back(p.of(surface.points_m) + p.of(displacement_m));
+    }
+    return outlines_m;
+  };
   Plot plot;
   plot.x_label = "x [mm]";
   plot.y_label = "z [mm]";
   plot.same_scale = true;
-  const auto add = [&](const std::string& name, Look look, const std::vector<Vec3>& outline_m) {
-    Curve curve{name, look, {}, {}, false};
-    for (std::size_t i = 0; i <= outline_m.size(); ++i) {
-      const Vec3& p = outline_m[i % outline_m.size()];
-      curve.x.push_back(1e3 * p.x());
-      curve.y.push_back(1e3 * p.z());
-    }
-    plot.curves.push_back(std::move(curve));
-  };
-  const auto add_body = [&](const std::string& name, Look look, const Eigen::Matrix3Xd& displacement_m) {
-    std::string legend_name = name;
-    for (const auto& outline : cut_at_y(surface, y_m)) {
-      std::vector<Vec3> places_m;
-      for (const EdgePoint& p : outline) places_m.push_back(p.of(surface.points_m) + p.of(displacement_m));
-      add(std::exchange(legend_name, ""), look, places_m);
-    }
-  };
-  add_body("rest", Look::outline, rest_m);
-  add("tool", Look::plain, tool_cut(scene, pose));
-  add_body("reference", Look::reference, result.instants[instant].displacement_m);
-  add_body("fast model", Look::fast, run.instants[instant].displacement_m);
+  add_outlines(plot, "rest", Look::outline, moved_m(Eigen::Matrix3Xd::Zero(3, surface.points_m.cols())));
+  add_outlines(plot, "inclusion, at rest", Look::inclusion, inclusion_outlines_m(scene.body, y_m));
+  add_outlines(plot, "tool", Look::plain, tool_outlines_m(scene.tool, pose, y_m), true);
+  for (const DeformedBody& body : bodies) add_outlines(plot, body.name, body.look, moved_m(body.displacement_m));
+  return plot;
+}
 
+std::string section_svg(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
+                        std::size_t instant, double half_width_m) {
+  const scene::Pose& pose = result.instants[instant].tool;
+  Plot plot = section_plot(scene, run.surface, pose,
+                           {{"reference", Look::reference, result.instants[instant].displacement_m},
+                            {"fast model", Look::fast, run.instants[instant].displacement_m}});
   if (half_width_m > 0.0) {
     plot.title = "Around the contact";
     const Vec3 contact_m = scene::body_shape(scene.body)->query(pose.position_m).point_m;

@@ -1,9 +1,11 @@
-// Pictures of both deformed bodies at one instant, as SVG: a half-cut view in space and a true-scale section.
+// Pictures of the deformed body at one instant, as SVG: a half-cut view in space and a true-scale section.
 #pragma once
 
 #include "compare/errors.h"
+#include "compare/svg_plot.h"
 
 #include <string>
+#include <vector>
 
 namespace touchstone::compare {
 
@@ -13,6 +15,24 @@ namespace touchstone::compare {
 /// @param instant  index of the track instant
 [[nodiscard]] std::string half_cut_svg(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
                                        std::size_t instant);
+
+/// One deformed body alone, half-cut likewise and coloured by how far each point moved.
+[[nodiscard]] std::string half_cut_svg(const scene::Scene& scene, const scene::Surface& surface,
+                                       const scene::InstantRecord& record, const std::string& title);
+
+/// A long tool is drawn up to half the body's size above it [m].
+[[nodiscard]] double tool_shown_below_m(const scene::Surface& surface);
+
+struct DeformedBody {
+  std::string name;
+  Look look;
+  const Eigen::Matrix3Xd& displacement_m;
+};
+
+/// Section at the tool's centre, y constant, true scale, in millimetres: rest outline, inclusions, tool, bodies. Title
+/// and ranges are left to the caller.
+[[nodiscard]] Plot section_plot(const scene::Scene& scene, const scene::Surface& surface, const scene::Pose& pose,
+                                const std::vector<DeformedBody>& bodies);
 
 /// Section at the tool's centre, y constant, true scale, in millimetres: rest outline, both deformed outlines, tool.
 /// @param half_width_m  of what is shown around the contact; zero: the whole body

@@ -1,6 +1,7 @@
 #include "compare/report.h"
 
 #include "compare/figures.h"
+#include "compare/page.h"
 #include "compare/picture.h"
 #include "compare/svg_plot.h"
 #include "compare/text.h"
@@ -16,56 +17,6 @@ namespace touchstone::compare {
 namespace {
 
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-
-constexpr const char* style = R"(
-:root { color-scheme: light dark; --ink: #1c1e21; --dim: #5c636b; --page: #ffffff; --panel: #f5f6f7; --line: #d9dce0;
-  --reference: #1f77b4; --fast: #d35400; }
-@media (prefers-color-scheme: dark) {
-  :root { --ink: #e6e8ea; --dim: #a2a9b1; --page: #17191c; --panel: #202327; --line: #3a3f45;
-    --reference: #6cb2e8; --fast: #ff9650; }
-}
-body { font: 16px/1.55 system-ui, "Segoe UI", Roboto, sans-serif; color: var(--ink); background: var(--page);
-  max-width: 1140px; margin: 0 auto; padding: 2rem 1.5rem 4rem; }
-h1 { font-size: 1.7rem; line-height: 1.25; margin: 0 0 .3rem; }
-h2 { font-size: 1.25rem; margin: 2.6rem 0 .6rem; padding-top: .6rem; border-top: 1px solid var(--line); }
-p { max-width: 46rem; margin: .6rem 0; }
-.dim, figcaption { color: var(--dim); }
-.verdict p:first-child { font-size: 1.12rem; }
-.tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(220px, 1fr)); gap: .8rem; margin: 1.4rem 0; }
-.tile { background: var(--panel); border-radius: 8px; padding: .8rem 1rem; }
-.tile b { display: block; font-size: 1.5rem; font-weight: 600; }
-.tile span { color: var(--dim); font-size: .88rem; display: block; }
-.reference { color: var(--reference); } .fast { color: var(--fast); }
-.plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(480px, 100%), 1fr)); gap: 1.2rem; }
-figure { margin: 1rem 0; } figcaption { font-size: .88rem; max-width: 46rem; }
-svg { max-width: 100%; height: auto; display: block; }
-.scroll { overflow-x: auto; }
-table { border-collapse: collapse; width: 100%; font-size: .9rem; margin: .8rem 0; }
-th, td { text-align: left; vertical-align: top; padding: .38rem .7rem .38rem 0; border-bottom: 1px solid var(--line); }
-th { font-weight: 600; } td.n, th.n { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
-td.t { text-align: right; }
-tr.group th { padding-top: 1.1rem; font-size: 1rem; }
-code { font: .82rem ui-monospace, "DejaVu Sans Mono", monospace; color: var(--dim); overflow-wrap: anywhere; }
-pre { font: .82rem/1.45 ui-monospace, "DejaVu Sans Mono", monospace; background: var(--panel); padding: .9rem 1.1rem;
-  border-radius: 8px; overflow-x: auto; white-space: pre-wrap; }
-dt { font-weight: 600; } dd { margin: 0 0 .5rem; max-width: 46rem; }
-summary { cursor: pointer; font-weight: 600; }
-@media print {
-  body { max-width: none; padding: 0; font-size: 10.5pt; } figure, tr, .tile { break-inside: avoid; }
-  .plots { grid-template-columns: 1fr 1fr; } .tiles { grid-template-columns: repeat(4, 1fr); } h2 { break-after: avoid; }
-}
-)";
-
-std::string tag(const std::string& name, const std::string& text, const std::string& attributes = "") {
-  return fmt::format("<{0}{1}>{2}</{0}>", name, attributes.empty() ? "" : " " + attributes, escape_xml(text));
-}
-
-std::string cell(const std::string& text) { return tag("td", text); }
-std::string number_cell(const std::string& text) { return tag("td", text, "class=\"n\""); }
-
-std::string figure(const std::string& svg, const std::string& caption) {
-  return fmt::format("<figure>\n{}{}</figure>\n", svg, caption.empty() ? "" : tag("figcaption", caption) + "\n");
-}
 
 /// One number per instant; NaN where there is none, which a plot leaves out.
 template <class Get>
@@ -118,12 +69,6 @@ Plot error_plot(const Errors& errors, const std::string& title, const std::strin
   return plot;
 }
 
-std::string title_text(const ReportContent& c) { return c.scene.title.empty() ? c.scene.name : c.scene.title; }
-
-std::string tile(const std::string& what, const std::string& number, const std::string& note) {
-  return fmt::format("<div class=\"tile\">{}{}{}</div>\n", tag("span", what), tag("b", number), tag("span", note));
-}
-
 std::string measure_note(const Measure& measure) {
   if (!measure.value) return "no contact to relate it to";
   if (!measure.uncertainty) return "the reference's uncertainty is unknown";
@@ -132,7 +77,7 @@ std::string measure_note(const Measure& measure) {
 }
 
 std::string head_section(const ReportContent& c) {
-  std::string out = tag("h1", title_text(c)) + "\n";
+  std::string out = tag("h1", scene_title(c.scene)) + "\n";
   out += tag("p", "How far the fast contact model is from the finite-element reference, in force and in shape.",
              "class=\"dim\"") +
          "\n<div class=\"verdict\">\n";
@@ -315,52 +260,20 @@ std::string reference_section(const ReportContent& c) {
   return out + "</table></div>\n";
 }
 
-std::string plan_table(const std::string& side, const std::string& name, const scene::Plan& plan) {
-  std::string out = fmt::format(
-      "<h3 class=\"{}\">{}</h3>\n<div class=\"scroll\"><table>\n<tr><th>Part</th><th></th><th>"
-      "Why</th><th>Cost</th></tr>\n",
-      side, name);
-  for (const scene::PlanLine& line : plan) {
-    out += "<tr>" + cell(line.part) + cell(line.modelled ? "modelled" : "left out") + cell(line.reason) +
-           cell(line.cost) + "</tr>\n";
-  }
-  return out + "</table></div>\n";
-}
-
-std::string manifest_section(const ReportContent& c) {
-  std::string out = tag("h2", "How this was made") + "\n<div class=\"scroll\"><table>\n";
-  const auto row = [&](const std::string& name, const std::string& value) {
-    out += "<tr>" + tag("th", name) + cell(value) + "</tr>\n";
-  };
-  row("command", c.manifest.command);
-  row("scene hash", c.manifest.scene_hash);
-  for (const auto& [name, value] : c.manifest.entries) row(name, value);
-  for (const scene::StageTime& time : c.manifest.times) {
-    row("time, " + time.stage,
-        fmt::format("{}, of processors {}", quantity_text(time.wall_s, "s"), quantity_text(time.cpu_s, "s")));
-  }
-  out += "</table></div>\n";
-  out += tag("p",
-             "Beside this page: summary.json (these figures), curve.csv (every instant), manifest.json, and "
-             "surface.pvd for ParaView, where the filter Warp By Vector with displacement_fast_m or "
-             "displacement_reference_m shows a side.") +
-         "\n";
-  return out + "<details>\n<summary>The scene, every value in force</summary>\n" +
-         tag("pre", c.manifest.resolved_scene) + "\n</details>\n";
-}
-
 }  // namespace
 
 std::string report_html(const ReportContent& c) {
-  std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
-  out += tag("title", title_text(c) + " | Touchstone") + "\n<style>" + style + "</style>\n</head>\n<body>\n";
-  out += head_section(c) + words_section() + force_section(c) + shape_section(c) + instants_table(c);
-  out += figures_section(c) + reference_section(c);
+  std::string out = head_section(c) + words_section() + force_section(c) + shape_section(c) + instants_table(c) +
+                    figures_section(c) + reference_section(c);
   out += tag("h2", "What each side models of the scene") + "\n";
-  out += plan_table("fast", "Fast model", c.plans.fast) + plan_table("reference", "Reference", c.plans.reference);
-  return out + manifest_section(c) + "</body>\n</html>\n";
+  out += tag("h3", "Fast model", "class=\"fast\"") + plan_table(c.plans.fast);
+  out += tag("h3", "Reference", "class=\"reference\"") + plan_table(c.plans.reference);
+  out +=
+      manifest_section(c.manifest,
+                       "Beside this page: summary.json (these figures), curve.csv (every instant), manifest.json, and "
+                       "surface.pvd for ParaView, where the filter Warp By Vector with displacement_fast_m or "
+                       "displacement_reference_m shows a side.");
+  return page(scene_title(c.scene), out);
 }
 
 void write_report(const std::filesystem::path& path, const ReportContent& content) {

@@ -1,5 +1,6 @@
 #include "compare/section.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -20,7 +21,56 @@ bool is_behind(const scene::Surface& surface, Eigen::Index vertex, double y_m) {
   return surface.points_m(1, vertex) >= y_m;
 }
 
+/// Fine enough that a sphere's cut looks round.
+constexpr int drawn_triangles = 8000;
+
+/// A point between two others adds nothing where these lie on a line with it.
+std::vector<scene::Vec3> without_straight_points(const std::vector<scene::Vec3>& outline_m, double tolerance_m) {
+  std::vector<scene::Vec3> kept_m;
+  for (std::size_t i = 0; i < outline_m.size(); ++i) {
+    const scene::Vec3& before_m = kept_m.empty() ? outline_m.back() : kept_m.back();
+    const scene::Vec3 onward_m = outline_m[(i + 1) % outline_m.size()] - before_m;
+    const scene::Vec3 here_m = outline_m[i] - before_m;
+    if (here_m.cross(onward_m).norm() > tolerance_m * onward_m.norm()) kept_m.push_back(outline_m[i]);
+  }
+  return kept_m;
+}
+
+Outlines outlines_m(const scene::Surface& surface, double y_m) {
+  const double size_m = (surface.points_m.rowwise().maxCoeff() - surface.points_m.rowwise().minCoeff()).norm();
+  Outlines found_m;
+  for (const auto& outline : cut_at_y(surface, y_m)) {
+    std::vector<scene::Vec3> places_m;
+    for (const EdgePoint& p : outline) places_m.push_back(p.of(surface.points_m));
+    found_m.push_back(without_straight_points(places_m, 1e-6 * size_m));
+  }
+  return found_m;
+}
+
 }  // namespace
+
+double cut_y_m(const scene::Surface& surface, const scene::Pose& tool) {
+  const double low_m = surface.points_m.row(1).minCoeff(), high_m = surface.points_m.row(1).maxCoeff();
+  const double hair_m = 1e-7 * (high_m - low_m);
+  return std::clamp(tool.position_m.y(), low_m + 2 * hair_m, high_m - 2 * hair_m) - hair_m;
+}
+
+Outlines tool_outlines_m(const scene::Tool& tool, const scene::Pose& pose, double y_m) {
+  scene::Surface surface = scene::tool_surface(tool, drawn_triangles);
+  surface.points_m = (pose.orientation.toRotationMatrix() * surface.points_m).colwise() + pose.position_m;
+  return outlines_m(surface, y_m);
+}
+
+Outlines inclusion_outlines_m(const scene::Body& body, double y_m) {
+  Outlines found_m;
+  for (const scene::Inclusion& inclusion : body.inclusions) {
+    const auto shape = scene::solid_shape(inclusion, inclusion.center_m);
+    for (auto& outline_m : outlines_m(scene::tessellate(*shape, drawn_triangles), y_m)) {
+      found_m.push_back(std::move(outline_m));
+    }
+  }
+  return found_m;
+}
 
 std::vector<EdgePoint> triangle_behind_y(const scene::Surface& surface, std::size_t triangle, double y_m) {
   std::vector<EdgePoint> polygon;

@@ -1,6 +1,7 @@
-// A cut through the rest surface by a plane of constant y, which can then be moved with the body.
+// A cut by a plane of constant y: through the rest surface, to be moved with the body, and through tool and inclusions.
 #pragma once
 
+#include "scene/scene.h"
 #include "scene/surface.h"
 
 #include <vector>
@@ -21,6 +22,19 @@ struct EdgePoint {
 /// Closed outlines of the cut, each without its first point repeated; empty when the plane misses the surface.
 /// No rest point may lie on the plane, for it would be on either side by rounding: choose one a hair off.
 [[nodiscard]] std::vector<std::vector<EdgePoint>> cut_at_y(const scene::Surface& surface, double y_m);
+
+/// The plane through the tool's mass centre, or the nearest that meets the body, a hair off so that no rest point lies
+/// on it.
+[[nodiscard]] double cut_y_m(const scene::Surface& surface, const scene::Pose& tool);
+
+/// Closed outlines in the world frame, each without its first point repeated [m].
+using Outlines = std::vector<std::vector<scene::Vec3>>;
+
+/// The tool's, whatever its shape; empty when the plane misses it.
+[[nodiscard]] Outlines tool_outlines_m(const scene::Tool& tool, const scene::Pose& pose, double y_m);
+
+/// Of all inclusions where they are at rest.
+[[nodiscard]] Outlines inclusion_outlines_m(const scene::Body& body, double y_m);
 
 /// The part of a triangle with y >= y_m, as a polygon of at most four corners in the triangle's order.
 [[nodiscard]] std::vector<EdgePoint> triangle_behind_y(const scene::Surface& surface, std::size_t triangle, double y_m);

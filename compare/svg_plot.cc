@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace touchstone::compare {
 namespace {
@@ -93,6 +94,14 @@ std::string stroke(Look look) {
       return fmt::format("stroke=\"{}\" stroke-width=\"2\"", colour(look));
     case Look::outline:
       return fmt::format("stroke=\"{}\" stroke-width=\"1.2\" stroke-dasharray=\"2 3\"", colour(look));
+    case Look::inclusion:
+      return fmt::format("stroke=\"{}\" stroke-width=\"1.5\" stroke-dasharray=\"9 4\"", colour(look));
+    case Look::first:
+      return fmt::format("stroke=\"{}\" stroke-width=\"2\"", colour(look));
+    case Look::second:
+      return fmt::format("stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"8 4\"", colour(look));
+    case Look::third:
+      return fmt::format("stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"2 3\"", colour(look));
   }
   return "";
 }
@@ -119,12 +128,27 @@ std::string axes(const Plot& plot, const Axis& x, const Axis& y) {
     out += grid_line(x.from_px(), y.px(tick), x.to_px(), y.px(tick), 0.13);
     out += text_at(x.from_px() - 7, y.px(tick) + 4, "end", number_text(tick));
   }
+  if (!y.log() && !plot.same_scale && y.low() < 0.0 && y.high() > 0.0) {
+    out += grid_line(x.from_px(), y.px(0.0), x.to_px(), y.px(0.0), 0.45);
+  }
   out += grid_line(x.from_px(), y.from_px(), x.to_px(), y.from_px(), 0.6);
   out += grid_line(x.from_px(), y.from_px(), x.from_px(), y.to_px(), 0.6);
   out += text_at(0.5 * (x.from_px() + x.to_px()), y.from_px() + 37, "middle", plot.x_label);
   const double middle_px = 0.5 * (y.from_px() + y.to_px());
   out += text_at(15, middle_px, "middle", plot.y_label, fmt::format(" transform=\"rotate(-90 15 {:.1f})\"", middle_px));
   return out;
+}
+
+std::string shaded(double left_px, double top_px, double width_px, double height_px, double shade) {
+  return fmt::format(
+      "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"currentColor\" "
+      "fill-opacity=\"{}\"/>\n",
+      left_px, top_px, width_px, height_px, shade);
+}
+
+std::string span_area(const Span& span, const Axis& x, const Axis& y) {
+  const double left_px = x.px(span.from);
+  return shaded(left_px, y.to_px(), x.px(span.to) - left_px, y.from_px() - y.to_px(), span.shade);
 }
 
 std::string band_area(const Band& band, const Axis& x, const Axis& y) {
@@ -149,7 +173,10 @@ std::string curve_line(const Curve& curve, const Axis& x, const Axis& y) {
     pen_down = shown;
   }
   if (path.empty()) return "";
-  return fmt::format("<path d=\"{}\" fill=\"none\" {} stroke-linejoin=\"round\"/>\n", path, stroke(curve.look));
+  const std::string fill =
+      curve.filled ? fmt::format("fill=\"{}\" fill-opacity=\"0.16\" fill-rule=\"evenodd\"", colour(curve.look))
+                   : "fill=\"none\"";
+  return fmt::format("<path d=\"{}\" {} {} stroke-linejoin=\"round\"/>\n", path, fill, stroke(curve.look));
 }
 
 /// Round for the reference and square for the fast model, so that grey print tells them apart.
@@ -195,6 +222,10 @@ std::vector<LegendEntry> legend_entries(const Plot& plot) {
   for (const Band& band : plot.bands) {
     add(band.name, fmt::format("<rect x=\"0\" y=\"-5\" width=\"26\" height=\"10\" fill=\"{}\" fill-opacity=\"0.3\"/>",
                                colour(band.look)));
+  }
+  std::set<std::string> listed;
+  for (const Span& span : plot.spans) {
+    if (listed.insert(span.name).second) add(span.name, shaded(0.0, -6.0, 26.0, 12.0, span.shade));
   }
   return entries;
 }
@@ -244,8 +275,23 @@ std::string colour(Look look) {
       return "#6a51a3";
     case Look::outline:
       return "#8a8a8a";
+    case Look::inclusion:
+      return "#a03070";
+    case Look::first:
+      return "#e4600a";
+    case Look::second:
+      return "#1f77b4";
+    case Look::third:
+      return "#2e8b57";
   }
   return "";
+}
+
+std::string svg_opening(const std::string& title, int width_px, int height_px) {
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
+      "font-family=\"system-ui, sans-serif\" font-size=\"12\" role=\"img\">\n<title>{2}</title>\n",
+      width_px, height_px, escape_xml(title));
 }
 
 std::vector<double> nice_ticks(double low, double high, int wanted) {
@@ -262,10 +308,7 @@ std::vector<double> nice_ticks(double low, double high, int wanted) {
 }
 
 std::string to_svg(const Plot& plot, int width_px, int height_px) {
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
-      "font-family=\"system-ui, sans-serif\" font-size=\"12\" role=\"img\">\n<title>{2}</title>\n",
-      width_px, height_px, escape_xml(plot.title));
+  std::string out = svg_opening(plot.title, width_px, height_px);
   out += text_at(0.5 * width_px, 20, "middle", plot.title, " font-size=\"14\" font-weight=\"600\"");
 
   Extent x_extent, y_extent;
@@ -304,12 +347,32 @@ std::string to_svg(const Plot& plot, int width_px, int height_px) {
       "{3:.1f}\" "
       "overflow=\"hidden\">\n",
       margin_left - edge, top_px - edge, right_px - margin_left + 2 * edge, bottom_px - top_px + 2 * edge);
+  for (const Span& span : plot.spans) out += span_area(span, x, y);
   for (const Band& band : plot.bands) out += band_area(band, x, y);
   for (const Curve& curve : plot.curves) out += curve_line(curve, x, y);
   for (const Curve& curve : plot.curves) {
     if (curve.markers) out += curve_markers(curve, plot, x, y);
   }
   return out + "</svg>\n</svg>\n";
+}
+
+std::string in_rows(const std::string& title, const std::vector<std::string>& svgs, int columns, int width_px,
+                    int height_px) {
+  const int count = static_cast<int>(svgs.size());
+  std::string out =
+      svg_opening(title, width_px * std::min(columns, count), height_px * ((count + columns - 1) / columns));
+  for (int i = 0; i < count; ++i) {
+    out += fmt::format("<g transform=\"translate({} {})\">\n{}</g>\n", width_px * (i % columns),
+                       height_px * (i / columns), svgs[static_cast<std::size_t>(i)]);
+  }
+  return out + "</svg>\n";
+}
+
+std::string as_file(const std::string& svg) {
+  constexpr std::string_view opening = "<svg ", title_end = "</title>\n";
+  const std::size_t ground = svg.find(title_end) + title_end.size();
+  return fmt::format("{}color=\"#1c1e21\" {}<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{}", opening,
+                     svg.substr(opening.size(), ground - opening.size()), svg.substr(ground));
 }
 
 }  // namespace touchstone::compare

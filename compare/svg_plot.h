@@ -9,8 +9,9 @@
 
 namespace touchstone::compare {
 
-/// Who a curve belongs to; fixes colour and dash so that a side looks the same in every figure and in grey print.
-enum class Look { reference, fast, plain, outline };
+/// Who a curve belongs to; fixes colour and dash so that a side looks the same in every figure and in grey print. The
+/// last three tell curves of one side apart.
+enum class Look { reference, fast, plain, outline, inclusion, first, second, third };
 
 /// One curve; a point that is not finite, or not positive on a logarithmic axis, interrupts it.
 struct Curve {
@@ -18,6 +19,7 @@ struct Curve {
   Look look = Look::plain;
   std::vector<double> x, y;
   bool markers = true;
+  bool filled = false;  ///< the area within, holes left out
 };
 
 /// Area between two curves over x.
@@ -27,18 +29,36 @@ struct Band {
   std::vector<double> x, low, high;
 };
 
+/// A stretch of x, shaded over the whole height.
+struct Span {
+  std::string name;  ///< in the legend, once for all spans of that name
+  double from = 0.0, to = 0.0;
+  double shade = 0.1;  ///< 0 to 1, of the text's colour
+};
+
 struct Plot {
   std::string title;
   std::string x_label, y_label;  ///< with unit
   bool x_log = false, y_log = false;
   bool same_scale = false;                                    ///< x and y to one scale, for drawings
   std::optional<std::pair<double, double>> x_range, y_range;  ///< otherwise what the curves need
+  std::vector<Span> spans;
   std::vector<Band> bands;
   std::vector<Curve> curves;
 };
 
 /// @returns one <svg> element, well-formed XML; without any point to draw it says "nothing to show"
 [[nodiscard]] std::string to_svg(const Plot& plot, int width_px = 560, int height_px = 360);
+
+/// Begins an <svg> element: its size, font and title; "</svg>" ends it.
+[[nodiscard]] std::string svg_opening(const std::string& title, int width_px, int height_px);
+
+/// Several <svg> elements of one size as one, `columns` to a row.
+[[nodiscard]] std::string in_rows(const std::string& title, const std::vector<std::string>& svgs, int columns,
+                                  int width_px, int height_px);
+
+/// The same <svg> element as a file: dark on white, whatever the page around it.
+[[nodiscard]] std::string as_file(const std::string& svg);
 
 /// Colour of a look, "#rrggbb".
 [[nodiscard]] std::string colour(Look look);

@@ -1,6 +1,7 @@
 #include "compare/verbs.h"
 
 #include "compare/compare.h"
+#include "compare/fast_report.h"
 #include "compare/reference_run.h"
 #include "compare/vtk_out.h"
 #include "fast/results.h"
@@ -51,10 +52,13 @@ int run_fast(const fast::VerbOptions& options, const std::filesystem::path&) {
   const scene::Scene scene = options.load();
   const std::filesystem::path folder = options.folder(scene, "fast");
   scene::prepare_result_folder(folder);
-  const fast::Run run =
-      fast::run_into_folder(scene, folder, scene::make_manifest(scene, "touchstone fast"), options.quiet);
+  scene::Manifest manifest = scene::make_manifest(scene, "touchstone fast");
+  const scene::Stopwatch watch;
+  const fast::Run run = fast::run_into_folder(scene, folder, manifest, options.quiet);
+  manifest.times.push_back(watch.read("fast"));
   write_fast_surfaces(folder, run);
-  std::cout << fast::summary_text(run) << "Results: " << folder.string() << '\n';
+  write_fast_report(folder, scene, run, manifest);
+  std::cout << fast::summary_text(run) << "Report: " << (folder / "report.html").string() << '\n';
   return fast::done;
 }
 

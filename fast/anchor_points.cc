@@ -1,5 +1,7 @@
 #include "fast/anchor_points.h"
 
+#include "fast/patch_kernels.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -50,9 +52,53 @@ FaceAxes face_axes(int patch) noexcept {
   return {(axis + 1) % 3, (axis + 2) % 3};
 }
 
+/// Bilinear places on a face. @param free 1 for every corner that can move, else 0
+TOUCHSTONE_WIDE_LOOPS
+void face_places(std::span<const double> u_m, std::span<const double> v_m, const Eigen::Vector2d& center_m,
+                 const Eigen::Vector2d& half_m, const std::array<float, patch_corners_max>& free,
+                 const PlaceColumns& out) noexcept {
+  const double per_u = 0.5 / half_m.x(), per_v = 0.5 / half_m.y(), u0 = center_m.x(), v0 = center_m.y();
+  const auto [w0, w1, w2, w3] = out.weight;
+  const auto [f0, f1, f2, f3] = free;
+  float* f = out.free;
+  const std::size_t count = u_m.size();
+  // Columns never overlap.
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto from_u = static_cast<float>((u_m[i] - u0) * per_u + 0.5);
+    const auto from_v = static_cast<float>((v_m[i] - v0) * per_v + 0.5);
+    const float above_u = from_u > 0.0f ? from_u : 0.0f, above_v = from_v > 0.0f ? from_v : 0.0f;
+    const float u = above_u < 1.0f ? above_u : 1.0f, v = above_v < 1.0f ? above_v : 1.0f;
+    const float past_u = 1.0f - u, past_v = 1.0f - v;
+    const float a = past_u * past_v, b = u * past_v, c = past_u * v, d = u * v;
+    w0[i] = a, w1[i] = b, w2[i] = c, w3[i] = d;
+    f[i] = f0 * a + f1 * b + f2 * c + f3 * d;
+  }
+}
+
 }  // namespace
 
 bool AnchorPoints::first_between_its_anchors(int) const { return true; }
+
+PatchPlace AnchorPoints::place(int patch, const std::array<double, patch_corners_max>& weight) const noexcept {
+  PatchPlace place{weight};
+  const auto& corner = patches_[static_cast<std::size_t>(patch)];
+  for (std::size_t k = 0; k < corner.size(); ++k) {
+    if (!held_[static_cast<std::size_t>(corner[k])]) place.free += weight[k];
+  }
+  return place;
+}
+
+void AnchorPoints::at(int patch, const std::array<std::span<const double>, 3>& p_m,
+                      const PlaceColumns& out) const noexcept {
+  for (std::size_t i = 0; i < p_m[0].size(); ++i) {
+    const PatchPlace place = at(patch, Vec3(p_m[0][i], p_m[1][i], p_m[2][i]));
+    for (std::size_t k = 0; k < patch_corners_max; ++k) {
+      out.weight[k][i] = static_cast<float>(place.weight[k]);
+    }
+    out.free[i] = static_cast<float>(place.free);
+  }
+}
 
 void AnchorPoints::add(const Vec3& point_m, bool held, AnchorReason reason) {
   points_m_.push_back(point_m);
@@ -86,13 +132,24 @@ Vec3 BoxAnchors::halfway_m(int, int i, int j) const {
 
 PatchPlace BoxAnchors::at(int patch, const Vec3& p_m) const noexcept {
   const auto axes = face_axes(patch);
-  const Vec3 place = (p_m - box_.center_m()).cwiseQuotient(box_.half_m());
-  const double u = std::clamp(0.5 * (place[axes.u] + 1.0), 0.0, 1.0);
-  const double v = std::clamp(0.5 * (place[axes.v] + 1.0), 0.0, 1.0);
-  PatchPlace at;
-  at.weight = {(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v};
-  if (patch != bottom_face) at.edge = {u, 1.0 - u, v, 1.0 - v};
-  return at;
+  const Vec3 local = (p_m - box_.center_m()).cwiseQuotient(box_.half_m());
+  const double u = std::clamp(0.5 * (local[axes.u] + 1.0), 0.0, 1.0);
+  const double v = std::clamp(0.5 * (local[axes.v] + 1.0), 0.0, 1.0);
+  return place(patch, {(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v});
+}
+
+void BoxAnchors::at(int patch, const std::array<std::span<const double>, 3>& p_m,
+                    const PlaceColumns& out) const noexcept {
+  const auto axes = face_axes(patch);
+  const std::span<const double> u_m = p_m[static_cast<std::size_t>(axes.u)],
+                                v_m = p_m[static_cast<std::size_t>(axes.v)];
+  const Eigen::Vector2d center_m(box_.center_m()[axes.u], box_.center_m()[axes.v]);
+  const Eigen::Vector2d half_m(box_.half_m()[axes.u], box_.half_m()[axes.v]);
+  std::array<float, patch_corners_max> free;
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    free[k] = held_[static_cast<std::size_t>(patches_[static_cast<std::size_t>(patch)][k])] ? 0.0f : 1.0f;
+  }
+  face_places(u_m, v_m, center_m, half_m, free, out);
 }
 
 EllipsoidAnchors::EllipsoidAnchors(const scene::Sphere& sphere, double support_height_m)
@@ -135,23 +192,13 @@ Vec3 EllipsoidAnchors::halfway_m(int, int i, int j) const {
 PatchPlace EllipsoidAnchors::at(int patch, const Vec3& p_m) const noexcept {
   const Vec3 out = (p_m - center_m_).cwiseAbs().cwiseQuotient(semi_axes_m_);
   const Vec3 barycentric = out / out.sum();
-  PatchPlace at;
-  if ((patch & 4) == 0) {
-    at.weight = {barycentric.x(), barycentric.y(), barycentric.z(), 0.0};
-    at.edge = {barycentric.x(), barycentric.y(), barycentric.z(), 1.0};
-    return at;
-  }
+  if ((patch & 4) == 0) return place(patch, {barycentric.x(), barycentric.y(), barycentric.z(), 0.0});
   const double height_m = p_m.z() - support_height_m_;
   const double equator_m = center_m_.z() - support_height_m_;
   const double ramp = std::clamp(height_m / equator_m, 0.0, 1.0);
   const double equator = barycentric.x() + barycentric.y();
-  at.weight = {0.0, 0.0, 1.0, 0.0};
-  if (ramp > 0.0 && equator > 0.0) {
-    at.weight = {ramp * barycentric.x() / equator, ramp * barycentric.y() / equator, 1.0 - ramp, 0.0};
-    // The patch's edges are its three sides and the support's ring.
-    at.edge = {barycentric.x(), barycentric.y(), barycentric.z(), ramp};
-  }
-  return at;
+  if (!(ramp > 0.0 && equator > 0.0)) return place(patch, {0.0, 0.0, 1.0, 0.0});
+  return place(patch, {ramp * barycentric.x() / equator, ramp * barycentric.y() / equator, 1.0 - ramp, 0.0});
 }
 
 RevolutionAnchors::RevolutionAnchors(const scene::Revolution& revolution, double support_height_m)
@@ -255,14 +302,14 @@ void RevolutionAnchors::place_bands(const std::vector<int>& anchor_of_corner) {
                                               : Kind::band;
     part.low_m = corner_arc_m(low);
     part.high_m = corner_arc_m(high);
-    part.top_m = height_m(k + 1);
     part.band_top_m = height_m(high);
-    part.held = at_or_below_support(part.top_m) || (k == 0 && revolution_.flat_bottom());
-    part.crosses = !part.held && at_or_below_support(height_m(k));
-    part.band_crosses = !at_or_below_support(part.band_top_m) && at_or_below_support(height_m(low));
-    part.rim_m = revolution_.piece(k).length_m;
-    if (part.crosses) part.rim_m = length_m_ - arc_at_height_m(k, support_height_m_);
-    part.band_rim_m = part.high_m - part.low_m;
+    part.crosses = !at_or_below_support(part.band_top_m) && at_or_below_support(height_m(low));
+    part.rim_m = part.high_m - part.low_m;
+    if (part.kind == Kind::cap && part.high < 0 && held_[static_cast<std::size_t>(part.low)]) {
+      int last = low;
+      while (part.crosses && at_or_below_support(height_m(last + 1))) ++last;
+      part.held_rim_m = part.crosses ? length_m_ - arc_at_height_m(last, support_height_m_) : part.rim_m;
+    }
   }
 }
 
@@ -356,43 +403,23 @@ PatchPlace RevolutionAnchors::at(int patch, const Vec3& p_m) const noexcept {
   // From the cap's pole, at the bottom or at the top.
   const double from_pole_m = part.low < 0 ? along_m : length_m_ - along_m;
 
-  PatchPlace at;
   double band = std::clamp((along_m - part.low_m) / (part.high_m - part.low_m), 0.0, 1.0);
-  if (part.band_crosses) band = std::clamp(over_support_m / (part.band_top_m - support_height_m_), 0.0, 1.0);
+  if (part.crosses) band = std::clamp(over_support_m / (part.band_top_m - support_height_m_), 0.0, 1.0);
   switch (part.kind) {
     case Kind::band:
-      at.weight = {(1.0 - band) * (1.0 - phi), (1.0 - band) * phi, band * (1.0 - phi), band * phi};
-      break;
+      return place(patch, {(1.0 - band) * (1.0 - phi), (1.0 - band) * phi, band * (1.0 - phi), band * phi});
     case Kind::sector_down:
-      at.weight = {band * (1.0 - phi), band * phi, 1.0 - band, 0.0};
-      break;
+      return place(patch, {band * (1.0 - phi), band * phi, 1.0 - band, 0.0});
     case Kind::sector_up:
-      at.weight = {(1.0 - band) * (1.0 - phi), (1.0 - band) * phi, band, 0.0};
+      return place(patch, {(1.0 - band) * (1.0 - phi), (1.0 - band) * phi, band, 0.0});
+    case Kind::cap:
       break;
-    case Kind::cap: {
-      const Eigen::Vector2d uv = square(std::min(1.0, from_pole_m / part.band_rim_m));
-      const double u = uv.x(), v = uv.y();
-      at.weight = {u * (1.0 - v), u * v, (1.0 - u) * v, (1.0 - u) * (1.0 - v)};
-      break;
-    }
   }
-
-  if (part.held || (part.crosses && over_support_m <= 0.0)) return at;
-  if (quadrant < 0) {
-    const Eigen::Vector2d uv = square(std::min(1.0, from_pole_m / part.rim_m));
-    at.edge = {uv.x(), 1.0 - uv.x(), uv.y(), 1.0 - uv.y()};
-    return at;
-  }
-  const double up = std::clamp((along_m - part.arc_begin_m) / revolution_.piece(piece).length_m, 0.0, 1.0);
-  const double rise = part.crosses ? std::min(1.0, over_support_m / (part.top_m - support_height_m_)) : up;
-  const bool ends_below = piece == 0, ends_above = piece + 1 == revolution_.piece_count();
-  if (ends_below) {
-    at.edge = {up * (1.0 - phi), up * phi, 1.0 - up, part.crosses ? rise : 1.0};
-  } else if (ends_above) {
-    at.edge = {(1.0 - up) * (1.0 - phi), (1.0 - up) * phi, rise, 1.0};
-  } else {
-    at.edge = {phi, 1.0 - phi, rise, 1.0 - (part.crosses ? rise : up)};
-  }
+  const Eigen::Vector2d uv = square(std::min(1.0, from_pole_m / part.rim_m));
+  const double u = uv.x(), v = uv.y();
+  PatchPlace at = place(patch, {u * (1.0 - v), u * v, (1.0 - u) * v, (1.0 - u) * (1.0 - v)});
+  // All its anchor points are held, and yet it gives in the middle.
+  if (part.held_rim_m > 0.0) at.free = std::max(0.0, 1.0 - from_pole_m / part.held_rim_m);
   return at;
 }
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace touchstone::fast {
@@ -16,12 +17,17 @@ inline constexpr int patch_corners_max = 4;
 struct PatchPlace {
   /// Weight of each of the patch's anchor points; they sum to 1.
   std::array<double, patch_corners_max> weight{};
-  /// Distance to each edge of the patch, in units of the patch: 0 on the edge, 1 at the far side. The line where the
-  /// support begins is an edge like any other, and all are 0 on held surface.
-  std::array<double, patch_corners_max> edge{};
+  /// How far from the held surface: 0 on it, 1 at its farthest on a patch that borders on it, and 1 on all others.
+  double free = 0.0;
 
   /// True on held surface.
-  [[nodiscard]] bool held() const noexcept { return edge == std::array<double, patch_corners_max>{}; }
+  [[nodiscard]] bool held() const noexcept { return free <= 0.0; }
+};
+
+/// Where PatchPlaces go by component, in single precision.
+struct PlaceColumns {
+  std::array<float*, patch_corners_max> weight;
+  float* free;
 };
 
 /// The anchor points p_i of a body, the patches they bound, and which of them the support holds.
@@ -46,10 +52,14 @@ class AnchorPoints {
   [[nodiscard]] virtual scene::Vec3 halfway_m(int patch, int i, int j) const = 0;
   /// @param p_m a point of the rest surface on that patch
   [[nodiscard]] virtual PatchPlace at(int patch, const scene::Vec3& p_m) const noexcept = 0;
+  /// The same of many points, by component.
+  virtual void at(int patch, const std::array<std::span<const double>, 3>& p_m, const PlaceColumns& out) const noexcept;
 
  protected:
   /// Adds an anchor point that the rule has found, at its exact place.
   void add(const scene::Vec3& point_m, bool held, AnchorReason reason);
+  /// The place of these weights, as free as their part on anchor points that are not held.
+  [[nodiscard]] PatchPlace place(int patch, const std::array<double, patch_corners_max>& weight) const noexcept;
 
   std::vector<scene::Vec3> points_m_;
   std::vector<AnchorReason> reasons_;
@@ -66,6 +76,8 @@ class BoxAnchors final : public AnchorPoints {
   [[nodiscard]] std::vector<int> around(int patch) const override;
   [[nodiscard]] scene::Vec3 halfway_m(int patch, int i, int j) const override;
   [[nodiscard]] PatchPlace at(int patch, const scene::Vec3& p_m) const noexcept override;
+  void at(int patch, const std::array<std::span<const double>, 3>& p_m,
+          const PlaceColumns& out) const noexcept override;
 
  private:
   scene::Box box_;
@@ -82,6 +94,7 @@ class EllipsoidAnchors final : public AnchorPoints {
   EllipsoidAnchors(const scene::Ellipsoid& ellipsoid, double support_height_m);
   [[nodiscard]] std::vector<int> around(int patch) const override;
   [[nodiscard]] scene::Vec3 halfway_m(int patch, int i, int j) const override;
+  using AnchorPoints::at;
   [[nodiscard]] PatchPlace at(int patch, const scene::Vec3& p_m) const noexcept override;
 
  private:
@@ -112,6 +125,7 @@ class RevolutionAnchors final : public AnchorPoints {
   [[nodiscard]] std::vector<int> around(int patch) const override;
   [[nodiscard]] bool first_between_its_anchors(int patch) const override;
   [[nodiscard]] scene::Vec3 halfway_m(int patch, int i, int j) const override;
+  using AnchorPoints::at;
   [[nodiscard]] PatchPlace at(int patch, const scene::Vec3& p_m) const noexcept override;
 
  private:
@@ -123,13 +137,10 @@ class RevolutionAnchors final : public AnchorPoints {
     int low = -1, high = -1;           ///< first anchor point of the band's lower and upper end
     double arc_begin_m = 0.0;          ///< of the piece
     double low_m = 0.0, high_m = 0.0;  ///< of the band, along the arc
-    double top_m = 0.0;                ///< height of the piece's upper end
     double band_top_m = 0.0;           ///< height of the band's
-    bool held = false;                 ///< all of the piece
-    bool crosses = false;              ///< the support's height lies within the piece
-    bool band_crosses = false;         ///< or within the band
-    double rim_m = 0.0;                ///< cap: arc length from the axis to the piece's rim, or to the support
-    double band_rim_m = 0.0;           ///< the same of the band
+    bool crosses = false;              ///< the support's height lies within the band
+    double rim_m = 0.0;                ///< cap: arc length from the axis to its rim
+    double held_rim_m = 0.0;           ///< cap with its rim held: the same to where the held surface begins, else 0
   };
   void find_circles(std::vector<bool>& circle, std::vector<AnchorReason>& reason) const;
   void place_bands(const std::vector<int>& anchor_of_corner);

@@ -31,7 +31,7 @@ struct AreaTriangles {
 /// gamma_i of equation (18) at rest: Gamma_i over their sum; sums to 1.
 [[nodiscard]] std::vector<double> voronoi_shares(const AreaTriangles& triangles);
 
-/// The same on the body that earlier regions have deformed (errata E17: the areas belong to the current surface). p_ij
+/// The same on the body that earlier regions have deformed (appendix IV). p_ij
 /// follows by the mean of the displacements of i and j, as far as the anchor points alone tell. No share falls under a
 /// millionth of the mean one, so that no beam loses its section; where the anchor points fall together all are equal.
 /// @param anchor_displacement_m per anchor point, from its place at rest; @param shares per anchor point

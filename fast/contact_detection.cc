@@ -1,5 +1,6 @@
 #include "fast/contact_detection.h"
 
+#include "fast/pull_back.h"
 #include "fast/rest_distance.h"
 
 #include <algorithm>
@@ -12,13 +13,6 @@ namespace {
 
 using scene::Mat3;
 using scene::Vec3;
-
-void add(InsideSummary& summary, const RestDistance& rest, double area_m2) noexcept {
-  const double weight = -rest.signed_distance_m * area_m2;
-  summary.normal_sum += weight * rest.normal;
-  summary.weight_sum += weight;
-  summary.deepest_m = std::max(summary.deepest_m, -rest.signed_distance_m);
-}
 
 template <class Body>
 InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, const Placement& at, double margin_m,
@@ -41,7 +35,7 @@ InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, co
       if (surely_beyond(body, p_W, margin_m)) continue;
       const RestDistance rest = rest_distance(body, p_W);
       if (!(rest.signed_distance_m < margin_m)) continue;
-      if (rest.signed_distance_m < 0.0) add(summary, rest, tool.area_m2[i]);
+      if (rest.signed_distance_m < 0.0) summary.add(rest.normal, -rest.signed_distance_m, tool.area_m2[i]);
       const auto k = static_cast<std::size_t>(count++);
       points.x_W_m[k] = p_W.x();
       points.y_W_m[k] = p_W.y();
@@ -67,7 +61,7 @@ InsideSummary summarise(const scene::Shape& shape, const RegionPoints& points) n
   InsideSummary summary;
   for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
     const RestDistance rest = rest_distance(body, points.p_W_m(i));
-    if (rest.signed_distance_m < 0.0) add(summary, rest, points.area_m2[i]);
+    if (rest.signed_distance_m < 0.0) summary.add(rest.normal, -rest.signed_distance_m, points.area_m2[i]);
   }
   return summary;
 }
@@ -117,7 +111,8 @@ double exit_distance(const scene::Shape& shape, const Vec3& p_W_m, const Vec3& d
 }
 
 template <class Body>
-constexpr Detection detection_of{&find_inside<Body>, &summarise<Body>, &measure_depths<Body>, &exit_distance<Body>};
+constexpr Detection detection_of{&find_inside<Body>, &summarise<Body>, &pull_back<Body>, &measure_depths<Body>,
+                                 &exit_distance<Body>};
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include "scene/frames.h"
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -64,6 +65,13 @@ struct InsideSummary {
   scene::Vec3 normal_sum = scene::Vec3::Zero();  ///< of the rest surface's normals at the closest points
   double weight_sum = 0.0;
   double deepest_m = 0.0;  ///< largest distance to the rest surface
+
+  void add(const scene::Vec3& normal, double depth_m, double area_m2) noexcept {
+    const double weight = depth_m * area_m2;
+    normal_sum += weight * normal;
+    weight_sum += weight;
+    deepest_m = std::max(deepest_m, depth_m);
+  }
 };
 
 /// Fills `points` with the samples strictly inside the rest surface, or nearer to it from outside than margin_m: a ball
@@ -92,10 +100,17 @@ using MeasureDepths = RegionExtent (*)(const scene::Shape&, const scene::Mat3& R
 /// Way from a point of the body along a direction to the rest surface [m].
 using ExitDistance = double (*)(const scene::Shape&, const scene::Vec3& p_W_m, const scene::Vec3& direction) noexcept;
 
+class DisplacedSurface;
+struct PullBackScratch;
+/// Takes the points back from the deformed body to the one at rest, see pull_back.h; the summary of those that stay.
+using PullBack = InsideSummary (*)(const scene::Shape&, const DisplacedSurface&, RegionPoints&,
+                                   PullBackScratch&) noexcept;
+
 /// Detection for one shape of body.
 struct Detection {
   FindInside find_inside = nullptr;
   Summarise summarise = nullptr;
+  PullBack pull_back = nullptr;
   MeasureDepths measure_depths = nullptr;
   ExitDistance exit_distance_m = nullptr;
 };

@@ -15,14 +15,7 @@ using scene::Vec3;
 /// Keeps the choices made from boxes on the safe side of the rounding of a distance between points.
 constexpr double rounding = 1e-9;
 
-struct Box {
-  Vec3 lower_m = Vec3::Constant(std::numeric_limits<double>::infinity());
-  Vec3 upper_m = -lower_m;
-  void add(const Vec3& p_m) noexcept {
-    lower_m = lower_m.cwiseMin(p_m);
-    upper_m = upper_m.cwiseMax(p_m);
-  }
-};
+using Box = ClusterGrid::SampleBox;
 
 double nearest2_m2(const Vec3& lower_a, const Vec3& upper_a, const Vec3& lower_b, const Vec3& upper_b) noexcept {
   return (lower_b - upper_a).cwiseMax(lower_a - upper_b).cwiseMax(0.0).squaredNorm();
@@ -38,7 +31,8 @@ constexpr std::int32_t left_over = -2;  ///< a cluster with such samples, not ta
 }  // namespace
 
 std::size_t ClusterGrid::memory_bytes() const noexcept {
-  return (cell.size() + neighbour_begin.size()) * sizeof(std::int32_t) + neighbours.size() * sizeof(Neighbour);
+  return (cell.size() + neighbour_begin.size()) * sizeof(std::int32_t) + neighbours.size() * sizeof(Neighbour) +
+         box.size() * sizeof(SampleBox);
 }
 
 ClusterGrid cluster_grid(const ToolSamples& tool, double r_th_m) {
@@ -62,7 +56,7 @@ ClusterGrid cluster_grid(const ToolSamples& tool, double r_th_m) {
   ClusterGrid grid;
   grid.r_th_m = r_th_m;
   grid.cell.resize(samples);
-  std::vector<Box> boxes;
+  std::vector<Box>& boxes = grid.box;
   std::map<Place, std::pair<std::int32_t, std::int32_t>> cells_at;
   const double r2_m2 = r_th_m * r_th_m;
   for (const auto& [place, members] : samples_at) {
@@ -127,13 +121,14 @@ void ClusterScratch::join(std::int32_t a, std::int32_t b) noexcept {
   cells_[static_cast<std::size_t>(std::max(root_a, root_b))].parent = std::min(root_a, root_b);
 }
 
-bool ClusterScratch::near(const RegionPoints& points, double r2_m2, const Cell& a, const Cell& b) const noexcept {
-  const double loose2_m2 = (1.0 + rounding) * r2_m2;
-  if (nearest2_m2(a.lower_m, a.upper_m, b.lower_m, b.upper_m) > loose2_m2) return false;
-  for (std::int32_t i = a.first; i >= 0; i = next_[static_cast<std::size_t>(i)]) {
+bool ClusterScratch::near(const ClusterGrid& grid, const RegionPoints& points, std::int32_t a,
+                          std::int32_t b) const noexcept {
+  const double r2_m2 = grid.r_th_m * grid.r_th_m, loose2_m2 = (1.0 + rounding) * r2_m2;
+  const Box& box = grid.box[static_cast<std::size_t>(b)];
+  for (std::int32_t i = cells_[static_cast<std::size_t>(a)].first; i >= 0; i = next_[static_cast<std::size_t>(i)]) {
     const Vec3 p_m = points.p_T_m(static_cast<std::size_t>(i));
-    if (nearest2_m2(p_m, p_m, b.lower_m, b.upper_m) > loose2_m2) continue;
-    for (std::int32_t k = b.first; k >= 0; k = next_[static_cast<std::size_t>(k)])
+    if (nearest2_m2(p_m, p_m, box.lower_m, box.upper_m) > loose2_m2) continue;
+    for (std::int32_t k = cells_[static_cast<std::size_t>(b)].first; k >= 0; k = next_[static_cast<std::size_t>(k)])
       if ((points.p_T_m(static_cast<std::size_t>(k)) - p_m).squaredNorm() < r2_m2) return true;
   }
   return false;
@@ -142,19 +137,14 @@ bool ClusterScratch::near(const RegionPoints& points, double r2_m2, const Cell& 
 ClusterCount cluster(const ClusterGrid& grid, RegionPoints& all, ClusterScratch& scratch,
                      std::span<Cluster> out) noexcept {
   const auto points = static_cast<std::size_t>(all.count);
-  const double r2_m2 = grid.r_th_m * grid.r_th_m;
   auto& cells = scratch.cells_;
   std::size_t occupied = 0;
   for (std::size_t i = 0; i < points; ++i) {
     const std::int32_t number = grid.cell[static_cast<std::size_t>(all.sample[i])];
     ClusterScratch::Cell& cell = cells[static_cast<std::size_t>(number)];
-    const Vec3 p_m = all.p_T_m(i);
     if (cell.first < 0) {
-      cell = {p_m, p_m, number, -1, -1};
+      cell = {number, -1, -1};
       scratch.occupied_[occupied++] = number;
-    } else {
-      cell.lower_m = cell.lower_m.cwiseMin(p_m);
-      cell.upper_m = cell.upper_m.cwiseMax(p_m);
     }
     scratch.next_[i] = cell.first;
     cell.first = static_cast<std::int32_t>(i);
@@ -172,22 +162,27 @@ ClusterCount cluster(const ClusterGrid& grid, RegionPoints& all, ClusterScratch&
         if (neighbour.certain != certain || b.first < 0) continue;
         if (certain) {
           scratch.join(a, neighbour.cell);
-        } else if (scratch.root(a) != scratch.root(neighbour.cell) &&
-                   scratch.near(all, r2_m2, cells[static_cast<std::size_t>(a)], b)) {
+        } else if (scratch.root(a) != scratch.root(neighbour.cell) && scratch.near(grid, all, a, neighbour.cell)) {
           scratch.join(a, neighbour.cell);
         }
       }
     }
   }
 
+  // Cells stand in the order of their first points.
   std::size_t clusters = 0;
-  for (std::size_t i = 0; i < points; ++i) {
-    const std::int32_t root = scratch.root(grid.cell[static_cast<std::size_t>(all.sample[i])]);
-    std::int32_t& number = cells[static_cast<std::size_t>(root)].cluster;
+  for (std::size_t o = 0; o < occupied; ++o) {
+    const std::int32_t cell = scratch.occupied_[o];
+    std::int32_t& number = cells[static_cast<std::size_t>(scratch.root(cell))].cluster;
     if (number < 0) {
       number = static_cast<std::int32_t>(clusters);
       scratch.area_m2_[clusters++] = 0.0;
     }
+    cells[static_cast<std::size_t>(cell)].cluster = number;
+  }
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto cell = static_cast<std::size_t>(grid.cell[static_cast<std::size_t>(all.sample[i])]);
+    const std::int32_t number = cells[cell].cluster;
     scratch.of_point_[i] = number;
     scratch.area_m2_[static_cast<std::size_t>(number)] += all.area_m2[i];
   }
@@ -230,7 +225,9 @@ ClusterCount cluster(const ClusterGrid& grid, RegionPoints& all, ClusterScratch&
     auto& place = scratch.begin_[static_cast<std::size_t>(rank)];
     scratch.order_[static_cast<std::size_t>(place++)] = static_cast<std::int32_t>(i);
   }
-  all.reorder({scratch.order_.data(), static_cast<std::size_t>(begin)}, scratch.column_.data());
+  const std::span<const std::int32_t> by_cluster(scratch.order_.data(), static_cast<std::size_t>(begin));
+  if (by_cluster.size() < points || !std::is_sorted(by_cluster.begin(), by_cluster.end()))
+    all.reorder(by_cluster, scratch.column_.data());
 
   for (std::size_t k = 0; k < kept; ++k) {
     Cluster& here = out[k];

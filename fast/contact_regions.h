@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -33,8 +34,18 @@ struct ClusterGrid {
     std::int32_t cell = 0;
     bool certain = false;  ///< every sample of one is nearer than r_th to every sample of the other
   };
+  /// Around the samples of a cell, tool frame.
+  struct SampleBox {
+    scene::Vec3 lower_m = scene::Vec3::Constant(std::numeric_limits<double>::infinity());
+    scene::Vec3 upper_m = -lower_m;
+    void add(const scene::Vec3& p_m) noexcept {
+      lower_m = lower_m.cwiseMin(p_m);
+      upper_m = upper_m.cwiseMax(p_m);
+    }
+  };
   double r_th_m = 0.0;
   std::vector<std::int32_t> cell;             ///< per sample
+  std::vector<SampleBox> box;                 ///< per cell
   std::vector<std::int32_t> neighbour_begin;  ///< size cells + 1
   std::vector<Neighbour> neighbours;
 
@@ -52,15 +63,16 @@ class ClusterScratch {
 
  private:
   struct Cell {
-    scene::Vec3 lower_m, upper_m;  ///< box around its points, tool frame
-    std::int32_t parent = 0;       ///< of the union, over all cells
-    std::int32_t first = -1;       ///< point, -1 for a cell without points
+    std::int32_t parent = 0;  ///< of the union, over all cells
+    std::int32_t first = -1;  ///< point, -1 for a cell without points
     std::int32_t cluster = -1;
   };
   friend struct ClusterCount cluster(const ClusterGrid&, RegionPoints&, ClusterScratch&, std::span<Cluster>) noexcept;
   [[nodiscard]] std::int32_t root(std::int32_t cell) noexcept;
   void join(std::int32_t a, std::int32_t b) noexcept;
-  [[nodiscard]] bool near(const RegionPoints& points, double r2_m2, const Cell& a, const Cell& b) const noexcept;
+  /// Whether a point of cell a is nearer than r_th to one of cell b.
+  [[nodiscard]] bool near(const ClusterGrid& grid, const RegionPoints& points, std::int32_t a,
+                          std::int32_t b) const noexcept;
 
   std::vector<Cell> cells_;
   std::vector<std::int32_t> occupied_;  ///< cells with points

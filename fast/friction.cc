@@ -136,7 +136,7 @@ Vec3 resolve_friction_published(const FrictionLaw& friction, const DuffingLaw& l
   double D_n = law.depth_m(force.magnitude_n);
   carry(d, D_n, state);
   const Vec3 step = D_n > smallest ? tangential(step_m, d) : Vec3(Vec3::Zero());
-  if (step.norm() > smallest) state.motion = step.normalized();
+  if (step.norm() > rounding_rel * D_n) state.motion = step.normalized();
 
   const Vec3 trial = state.stretch_m + step;
   Components here = components(law, points, D_n, trial.norm());

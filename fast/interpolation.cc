@@ -20,14 +20,30 @@ Quantity at_p0(const std::array<Quantity, corners>& corner, const PatchPlace& pl
   return sum;
 }
 
-bool moves(const ContactPoint& contact, std::size_t patch) noexcept {
-  return static_cast<std::size_t>(contact.patch) == patch && contact.displacement_m.squaredNorm() > 0.0;
+const Patch& patch_of(const SurfacePatches& rest, const ContactPoint& contact) noexcept {
+  return rest.patches[static_cast<std::size_t>(contact.patch)];
 }
 
-/// Angle of a displacement to the outward normal, `mean` standing in where nothing moves.
-double displacement_angle(const Vec3& u_m, const Vec3& normal, const Vec3& mean_m) noexcept {
-  return angle_to(u_m.squaredNorm() > 0.0 ? u_m : mean_m, normal);
+/// Its hat has a top.
+bool moves(const ContactPoint& contact) noexcept {
+  return contact.displacement_m.squaredNorm() > 0.0 && !contact.place.held();
 }
+
+/// Lengths of the displacements at a patch's corners and their angles to the outward normal.
+struct Printed {
+  /// @param contact_m the contact point's displacement as far as its hat reaches the patch
+  Printed(const Patch& patch, const std::vector<Vec3>& anchor_displacement_m, const Vec3& contact_m) noexcept
+      : mean_m(contact_m) {
+    const std::array<Vec3, corners> u = corner_displacements(patch, anchor_displacement_m);
+    for (std::size_t k = 0; k < patch.corners; ++k) mean_m += u[k];
+    for (std::size_t k = 0; k < corners; ++k) {
+      length_m[k] = u[k].norm();
+      angle_rad[k] = angle_to(u[k].squaredNorm() > 0.0 ? u[k] : mean_m, patch.corner_normal[k]);
+    }
+  }
+  std::array<double, corners> length_m, angle_rad;
+  Vec3 mean_m;  ///< of the displacements, but for their number; stands in where nothing moves
+};
 
 /// A corner of a patch that moves.
 struct MovingCorner {
@@ -69,8 +85,11 @@ TOUCHSTONE_WIDE_LOOPS
 void interpolate_corrected(const SurfacePatches& rest, const std::vector<Vec3>& anchor_displacement_m,
                            const ContactPoint& contact, SurfaceField& field) noexcept {
   float *x = field.displacement_m[0].data(), *y = field.displacement_m[1].data(), *z = field.displacement_m[2].data();
-  for (std::size_t p = 0; p < rest.patches.size(); ++p) {
-    const Patch& patch = rest.patches[p];
+  const Patch& from = patch_of(rest, contact);
+  const bool lifts = moves(contact);
+  const Vec3 rise_m = contact.displacement_m -
+                      at_p0(corner_displacements(from, anchor_displacement_m), contact.place, Vec3(Vec3::Zero()));
+  for (const Patch& patch : rest.patches) {
     const std::array<Vec3, corners> u = corner_displacements(patch, anchor_displacement_m);
     const auto begin = static_cast<std::size_t>(patch.begin), end = static_cast<std::size_t>(patch.end);
     // Held corners are most of a body's, and a patch with three repeats one: what adds nothing is not read.
@@ -96,44 +115,30 @@ void interpolate_corrected(const SurfacePatches& rest, const std::vector<Vec3>& 
       default:
         weigh<4>(moving, begin, end, x, y, z);
     }
-    if (!moves(contact, p)) continue;
-    const Hat hat(rest, contact.place);
-    const Eigen::Vector3f rise = (contact.displacement_m - at_p0(u, contact.place, Vec3(Vec3::Zero()))).cast<float>();
-#pragma GCC ivdep
-    for (std::size_t v = begin; v < end; ++v) {
-      const float height = hat(v);
-      x[v] += height * rise.x();
-      y[v] += height * rise.y();
-      z[v] += height * rise.z();
-    }
+    if (!lifts) continue;
+    const HatPart part = hat_part(from, contact.place, patch);
+    if (part.reaches()) raise(rest, patch, part, rise_m, x, y, z);
   }
 }
 
 TOUCHSTONE_WIDE_LOOPS
 void interpolate_published(const SurfacePatches& rest, const std::vector<Vec3>& anchor_displacement_m,
                            const ContactPoint& contact, SurfaceField& field) noexcept {
-  for (std::size_t p = 0; p < rest.patches.size(); ++p) {
-    const Patch& patch = rest.patches[p];
-    const std::array<Vec3, corners> u = corner_displacements(patch, anchor_displacement_m);
-    const bool touched = moves(contact, p);
-    Vec3 mean_m = touched ? contact.displacement_m : Vec3(Vec3::Zero());
-    for (std::size_t k = 0; k < patch.corners; ++k) mean_m += u[k];
-
-    std::array<double, corners> length{}, angle{};
-    for (std::size_t k = 0; k < corners; ++k) {
-      length[k] = u[k].norm();
-      angle[k] = displacement_angle(u[k], patch.corner_normal[k], mean_m);
-    }
-    const Weighted length_at(rest, length), angle_at(rest, angle);
-    // Without a contact point on this patch the hat has no height.
-    const Hat hat(rest, contact.place);
-    float length_rise = 0.0f, angle_rise = 0.0f;
-    if (touched) {
-      length_rise = static_cast<float>(contact.displacement_m.norm() - at_p0(length, contact.place, 0.0));
-      angle_rise =
-          static_cast<float>(angle_to(contact.displacement_m, contact.normal) - at_p0(angle, contact.place, 0.0));
-    }
-    const Eigen::Vector3f toward = mean_m.stableNormalized().cast<float>();
+  const Patch& from = patch_of(rest, contact);
+  const bool lifts = moves(contact);
+  float length_rise = 0.0f, angle_rise = 0.0f;
+  if (lifts) {
+    const Printed at_from(from, anchor_displacement_m, contact.displacement_m);
+    length_rise = static_cast<float>(contact.displacement_m.norm() - at_p0(at_from.length_m, contact.place, 0.0));
+    angle_rise = static_cast<float>(angle_to(contact.displacement_m, contact.normal) -
+                                    at_p0(at_from.angle_rad, contact.place, 0.0));
+  }
+  for (const Patch& patch : rest.patches) {
+    const HatPart part = lifts ? hat_part_to_creases(from, contact.place, patch) : HatPart{};
+    const Printed printed(patch, anchor_displacement_m, part.ceiling * contact.displacement_m);
+    const Weighted length_at(rest, printed.length_m), angle_at(rest, printed.angle_rad);
+    const Hat hat(rest, part);
+    const Eigen::Vector3f toward = printed.mean_m.stableNormalized().cast<float>();
     const float *nx = rest.normal[0].data(), *ny = rest.normal[1].data(), *nz = rest.normal[2].data();
     float* x = field.displacement_m[0].data();
     float* y = field.displacement_m[1].data();

@@ -18,11 +18,10 @@ struct ContactPoint {
 
 /// Fills field.displacement_m of every vertex.
 ///
-/// A quantity q of patch k is the sum of its anchor points' q by weight. On the patch that holds p0 the contact point
-/// enters as one more interpolation point: its q less what the anchor points alone give at p0, times a hat over the
-/// star of p0, which falls linearly along every ray from 1 at p0 to 0 on the edges of the patch. Neighbouring patches
-/// therefore stay joined wherever p0 lies, and what the support holds stays put: a held anchor point has no
-/// displacement, and on held surface no other has weight and the hat is zero (PatchPlace).
+/// A quantity q of patch k is the sum of its anchor points' q by weight. The contact point enters as one more
+/// interpolation point: its q less what the anchor points alone give at p0, times the hat over p0 (hat.h). What the
+/// support holds stays put: a held anchor point has no displacement, and on held surface no other has weight and the
+/// hat is zero.
 using Interpolate = void (*)(const SurfacePatches&, const std::vector<scene::Vec3>& anchor_displacement_m,
                              const ContactPoint&, SurfaceField&) noexcept;
 

@@ -1,7 +1,7 @@
 // Building blocks of the loops over the vertices of a patch, for the files that have such loops.
 #pragma once
 
-#include "fast/surface_patches.h"
+#include "fast/hat.h"
 
 #include <algorithm>
 #include <array>
@@ -25,35 +25,50 @@ namespace touchstone::fast {
 
 inline constexpr std::size_t corners_max = patch_corners_max;
 
-/// The hat over the star of a point of a patch: 1 there, falling linearly along every ray to 0 on the patch's edges.
+/// A hat over the vertices of a patch.
 class Hat {
  public:
-  Hat(const SurfacePatches& rest, const PatchPlace& top) noexcept : Hat(rest, inverse_edges(top)) {}
-  /// @param inverse of the top's inverse_edges()
-  Hat(const SurfacePatches& rest, const std::array<double, corners_max>& inverse) noexcept {
+  Hat(const SurfacePatches& rest, const HatPart& part) noexcept
+      : free_(rest.free.data()),
+        ceiling_(static_cast<float>(part.ceiling)),
+        per_free_(static_cast<float>(part.per_free)) {
     for (std::size_t k = 0; k < corners_max; ++k) {
-      edge_[k] = rest.edge[k].data();
-      inverse_[k] = static_cast<float>(inverse[k]);
+      weight_[k] = rest.weight[k].data();
+      base_[k] = static_cast<float>(part.base[k]);
+      slope_[k] = static_cast<float>(part.slope[k]);
     }
   }
-  [[nodiscard]] static std::array<double, corners_max> inverse_edges(const PatchPlace& top) noexcept {
-    std::array<double, corners_max> inverse;
-    // The top on an edge: the hat has no width on that side.
-    for (std::size_t k = 0; k < corners_max; ++k) inverse[k] = 1.0 / std::max(top.edge[k], 1e-9);
-    return inverse;
-  }
   [[nodiscard]] TOUCHSTONE_INLINE float operator()(std::size_t v) const noexcept {
-    const float e0 = edge_[0][v] * inverse_[0], e1 = edge_[1][v] * inverse_[1];
-    const float e2 = edge_[2][v] * inverse_[2], e3 = edge_[3][v] * inverse_[3];
-    const float a = e0 < e1 ? e0 : e1, b = e2 < e3 ? e2 : e3;
-    // At most 1: away from the top some edge comes nearer.
-    return a < b ? a : b;
+    const float h0 = base_[0] + slope_[0] * weight_[0][v], h1 = base_[1] + slope_[1] * weight_[1][v];
+    const float h2 = base_[2] + slope_[2] * weight_[2][v], h3 = base_[3] + slope_[3] * weight_[3][v];
+    const float f = per_free_ * free_[v];
+    const float a = h0 < h1 ? h0 : h1, b = h2 < h3 ? h2 : h3, c = f < ceiling_ ? f : ceiling_;
+    const float d = a < b ? a : b, e = c < d ? c : d;
+    return e > 0.0f ? e : 0.0f;
   }
 
  private:
-  std::array<const float*, corners_max> edge_;
-  std::array<float, corners_max> inverse_;
+  const float* free_;
+  float ceiling_, per_free_;
+  std::array<float, corners_max> base_, slope_;
+  std::array<const float*, corners_max> weight_;
 };
+
+/// Adds a hat of that height over a patch to the displacements.
+TOUCHSTONE_INLINE void raise(const SurfacePatches& rest, const Patch& patch, const HatPart& part,
+                             const scene::Vec3& height_m, float* x, float* y, float* z) noexcept {
+  const Hat hat(rest, part);
+  const Eigen::Vector3f rise = height_m.cast<float>();
+  const auto begin = static_cast<std::size_t>(patch.begin), end = static_cast<std::size_t>(patch.end);
+  // Columns never overlap.
+#pragma GCC ivdep
+  for (std::size_t v = begin; v < end; ++v) {
+    const float height = hat(v);
+    x[v] += height * rise.x();
+    y[v] += height * rise.y();
+    z[v] += height * rise.z();
+  }
+}
 
 /// Sum of a patch quantity by weight at vertex v.
 class Weighted {

@@ -1,5 +1,7 @@
 #include "fast/press.h"
 
+#include <algorithm>
+
 namespace touchstone::fast {
 namespace {
 
@@ -18,14 +20,16 @@ Vec3 entry_direction(const FastModel& model, const Motion& motion, const InsideS
                      FastState& state) noexcept {
   InsideSummary first = inside;
   if (!motion.first && inside.deepest_m > model.tool.spacing_m) {
+    const auto inside_at = [&](double s, int limit, RegionPoints& points) {
+      const Pose between{(1.0 - s) * motion.before.position_m + s * motion.pose.position_m,
+                         motion.before.orientation.slerp(s, motion.pose.orientation)};
+      return model.detection.find_inside(*model.body, model.tool, placement(between), 0.0, limit, points);
+    };
     double apart = 0.0, touching = 1.0;
     for (int halving = 0; halving < 30; ++halving) {
       const double s = 0.5 * (apart + touching);
-      const Pose between{(1.0 - s) * motion.before.position_m + s * motion.pose.position_m,
-                         motion.before.orientation.slerp(s, motion.pose.orientation)};
       RegionPoints points = state.probe.window();
-      const InsideSummary here =
-          model.detection.find_inside(*model.body, model.tool, placement(between), 0.0, 1, points);
+      const InsideSummary here = inside_at(s, 1, points);
       if (points.count > 0) {
         touching = s;
         first = here;
@@ -33,6 +37,13 @@ Vec3 entry_direction(const FastModel& model, const Motion& motion, const InsideS
         apart = s;
       }
     }
+    // The sample that is first speaks for one flank of an edge or a tip; a spacing on, all flanks have their say.
+    const double way_m =
+        std::max(inside.deepest_m, (1.0 - touching) * (motion.pose.position_m - motion.before.position_m).norm());
+    RegionPoints points = state.probe.window();
+    const InsideSummary here =
+        inside_at(touching + (1.0 - touching) * model.tool.spacing_m / way_m, model.tool.count(), points);
+    if (points.count > 0) first = here;
   }
   const Vec3 otherwise = -model.body->query(motion.pose.position_m).normal;
   return direction_from(first, otherwise);

@@ -18,8 +18,8 @@ struct Motion {
 };
 
 /// Direction of deformation of a region that has just come into being in a tick that began apart. Where one tick has
-/// brought the tool further in than its samples lie apart, the pose of first touch on the way is looked for, or a fast
-/// tool would be taken to have come from the nearest side of the body.
+/// brought the tool further in than its samples lie apart, the pose a spacing behind first touch is looked for, or a
+/// fast tool would be taken to have come from the nearest side of the body.
 [[nodiscard]] scene::Vec3 entry_direction(const FastModel&, const Motion&, const InsideSummary&, FastState&) noexcept;
 
 /// A region's direction in a further tick.

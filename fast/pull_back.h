@@ -6,72 +6,72 @@
 #include "fast/contact_detection.h"
 #include "scene/shape.h"
 
-#include <cmath>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace touchstone::fast {
 
-/// A point taken back: as far from the body at rest as the given one is from the deformed body.
-struct PulledBack {
-  scene::Vec3 x_m;           ///< beside the rest point whose displaced place is the closest of the deformed surface
-  double signed_distance_m;  ///< to both, negative inside
+/// A block of points of one patch of the rest surface, by component, and how far they move.
+struct PointLanes {
+  static constexpr std::size_t size = 32;
+  using Lane = std::array<double, size>;
+  using Lane3 = std::array<Lane, 3>;
+  Lane3 point_m, normal;  ///< of the rest surface, world
+  Lane3 displacement_m;
 };
 
-/// Two steps to the rest point c whose displaced place y(c) = c + u(c) is closest to p. First x' = p - u(c(x')),
-/// started from p, with c(x) the closest rest point: p then stands over y(c) along the rest normal. On a slope of the
-/// deformed surface that is not the shortest way, so the second step is a Newton step along the slope, from u around c.
-/// @param displacement_at Vec3 (const scene::SurfaceQuery&) noexcept: u of a rest point [m], world; also asked up to
-/// 1e-4
-///   of the body's size beyond a patch's border
-template <class DisplacementAt>
-[[nodiscard]] PulledBack pulled_back(const scene::Shape& shape, double size_m, const DisplacementAt& displacement_at,
-                                     const scene::Vec3& p_W_m) noexcept {
-  using scene::Vec3;
-  const scene::SurfaceQuery start = shape.query(p_W_m);
-  const scene::SurfaceQuery over = shape.query(p_W_m - displacement_at(start));
+/// The displaced rest surface.
+class DisplacedSurface {
+ public:
+  virtual ~DisplacedSurface() = default;
+  /// Fills displacement_m. @param lanes points on that patch, or as far as 1e-4 of the body's size beyond its border
+  virtual void displace(int patch, PointLanes& lanes) const noexcept = 0;
+};
 
-  const double step_m = 1e-4 * size_m;
-  const Vec3 u_m = displacement_at(over);
-  const auto u_beside_m = [&](const Vec3& t) {
-    return displacement_at(scene::SurfaceQuery{0.0, over.point_m + step_m * t, over.normal, over.patch});
+/// Places in the square of half side 1 and the least-squares fit of a quadratic to what is found there.
+struct QuadraticFit {
+  QuadraticFit();
+  std::array<Eigen::Vector2d, PointLanes::size> place;
+  Eigen::Matrix<double, PointLanes::size, 6> terms;  ///< 1, a, b, a^2, a b, b^2 at each place
+  Eigen::Matrix<double, 6, PointLanes::size> solve;  ///< its pseudo-inverse
+};
+
+/// What pull_back() writes on its way; its content does not outlast a call. Storage is fixed at construction.
+struct PullBackScratch {
+  /// @param points at most
+  explicit PullBackScratch(int points);
+  [[nodiscard]] std::size_t memory_bytes() const noexcept;
+
+  /// Where the displaced surface is closest to a point p.
+  struct Foot {
+    scene::SurfaceQuery rest;   ///< c
+    scene::Vec3 off_m;          ///< p - c - u(c), of the best c so far
+    scene::Vec3 from_m, way_m;  ///< the last step, to c
+    scene::Vec3 normal;         ///< of the displaced surface where it began
+    double distance_m;          ///< signed, of p; 0 where it is not inside for sure
+    bool overshot;              ///< the last step led further off
+    bool settled;               ///< the last step was short
   };
-  const Vec3 t1 = over.normal.unitOrthogonal(), t2 = over.normal.cross(t1);
-  const Vec3 y1 = t1 + (u_beside_m(t1) - u_m) / step_m;
-  const Vec3 y2 = t2 + (u_beside_m(t2) - u_m) / step_m;
-  const Vec3 off_m = p_W_m - over.point_m - u_m;
-  const double a11 = y1.squaredNorm(), a12 = y1.dot(y2), a22 = y2.squaredNorm(), b1 = y1.dot(off_m), b2 = y2.dot(off_m);
-  const double determinant = a11 * a22 - a12 * a12;
-  Vec3 normal = y1.cross(y2);
-  const double area = normal.norm();
-  // A surface folded flat has no slope to follow.
-  if (!(determinant > 1e-6) || !(area > 0.0))
-    return {over.point_m + over.normal.dot(off_m) * over.normal, over.normal.dot(off_m)};
-  normal /= area;
-  const Vec3 along_m = ((a22 * b1 - a12 * b2) * t1 + (a11 * b2 - a12 * b1) * t2) / determinant;
-  const scene::SurfaceQuery closest = shape.query(over.point_m + along_m);
-  const Vec3 rest_off_m = p_W_m - closest.point_m - displacement_at(closest);
-  const double distance_m = rest_off_m.dot(normal);
-  return {closest.point_m + distance_m * closest.normal, distance_m};
-}
+  std::vector<Foot> foot;             ///< per point
+  std::vector<double> height_m;       ///< per point, over the displaced surface at least
+  std::vector<std::int32_t> seeking;  ///< points whose foot is not yet the closest one
+  std::vector<std::int32_t> near;     ///< of them those that may be inside
+  PointLanes lanes, beside, across;
+  QuadraticFit fit;
+};
 
-/// Takes every point back and drops those that are not inside, so that what is then found out about the points and the
-/// rest shape (Summarise, MeasureDepths) is true of the given points and the deformed one. World coordinates and
-/// depth_m change; tool coordinates stay, for forces act where the tool is.
-template <class DisplacementAt>
-void pull_back(const scene::Shape& shape, const DisplacementAt& displacement_at, RegionPoints& points) noexcept {
-  const scene::Bounds bounds = shape.bounds();
-  const double size_m = (bounds.upper_m - bounds.lower_m).maxCoeff();
-  int kept = 0;
-  for (int i = 0; i < points.count; ++i) {
-    const PulledBack back = pulled_back(shape, size_m, displacement_at, points.p_W_m(static_cast<std::size_t>(i)));
-    if (!(back.signed_distance_m < 0.0)) continue;
-    if (kept != i) points.move(i, kept);
-    const auto k = static_cast<std::size_t>(kept++);
-    points.x_W_m[k] = back.x_m.x();
-    points.y_W_m[k] = back.x_m.y();
-    points.z_W_m[k] = back.x_m.z();
-    points.depth_m[k] = -back.signed_distance_m;
-  }
-  points.count = kept;
-}
+/// Takes every point back beside the rest point c whose displaced place c + u(c) is closest to it, as far from the body
+/// at rest as it was from the deformed one, and drops those that are not inside. What is then found out about the
+/// points and the rest shape (Summarise, MeasureDepths) is true of the given points and the deformed one. World
+/// coordinates and depth_m change; tool coordinates stay, for forces act where the tool is.
+///
+/// The foot of a point is first guessed from the displacement across the region, taken as quadratic, and then followed
+/// down the slope of the displaced surface by Newton's method.
+/// @param points with depth_m to the rest surface
+template <class Body>
+InsideSummary pull_back(const scene::Shape& shape, const DisplacedSurface& surface, RegionPoints& points,
+                        PullBackScratch& scratch) noexcept;
 
 }  // namespace touchstone::fast

@@ -2,8 +2,10 @@
 // later region meets.
 #pragma once
 
+#include "fast/hat.h"
 #include "fast/interpolation.h"
 #include "fast/local_factor.h"
+#include "fast/pull_back.h"
 #include "scene/shape.h"
 
 #include <array>
@@ -25,13 +27,13 @@ struct RegionShape {
 /// Shape_i, i = 0 to count: the regions by creation, each with the make-up of its increment u_i = Shape_i -
 /// Shape_{i-1}.
 ///
-/// A quantity q of u_i is the sum of its anchor points' q by weight and, on top, the hats (Hat) over the contact points
-/// p0_k of the regions k <= i by coefficient c_ik, so that it has its value at p0_i and that of no displacement at
-/// every earlier p0_k, which the tool holds. The coefficients solve, for j <= i,
-/// sum_k h_k(p0_j) c_ik = target_j - W(p0_j) q: one triangular factorisation that grows by a row and a column per
-/// region, since u_i's matrix is a corner of the next one's. Its pivots are kept from zero: a region that comes within
-/// a hundredth of its patch of an earlier contact point gives way to that, and nothing grows beyond measure. A contact
-/// point that does not move the surface (held, or without force) takes no part. Storage is fixed at construction.
+/// A quantity q of u_i is the sum of its anchor points' q by weight and, on top, the hats (hat.h) over the contact
+/// points p0_k of the regions k <= i by coefficient c_ik, so that it has its value at p0_i and that of no displacement
+/// at every earlier p0_k, which the tool holds. The coefficients solve, for j <= i, sum_k h_k(p0_j) c_ik = target_j -
+/// W(p0_j) q: one triangular factorisation that grows by a row and a column per region, since u_i's matrix is a corner
+/// of the next one's. Its pivots are kept from zero: a region that comes within a hundredth of its patch of an earlier
+/// contact point gives way to that, and nothing grows beyond measure. A contact point that does not move the surface
+/// (held, or without force) takes no part. Storage is fixed at construction.
 struct ShapeStack {
   ShapeStack(const SurfacePatches& rest, const AnchorPoints& anchors, int max_regions);
   /// Shape_0: the body at rest.
@@ -45,17 +47,19 @@ struct ShapeStack {
 
   std::size_t count = 0;  ///< regions so far
   std::size_t capacity = 0;
+  std::size_t patches = 0;
   std::vector<RegionShape> region;
-  std::vector<bool> takes_part;  ///< has a hat
-  std::vector<double> factor;    ///< L below and U above the diagonal, rows of `capacity`
-  std::vector<std::array<double, patch_corners_max>> inverse_edge;  ///< of the distances of p0 to its patch's edges
-  std::vector<double> right;                                        ///< work space, `capacity`
-  std::vector<scene::Vec3> vector_c_m;                              ///< c_ik of the corrected form, rows of `capacity`
-  std::vector<Eigen::Vector3f> vector_c_short_m;                    ///< the same in single precision
-  std::vector<scene::Vec3> vector_total_m;                          ///< sum over i of c_ik
-  std::vector<scene::Vec3> anchor_total_m;                          ///< sum of U_i
-  std::vector<double> length_c_m, angle_c_rad;                      ///< c_ik of the printed form, rows of `capacity`
-  std::vector<Printed> printed;                                     ///< rows of one per patch
+  std::vector<char> takes_part;                       ///< has a hat
+  std::vector<HatPart> hat;                           ///< rows of one per patch
+  std::vector<double> factor;                         ///< L below and U above the diagonal, rows of `capacity`
+  std::vector<double> right;                          ///< work space, `capacity`
+  std::vector<scene::Vec3> vector_c_m;                ///< c_ik of the corrected form, rows of `capacity`
+  std::vector<Eigen::Vector3f> vector_c_short_m;      ///< the same in single precision
+  std::vector<scene::Vec3> vector_total_m;            ///< sum over i of c_ik
+  std::vector<Eigen::Vector3f> vector_total_short_m;  ///< the same in single precision
+  std::vector<scene::Vec3> anchor_total_m;            ///< sum of U_i
+  std::vector<double> length_c_m, angle_c_rad;        ///< c_ik of the printed form, rows of `capacity`
+  std::vector<Printed> printed;                       ///< rows of one per patch
 
   /// Work space of the passes: numbers of one block of vertices.
   using Lane = std::array<float, block_vertices>;
@@ -65,15 +69,18 @@ struct ShapeStack {
     Eigen::Vector3f p0_W_m;
   };
   std::array<Lane, patch_corners_max> corner_weight{};
-  std::vector<Lane> height;  ///< of the hats, one per region
-  std::vector<Reach> reach;
+  std::vector<Lane> height;       ///< of the hats, one per region
+  std::vector<Reach> reach;       ///< of the regions so far, where there is a local factor
   std::vector<std::size_t> near;  ///< regions whose R reaches the patch at hand
+  SurfacePatches points;          ///< the body's patches, with one block of vertices: the points asked for
 
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };
 
-/// Takes the next region in. At most `max_regions` times between clears.
-using AddRegion = void (*)(const SurfacePatches&, const RegionShape&, ShapeStack&) noexcept;
+/// Takes the next region in. At most `max_regions` times between clears. @param local null where there is no local
+/// factor
+using AddRegion = void (*)(const SurfacePatches&, const LocalConstants* local, const RegionShape&,
+                           ShapeStack&) noexcept;
 /// Fills field.displacement_m with the global deformation of all regions.
 using InterpolateSeveral = void (*)(const SurfacePatches&, ShapeStack&, SurfaceField&) noexcept;
 /// Adds (w_i - 1) u_i inside every region's R_i to it. A point in contact with region i or an earlier one keeps u_i: it
@@ -86,12 +93,17 @@ using ApplyLocalFactors = void (*)(const SurfacePatches&, const LocalConstants&,
 using DisplacementAt = scene::Vec3 (*)(const SurfacePatches&, const AnchorPoints&, const ShapeStack&,
                                        const LocalConstants* local, const scene::SurfaceQuery& at) noexcept;
 
+/// The same of a block of points of one patch, in single precision.
+using DisplacementsAt = void (*)(const AnchorPoints&, const LocalConstants* local, int patch, ShapeStack&,
+                                 PointLanes&) noexcept;
+
 /// One formulation of the above. With a single region both passes equal interpolate_* and apply_local_factor_*.
 struct SeveralRegions {
   AddRegion add = nullptr;
   InterpolateSeveral interpolate = nullptr;
   ApplyLocalFactors apply_local_factors = nullptr;
   DisplacementAt displacement_at = nullptr;
+  DisplacementsAt displacements_at = nullptr;
 };
 
 /// As printed: lengths and angles, region upon region at every vertex, an earlier contact point entering with length
@@ -100,7 +112,7 @@ struct SeveralRegions {
 extern const SeveralRegions several_regions_published;
 
 /// Errata E15: vectors. Being linear, the anchor points' parts and the coefficients of all regions are summed first:
-/// one pass over the surface, then one hat per region on its own patch.
+/// one pass over the surface, then one hat per region.
 extern const SeveralRegions several_regions_corrected;
 
 }  // namespace touchstone::fast

@@ -36,8 +36,8 @@ struct RestDistance {
 }
 
 /// The shape's own answer, found in a few steps from near the surface: the closest point is x_i = a_i q_i with
-/// q_i(t) = a_i y_i / (t + a_i^2), where |q(t)| = 1, and t = 0 on the surface. 1 / |q| is concave, so Newton's method
-/// comes from the left after its first step.
+/// q_i(t) = a_i y_i / (t + a_i^2), where |q(t)| = 1, and t = 0 on the surface. 1 / |q| is concave and nearly straight;
+/// Halley's method follows its curve.
 [[nodiscard]] inline RestDistance rest_distance(const scene::Ellipsoid& ellipsoid, const scene::Vec3& p_m) noexcept {
   const scene::Vec3 local = p_m - ellipsoid.center_m();
   const scene::Vec3& a = ellipsoid.semi_axes_m();
@@ -47,12 +47,16 @@ struct RestDistance {
   double t = 0.0;
   for (int step = 0; step < 12; ++step) {
     const scene::Vec3 per = (a2 + scene::Vec3::Constant(t)).cwiseInverse(), q = ay.cwiseProduct(per);
-    const double length2 = q.squaredNorm(), length = std::sqrt(length2);
-    if (std::abs(length - 1.0) < 4e-16) break;
-    t += length2 * (length - 1.0) / q.cwiseProduct(q).dot(per);
+    const scene::Vec3 q2 = q.cwiseProduct(q), q2_per = q2.cwiseProduct(per);
+    const double length2 = q2.sum(), length = std::sqrt(length2), over = length - 1.0;
+    if (std::abs(over) < 4e-16) break;
+    const double s1 = q2_per.sum(), s2 = q2_per.dot(per);
+    const double bent = 2.0 * s1 * s1 + 3.0 * over * (s1 * s1 - length2 * s2);
+    // Far outside the curve leads astray; straight on is Newton's step.
+    t += 2.0 * length2 * over * s1 / (bent > s1 * s1 ? bent : 2.0 * s1 * s1);
     if (!(t > deepest)) break;
     // The next step would change the last digit only.
-    if (std::abs(length - 1.0) < 1e-7) {
+    if (std::abs(over) < 1e-5) {
       const scene::Vec3 n = local.cwiseQuotient(a2 + scene::Vec3::Constant(t)).normalized();
       const scene::Vec3 an = a.cwiseProduct(n);
       return {local.dot(n) - an.norm(), n};
@@ -72,6 +76,11 @@ template <class Body>
 [[nodiscard]] bool may_touch(const Body& body, const scene::Vec3& p_m, double radius_m) noexcept {
   // Not "!(>)": a centre at NaN distance is outside.
   return body.signed_distance_m(p_m) <= radius_m;
+}
+
+[[nodiscard]] inline bool may_touch(const scene::Box& box, const scene::Vec3& p_m, double radius_m) noexcept {
+  const scene::Vec3 beyond_m = ((p_m - box.center_m()).cwiseAbs() - box.half_m()).cwiseMax(0.0);
+  return beyond_m.squaredNorm() <= radius_m * radius_m;
 }
 
 /// True only if the point is outside by more than margin_m: a cheap first question.

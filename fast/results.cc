@@ -4,9 +4,40 @@
 #include "fast/state.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 
 namespace touchstone::fast {
+
+std::vector<scene::Column> beam_columns(const std::vector<BeamRecord>& beams) {
+  std::vector<scene::Column> columns;
+  const auto add = [&](const std::string& name, const auto& get) {
+    scene::Column& column = columns.emplace_back(scene::Column{name, {}});
+    for (const BeamRecord& beam : beams) column.values.push_back(get(beam));
+  };
+  const auto add_vector = [&](const std::string& name, const char* unit, const auto& get) {
+    for (int axis = 0; axis < 3; ++axis) {
+      add(name + "_" + "xyz"[axis] + unit, [&](const BeamRecord& beam) -> double { return get(beam)[axis]; });
+    }
+  };
+  add("time_s", [](const BeamRecord& beam) { return beam.time_s; });
+  add("region", [](const BeamRecord& beam) { return static_cast<double>(beam.region_id); });
+  add("anchor", [](const BeamRecord& beam) { return static_cast<double>(beam.anchor); });
+  add_vector("anchor", "_m", [](const BeamRecord& beam) { return beam.anchor_m; });
+  add_vector("displacement", "_m", [](const BeamRecord& beam) { return beam.displacement_m; });
+  add_vector("force", "_n", [](const BeamRecord& beam) { return beam.force_n; });
+  add_vector("beam_x", "", [](const BeamRecord& beam) -> scene::Vec3 { return beam.end.axes.col(0); });
+  add_vector("beam_y", "", [](const BeamRecord& beam) -> scene::Vec3 { return beam.end.axes.col(1); });
+  constexpr std::array stresses{"sigma_x_pa", "sigma_y_pa", "sigma_z_pa", "tau_xy_pa", "tau_yz_pa", "tau_zx_pa"};
+  constexpr std::array strains{"epsilon_x", "epsilon_y", "epsilon_z", "gamma_xy", "gamma_yz", "gamma_zx"};
+  for (std::size_t c = 0; c < stresses.size(); ++c) {
+    add(stresses[c], [c](const BeamRecord& beam) { return beam.end.stress_pa[c]; });
+  }
+  for (std::size_t c = 0; c < strains.size(); ++c) {
+    add(strains[c], [c](const BeamRecord& beam) { return beam.end.strain[c]; });
+  }
+  return columns;
+}
 
 scene::Figures figures(const Run& run) {
   scene::Figures out = {
@@ -22,6 +53,7 @@ scene::Figures figures(const Run& run) {
       {"fast.regions_max", static_cast<double>(run.regions_max), "", ""},
       {"fast.status", 0.0, status_text(run.status), ""},
   };
+  if (run.first_contact_s) out.push_back({"fast.first_contact_s", *run.first_contact_s, "", "s"});
   if (run.order_spread_rel) out.push_back({"fast.order_spread_rel", *run.order_spread_rel, "", ""});
   if (run.equilibrium_rel) out.push_back({"fast.equilibrium_rel", *run.equilibrium_rel, "", ""});
   return out;
@@ -41,6 +73,7 @@ Run run_into_folder(const scene::Scene& scene, const std::filesystem::path& fold
   std::vector<scene::Column> columns = scene::track_columns(result.instants);
   for (scene::Column& c : scene::record_columns(result.instants, "")) columns.push_back(std::move(c));
   scene::write_csv(folder / "curve.csv", columns);
+  scene::write_csv(folder / "beams.csv", beam_columns(result.beams));
   scene::write_summary(folder / "summary.json", figures(result));
   scene::write_manifest(folder / "manifest.json", manifest);
   return result;

@@ -97,6 +97,24 @@ scene::InstantRecord record_of(const scene::Scene& scene, const FastModel& model
   return record;
 }
 
+void add_beams(const FastModel& model, const FastState& state, double time_s, std::vector<BeamRecord>& beams) {
+  std::vector<BeamStress> stress(model.skeleton.anchor_m.size());
+  for (std::size_t k = 0; k < static_cast<std::size_t>(state.region_count); ++k) {
+    const ContactRegion& region = state.regions[k];
+    if (!region.pressing()) continue;
+    // The first region meets the body at rest; only what later ones do to the others is kept.
+    if (state.several == nullptr || state.several->order[0] == static_cast<int>(k)) {
+      beam_stresses(model.skeleton, region.ends, stress);
+    } else {
+      stress = state.several->stress_pa[k];
+    }
+    for (std::size_t i = 0; i < stress.size(); ++i) {
+      beams.push_back({time_s, region.id, static_cast<int>(i), model.skeleton.anchor_m[i],
+                       region.ends.displacement_m[i], region.ends.force_n[i], stress[i]});
+    }
+  }
+}
+
 }  // namespace
 
 Run run(const scene::Scene& scene, const std::function<void(double)>& progress) {
@@ -109,6 +127,7 @@ Run run(const scene::Scene& scene, const std::function<void(double)>& progress) 
   run.memory_bytes = model.memory_bytes() + state.memory_bytes();
 
   const Separation separation(*model.body, run.surface, scene::tool_surface(scene.tool, scene.fast.tool_samples));
+  run.first_contact_s = separation.first_contact_s(scene.track);
   const std::vector<Tick> ticks = ticks_of(scene);
   std::vector<double> step_us, force_us;
   step_us.reserve(ticks.size());
@@ -139,6 +158,7 @@ Run run(const scene::Scene& scene, const std::function<void(double)>& progress) 
       run.instants.push_back(record_of(scene, model, state, ticks[k].time_s, pose));
       if (!state.in_contact()) run.instants.back().separation_m = separation.distance_m(pose);
       run.normals.push_back(matrix_of(state.field.normal));
+      add_beams(model, state, ticks[k].time_s, run.beams);
     }
     if (progress && k % report_every == 0) progress(static_cast<double>(k + 1) / static_cast<double>(ticks.size()));
   }

@@ -1,6 +1,7 @@
 // The real-time pipeline over a scene's track in virtual time: what `touchstone fast` does.
 #pragma once
 
+#include "fast/beam_stress.h"
 #include "fast/percentiles.h"
 #include "scene/plan.h"
 #include "scene/record.h"
@@ -15,17 +16,30 @@
 
 namespace touchstone::fast {
 
+/// What a contact region does to one beam end at one instant.
+struct BeamRecord {
+  double time_s = 0.0;
+  int region_id = 0;
+  int anchor = 0;              ///< of AnchorPoints::points_m
+  scene::Vec3 anchor_m;        ///< at rest, world
+  scene::Vec3 displacement_m;  ///< world; zero where held
+  scene::Vec3 force_n;         ///< F_i, on the beam at its other end, world
+  BeamStress end;              ///< all zero where the region only keeps its place
+};
+
 /// One side's answer over the whole track.
 struct Run {
   scene::Surface surface;                      ///< rest surface; its points are the rest points of the records
   std::vector<scene::InstantRecord> instants;  ///< at scene::instants_s
   std::vector<Eigen::Matrix3Xd> normals;       ///< per instant, current unit normals at the rest points
+  std::vector<BeamRecord> beams;               ///< per instant, pressing region and anchor point
   Percentiles step;                            ///< whole step, wall clock, over all ticks of the track
   Percentiles force;                           ///< detection to published force, ticks in contact only
   double setup_s = 0.0;                        ///< building the model
   std::size_t memory_bytes = 0;                ///< model and state
   int ticks = 0;
   int regions_max = 0;
+  std::optional<double> first_contact_s;  ///< by Separation; absent where the tool stays apart
   /// What the paper leaves open about several regions (errata E18), worst over the instants; see OrderSpread. Absent
   /// where no instant had several.
   std::optional<double> order_spread_rel, equilibrium_rel;

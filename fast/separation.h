@@ -1,9 +1,9 @@
 // How far the tool is from the body before they touch, and when they first do (section III, the first phase), by FCL on
 // the triangles of both at rest.
 //
-// Not for the step: a distance takes FCL 0.2 to 0.8 ms, a query that finds contact takes memory from the heap, and
-// triangles only approach the shapes. The step finds contact by itself, in every phase; this serves the plan and the
-// virtual time before contact. What FCL says about meshes that overlap (penetration depth, negative distance) or about
+// Not for the step: a distance takes FCL up to 0.8 ms, a query that finds contact takes memory from the heap, and
+// triangles only approach the shapes. The step finds contact by itself, in every phase; this serves the records of a
+// track. What FCL says about meshes that overlap (penetration depth, negative distance) or about
 // a hierarchy that was refitted is wrong, so neither is used: hierarchies are built once, from the rest shapes.
 #pragma once
 

@@ -1,7 +1,5 @@
 #include "fast/several_regions.h"
 
-#include "fast/pull_back.h"
-
 #include <algorithm>
 #include <numeric>
 
@@ -62,21 +60,34 @@ void take_over(const RegionPoints& all, int count, FastState& state) noexcept {
   state.region_count = count;
 }
 
+/// Shape_i of the regions in the stack.
+class StackedSurface final : public DisplacedSurface {
+ public:
+  StackedSurface(const FastModel& model, const LocalConstants* local, ShapeStack& shapes) noexcept
+      : model_(model), local_(local), shapes_(shapes) {}
+  void displace(int patch, PointLanes& lanes) const noexcept override {
+    model_.formulas.several.displacements_at(*model_.anchors, local_, patch, shapes_, lanes);
+  }
+
+ private:
+  const FastModel& model_;
+  const LocalConstants* local_;
+  ShapeStack& shapes_;
+};
+
 /// Presses one region on the shape of those already in the stack, and adds it to the stack.
 StepStatus press_next(const FastModel& model, const Motion& motion, bool created, bool alone, ContactRegion& region,
                       std::span<BeamStress> stress, FastState& state) noexcept {
   SeveralRegionsState& several = *state.several;
   ShapeStack& shapes = several.shapes;
   const LocalConstants* local = model.formulas.local_factor() ? &model.local : nullptr;
+  InsideSummary inside;
   if (shapes.count > 0) {
-    pull_back(
-        *model.body,
-        [&](const scene::SurfaceQuery& at) {
-          return model.formulas.several.displacement_at(model.rest, *model.anchors, shapes, local, at);
-        },
-        region.points);
-  } else if (several.bulge_m > 0.0) {
+    inside =
+        model.detection.pull_back(*model.body, StackedSurface(model, local, shapes), region.points, several.pull_back);
+  } else {
     keep_inside(region.points);
+    inside = model.detection.summarise(*model.body, region.points);
   }
   state.lap(Stage::regions);
   StepStatus status = StepStatus::ok;
@@ -84,7 +95,6 @@ StepStatus press_next(const FastModel& model, const Motion& motion, bool created
   region.displacement_m.setZero();
   region.ends.clear();
   if (region.points.count > 0) {
-    const InsideSummary inside = model.detection.summarise(*model.body, region.points);
     if (!created) {
       region.d = next_direction(region, inside);
     } else if (alone) {
@@ -105,14 +115,16 @@ StepStatus press_next(const FastModel& model, const Motion& motion, bool created
     model.formulas.split_force(skeleton, p0_current_m, -region.force.force_n, region.displacement_m, region.ends);
     if (region.ends.limited) status |= StepStatus::anchors_limited;
   }
-  beam_stresses(skeleton, region.ends, stress);
+  // Only earlier regions feel them.
+  if (shapes.count > 0) beam_stresses(skeleton, region.ends, stress);
   RegionShape shape;
   shape.anchor_displacement_m = region.ends.displacement_m;
   shape.contact = contact_point(model, region);
   shape.p0_W_m = region.origin.p0_W_m;
   shape.size = {region.points.count, region.extent.area_m2};
-  model.formulas.several.add(model.rest, shape, shapes);
-  several.ends.update(model.skeleton, shapes.anchor_total_m);
+  model.formulas.several.add(model.rest, local, shape, shapes);
+  const bool last = static_cast<int>(shapes.count) == state.region_count;
+  if (!last) several.ends.update(model.skeleton, shapes.anchor_total_m);
   state.lap(Stage::skeleton);
   return status;
 }
@@ -163,14 +175,16 @@ SeveralRegionsState::SeveralRegionsState(const FastModel& model)
       tracker(model.tool.count(), clusters_per_region * model.max_regions, model.max_regions),
       clusters(clusters_per_region * capacity(model)),
       tracked(capacity(model)),
+      pull_back(model.tool.count()),
       ends(model.skeleton),
       shapes(model.rest, *model.anchors, model.max_regions),
       stress_pa(capacity(model), std::vector<BeamStress>(model.skeleton.anchor_m.size())),
       order(capacity(model)) {}
 
 std::size_t SeveralRegionsState::memory_bytes() const noexcept {
-  return sizeof(SeveralRegionsState) + scratch.memory_bytes() + tracker.memory_bytes() + shapes.memory_bytes() +
-         clusters.size() * sizeof(Cluster) + stress_pa.size() * stress_pa[0].size() * sizeof(BeamStress);
+  return sizeof(SeveralRegionsState) + scratch.memory_bytes() + tracker.memory_bytes() + pull_back.memory_bytes() +
+         shapes.memory_bytes() + clusters.size() * sizeof(Cluster) +
+         stress_pa.size() * stress_pa[0].size() * sizeof(BeamStress);
 }
 
 StepStatus press_several_regions(const FastModel& model, const Motion& motion, FastState& state) noexcept {
@@ -214,6 +228,7 @@ OrderSpread order_spread(const FastModel& model, FastState& state) {
   // Everything is put back afterwards.
   const std::vector<ContactRegion> regions = state.regions;
   const ShapeStack shapes = several.shapes;
+  const std::vector<std::vector<BeamStress>> stress_pa = several.stress_pa;
   const Motion still{state.pose, placement(state.pose), state.pose, true};
   const auto count = static_cast<std::size_t>(state.region_count);
   // No region is new any more: directions and friction stay as they are.
@@ -252,7 +267,7 @@ OrderSpread order_spread(const FastModel& model, FastState& state) {
   std::copy(created.begin(), created.end(), several.order.begin());
   std::copy(regions.begin(), regions.end(), state.regions.begin());
   several.shapes = shapes;
-  several.ends.update(model.skeleton, shapes.anchor_total_m);
+  several.stress_pa = stress_pa;
   return spread;
 }
 

@@ -5,6 +5,7 @@
 #include "fast/beam_stress.h"
 #include "fast/contact_regions.h"
 #include "fast/press.h"
+#include "fast/pull_back.h"
 #include "fast/region_shapes.h"
 
 #include <span>
@@ -20,6 +21,7 @@ struct SeveralRegionsState {
   RegionTracker tracker;
   std::vector<Cluster> clusters;
   std::vector<TrackedRegion> tracked;
+  PullBackScratch pull_back;
   CurrentEnds ends;
   ShapeStack shapes;
   std::vector<std::vector<BeamStress>> stress_pa;  ///< per region

@@ -17,7 +17,7 @@ std::string status_text(std::uint32_t status) {
   add(StepStatus::not_finite, "pose not finite, last good answer held");
   add(StepStatus::depth_limited, "depth limited to half of the body's thickness");
   add(StepStatus::law_saturated, "contact law saturated at its peak");
-  add(StepStatus::regions_full, "more contact regions than fast.max_regions, the newest left out");
+  add(StepStatus::regions_full, "more contact regions than fast.max_regions, the smallest left out");
   add(StepStatus::anchors_limited, "anchor displacement limited to that of the contact (raise fast.s_c_m2)");
   return text.empty() ? "ok" : text;
 }
@@ -38,7 +38,7 @@ void ContactRegion::clear() noexcept {
 
 FastState::FastState(const FastModel& model)
     : store(model.tool.count()),
-      probe(tool_leaf_size),
+      probe(model.tool.count()),
       regions(static_cast<std::size_t>(model.max_regions), ContactRegion(model.skeleton.anchor_m.size())),
       field(model.rest),
       several(model.max_regions > 1 ? std::make_unique<SeveralRegionsState>(model) : nullptr) {}
@@ -51,7 +51,8 @@ bool FastState::in_contact() const noexcept {
 }
 
 std::size_t FastState::memory_bytes() const noexcept {
-  return sizeof(FastState) + (several ? several->memory_bytes() : 0) + store.memory_bytes() + field.memory_bytes() +
+  return sizeof(FastState) + (several ? several->memory_bytes() : 0) + store.memory_bytes() + probe.memory_bytes() +
+         field.memory_bytes() +
          regions.size() * (sizeof(ContactRegion) + 2 * regions[0].ends.force_n.size() * sizeof(Vec3));
 }
 

@@ -13,8 +13,10 @@ using scene::Pose;
 using scene::Vec3;
 
 bool finite(const Pose& pose) noexcept {
+  // The squares of a shorter quaternion have lost digits, and its direction with them.
+  constexpr double shortest = 1e-150;
   const double length = pose.orientation.norm();
-  return pose.position_m.allFinite() && std::isfinite(length) && length > 0.0;
+  return pose.position_m.allFinite() && std::isfinite(length) && length > shortest;
 }
 
 /// The whole tool in one region.

@@ -47,7 +47,7 @@ void add_blocks(const Columns3& rest_W_m, Patch& patch, std::vector<VertexBlock>
 }  // namespace
 
 std::size_t SurfacePatches::memory_bytes() const noexcept {
-  return patches.size() * sizeof(Patch) + blocks.size() * sizeof(VertexBlock) + 14 * vertex_count() * sizeof(float);
+  return patches.size() * sizeof(Patch) + blocks.size() * sizeof(VertexBlock) + 11 * vertex_count() * sizeof(float);
 }
 
 SurfacePatches surface_patches(const scene::Surface& surface, const AnchorPoints& anchors) {
@@ -73,8 +73,8 @@ SurfacePatches surface_patches(const scene::Surface& surface, const AnchorPoints
       }
       for (std::size_t k = 0; k < at.weight.size(); ++k) {
         rest.weight[k].push_back(static_cast<float>(at.weight[k]));
-        rest.edge[k].push_back(static_cast<float>(at.edge[k]));
       }
+      rest.free.push_back(static_cast<float>(at.free));
     }
     add_blocks(rest.rest_W_m, patch, rest.blocks);
     rest.patches.push_back(patch);

@@ -47,10 +47,10 @@ struct Patch {
 struct SurfacePatches {
   std::vector<Patch> patches;
   std::vector<VertexBlock> blocks;
-  Columns3 rest_W_m;  ///< rest points
-  Columns3 normal;    ///< outward unit normals of the rest shape
-  Columns4 weight;    ///< PatchPlace::weight
-  Columns4 edge;      ///< PatchPlace::edge
+  Columns3 rest_W_m;        ///< rest points
+  Columns3 normal;          ///< outward unit normals of the rest shape
+  Columns4 weight;          ///< PatchPlace::weight
+  std::vector<float> free;  ///< PatchPlace::free
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return rest_W_m[0].size(); }
   [[nodiscard]] std::size_t memory_bytes() const noexcept;

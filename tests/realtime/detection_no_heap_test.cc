@@ -12,6 +12,13 @@ namespace {
 
 using scene::Vec3;
 
+struct Tilted final : DisplacedSurface {
+  void displace(int, PointLanes& lanes) const noexcept override {
+    lanes.displacement_m = {};
+    for (std::size_t v = 0; v < PointLanes::size; ++v) lanes.displacement_m[2][v] = -0.01 * lanes.point_m[0][v];
+  }
+};
+
 class DetectionWithoutHeap : public testing::TestWithParam<scene::BodyShape> {};
 
 TEST_P(DetectionWithoutHeap, FindsSplitsFollowsAndTakesBack) {
@@ -27,6 +34,7 @@ TEST_P(DetectionWithoutHeap, FindsSplitsFollowsAndTakesBack) {
   const ToolSamples tool = sample_tool(scene.tool, 2000);
   const ClusterGrid grid = cluster_grid(tool, 0.002);
   ClusterScratch scratch(grid);
+  PullBackScratch scratch_back(tool.count());
   RegionTracker tracker(tool.count(), 20, 10);
   test::OwnedPoints points(tool.count());
   std::vector<Cluster> clusters(20);
@@ -49,10 +57,8 @@ TEST_P(DetectionWithoutHeap, FindsSplitsFollowsAndTakesBack) {
         const PointRange& range =
             clusters[static_cast<std::size_t>(regions[static_cast<std::size_t>(r)].cluster)].points;
         RegionPoints part = points.slice(range.begin, range.size);
-        pull_back(
-            *body, [](const scene::SurfaceQuery& rest) noexcept { return Vec3(0.0, 0.0, -0.01 * rest.point_m.x()); },
-            part);
-        const InsideSummary inside = detection.summarise(*body, part);
+        const InsideSummary inside = detection.pull_back(*body, Tilted(), part, scratch_back);
+        detection.summarise(*body, part);
         detection.measure_depths(*body, at.R_WT, direction_from(inside, -Vec3::UnitZ()), part);
       }
     }

@@ -68,7 +68,7 @@ TEST(NoHeap, InTheShapeOfSeveralRegions) {
       region.contact = {scene::Vec3(0.0, 0.0, -0.002), at.normal, at.patch, model.anchors->at(at.patch, at.point_m)};
       region.p0_W_m = at.point_m;
       region.size = {40, 3e-5};
-      several.add(model.rest, region, stack);
+      several.add(model.rest, &model.local, region, stack);
       moved_m += several.displacement_at(model.rest, *model.anchors, stack, &model.local, at);
     }
     several.interpolate(model.rest, stack, field);

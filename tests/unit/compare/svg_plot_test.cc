@@ -119,5 +119,46 @@ TEST(SvgPlot, DrawsToOneScaleWhenAsked) {
   EXPECT_NEAR(at[1].first - at[0].first, at[0].second - at[2].second, 0.2);
 }
 
+TEST(SvgPlot, ShadesSpansInProportionAndListsEachNameOnce) {
+  Plot plot = line({0, 1, 4}, {0, 5, 20});
+  plot.spans = {{"still", 0.0, 1.0, 0.05}, {"moving", 1.0, 2.0, 0.2}, {"still", 2.0, 4.0, 0.05}};
+  const std::string svg = to_svg(plot);
+  EXPECT_TRUE(testing::is_well_formed(svg));
+  EXPECT_EQ(count(svg, ">still</text>"), 1u);
+  EXPECT_EQ(count(svg, ">moving</text>"), 1u);
+  static const std::regex pattern(
+      "<rect x=\"([0-9.]+)\" y=\"[0-9.]+\" width=\"([0-9.]+)\" [^>]*fill-opacity=\"0.(05|2)\"");
+  std::vector<std::pair<double, double>> spans;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), pattern), end; it != end; ++it) {
+    spans.emplace_back(std::stod((*it)[1]), std::stod((*it)[2]));
+  }
+  ASSERT_EQ(spans.size(), 3u);
+  const auto at = circles(svg);
+  EXPECT_NEAR(spans[0].first, at[0].first, 0.2);
+  EXPECT_NEAR(spans[1].first, at[1].first, 0.2);
+  EXPECT_NEAR(spans[2].first + spans[2].second, at[2].first, 0.3);
+  EXPECT_NEAR(spans[2].second, 2 * spans[1].second, 0.3);
+}
+
+TEST(SvgPlot, AsAFileIsDarkOnWhiteEverywhere) {
+  const std::string svg = to_svg(line({0, 1}, {0, 1}));
+  const std::string file = as_file(svg);
+  EXPECT_TRUE(testing::is_well_formed(file));
+  EXPECT_NE(file.find("<svg color=\"#1c1e21\" xmlns="), std::string::npos);
+  // The ground lies under everything else.
+  EXPECT_LT(file.find("fill=\"#ffffff\""), file.find("<text"));
+  EXPECT_EQ(svg.find("#ffffff"), std::string::npos);
+}
+
+TEST(SvgPlot, PutsSeveralInRows) {
+  const std::string one = to_svg(line({0, 1}, {0, 1}), 300, 200);
+  const std::string svg = in_rows("a & b", {one, one, one, one}, 3, 300, 200);
+  EXPECT_TRUE(testing::is_well_formed(svg));
+  EXPECT_NE(svg.find("viewBox=\"0 0 900 400\""), std::string::npos);
+  for (const char* place : {"(0 0)", "(300 0)", "(600 0)", "(0 200)"}) {
+    EXPECT_EQ(count(svg, std::string("<g transform=\"translate") + place), 1u) << place;
+  }
+}
+
 }  // namespace
 }  // namespace touchstone::compare

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,7 @@ struct NamedBody {
   std::string name;
   scene::Body body;
 };
+inline void PrintTo(const NamedBody& named, std::ostream* out) { *out << named.name; }
 
 /// Every shape, and every way to stand.
 inline std::vector<NamedBody> bodies() {

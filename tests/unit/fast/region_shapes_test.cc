@@ -1,6 +1,9 @@
 #include "fast/region_shapes.h"
 
 #include "fast/model.h"
+#include "fast/pull_back.h"
+#include "unit/fast/deformed_surface.h"
+#include "unit/fast/points.h"
 #include "unit/fast/press.h"
 
 #include <gtest/gtest.h>
@@ -22,6 +25,8 @@ struct Form {
 };
 const Form forms[] = {{"published", &several_regions_published, interpolate_published, apply_local_factor_published},
                       {"corrected", &several_regions_corrected, interpolate_corrected, apply_local_factor_corrected}};
+
+constexpr LocalConstants local{0.2, 0.002, 0.015};
 
 struct Rig {
   explicit Rig(const scene::Scene& scene)
@@ -54,14 +59,15 @@ struct Rig {
   }
   void stack_up(const SeveralRegions& several, std::size_t count = 99) {
     stack.clear();
-    for (std::size_t i = 0; i < std::min(count, regions.size()); ++i) several.add(model.rest, regions[i], stack);
+    for (std::size_t i = 0; i < std::min(count, regions.size()); ++i)
+      several.add(model.rest, &local, regions[i], stack);
   }
-  void shape(const SeveralRegions& several, const LocalConstants* local) {
+  void shape(const SeveralRegions& several, const LocalConstants* factor) {
     several.interpolate(model.rest, stack, field);
-    if (local != nullptr) several.apply_local_factors(model.rest, *local, stack, field);
+    if (factor != nullptr) several.apply_local_factors(model.rest, *factor, stack, field);
   }
-  [[nodiscard]] Vec3 at(const SeveralRegions& several, const LocalConstants* local, const Vec3& p_m) const {
-    return several.displacement_at(model.rest, *model.anchors, stack, local, model.body->query(p_m));
+  [[nodiscard]] Vec3 at(const SeveralRegions& several, const LocalConstants* factor, const Vec3& p_m) const {
+    return several.displacement_at(model.rest, *model.anchors, stack, factor, model.body->query(p_m));
   }
   [[nodiscard]] Vec3 vertex_m(int v) const {
     const auto k = static_cast<std::size_t>(v);
@@ -84,8 +90,6 @@ void press_four(Rig& s, std::size_t count) {
                                 Vec3(2e-4, -1e-4, -2.2e-3)};
   for (std::size_t i = 0; i < count; ++i) s.press(places[i], displacements[i]);
 }
-
-constexpr LocalConstants local{0.2, 0.002, 0.015};
 
 TEST(RegionShapes, OneRegionIsTheSingleRegionsShape) {
   for (const auto& scene : {test::ball_on_cube(), test::ball_on_sphere()}) {
@@ -119,14 +123,111 @@ TEST(RegionShapes, APointMovesAsAVertexThere) {
           press_four(s, count);
           s.stack_up(*form.several);
           s.shape(*form.several, factor);
+          PointLanes block;
           for (int v = 0; v < s.model.surface.vertex_count(); ++v) {
-            const Vec3 point_m =
-                form.several->displacement_at(s.model.rest, *s.model.anchors, s.stack, factor, s.rest_vertex(v));
+            const scene::SurfaceQuery at = s.rest_vertex(v);
+            const Vec3 point_m = form.several->displacement_at(s.model.rest, *s.model.anchors, s.stack, factor, at);
             ASSERT_LT((s.vertex_m(v) - point_m).norm(), 1e-7) << form.name << ' ' << count << ' ' << v;
+            // As one of a block, whose other points lie anywhere on the patch.
+            if (v % 7 != 0) continue;
+            const Patch& patch = s.model.rest.patches[static_cast<std::size_t>(at.patch)];
+            const auto lane = static_cast<std::size_t>(v) % PointLanes::size;
+            for (std::size_t k = 0; k < PointLanes::size; ++k) {
+              const int w = k == lane ? v : patch.begin + static_cast<int>(31 * k + 17) % (patch.end - patch.begin);
+              for (int axis = 0; axis < 3; ++axis) {
+                block.point_m[static_cast<std::size_t>(axis)][k] = s.model.surface.points_m(axis, w);
+                block.normal[static_cast<std::size_t>(axis)][k] = s.model.surface.normals(axis, w);
+              }
+            }
+            form.several->displacements_at(*s.model.anchors, factor, at.patch, s.stack, block);
+            const Vec3 in_block_m(block.displacement_m[0][lane], block.displacement_m[1][lane],
+                                  block.displacement_m[2][lane]);
+            ASSERT_LT((in_block_m - point_m).norm(), 1e-7) << form.name << ' ' << count << ' ' << v;
           }
         }
       }
     }
+  }
+}
+
+/// Shape_i of a rig as the pull-back asks for it.
+class Displaced final : public DisplacedSurface {
+ public:
+  Displaced(const Form& form, Rig& rig) : form_(form), rig_(rig) {}
+  void displace(int patch, PointLanes& lanes) const noexcept override {
+    form_.several->displacements_at(*rig_.model.anchors, &local, patch, rig_.stack, lanes);
+  }
+
+ private:
+  const Form& form_;
+  Rig& rig_;
+};
+
+/// Where the tool of a later region stands against the surface that the passes over the vertices would show: the
+/// closest point of that surface by its own triangles, over randomised scenes.
+TEST(RegionShapes, ALaterRegionMeetsTheShapeOfTheEarlierOnes) {
+  std::mt19937 random(5);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const double tool_radius_m = 0.005;
+  const ToolSamples ball = sample_tool(scene::Sphere(Vec3::Zero(), tool_radius_m), 500);
+  PullBackScratch scratch(ball.count());
+  test::OwnedPoints points(ball.count());
+  for (const auto& scene : {test::ball_on_cube(), test::ball_on_sphere()}) {
+    const Form& form = forms[1];
+    int samples = 0, inside = 0, disagree = 0;
+    double worst_m = 0.0;
+    for (int trial = 0; trial < 12; ++trial) {
+      Rig s(scene);
+      // Within a patch: on its border the surface has an edge, and no single closest point near it.
+      const bool box = s.model.rest.patches.size() == 6;
+      const Vec3 middle_m = s.model.body->query(box ? Vec3(0.004, 0.003, 0.1) : Vec3(0.05, 0.045, 0.085)).point_m;
+      const scene::SurfaceQuery middle = s.model.body->query(middle_m);
+      const Vec3 t1 = middle.normal.unitOrthogonal(), t2 = middle.normal.cross(t1);
+      const double turn = between(0.0, 6.3);
+      const auto beside = [&](double way_m, double angle) {
+        return Vec3(middle_m + way_m * (std::cos(turn + angle) * t1 + std::sin(turn + angle) * t2));
+      };
+      const int earlier = 1 + trial % 3;
+      for (int i = 0; i < earlier; ++i) {
+        const Vec3 place_m = beside(between(0.012, 0.017), 2.1 * i);
+        const Vec3 slant(between(-0.2, 0.2), between(-0.2, 0.2), between(-0.2, 0.2));
+        s.press(place_m, between(0.0008, 0.0025) * (slant - s.model.body->query(place_m).normal).normalized(),
+                between(1e-5, 4e-5));
+      }
+      s.stack_up(*form.several);
+      const test::DeformedSurface deformed(
+          *s.model.body, [&](const Vec3& rest_m) { return s.at(*form.several, &local, rest_m); }, 4000);
+      Placement at;
+      const scene::SurfaceQuery under = s.model.body->query(beside(between(0.0, 0.004), between(0.0, 6.3)));
+      at.origin_W_m = under.point_m + s.at(*form.several, &local, under.point_m) +
+                      (tool_radius_m - between(0.0005, 0.002)) * under.normal;
+      s.model.detection.find_inside(*s.model.body, ball, at, 0.0005, ball.count(), points);
+      const test::OwnedPoints found = [&] {
+        test::OwnedPoints copy(ball.count());
+        s.model.detection.find_inside(*s.model.body, ball, at, 0.0005, ball.count(), copy);
+        return copy;
+      }();
+      s.model.detection.pull_back(*s.model.body, Displaced(form, s), points, scratch);
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(found.count); ++i) {
+        const bool in = kept < static_cast<std::size_t>(points.count) && points.sample[kept] == found.sample[i];
+        const double truth_m = deformed.query(found.p_W_m(i)).signed_distance_m;
+        ++samples;
+        disagree += in != (truth_m < 0.0);
+        if (in && truth_m < 0.0) {
+          ++inside;
+          const double error_m = std::abs(points.depth_m[kept] + truth_m);
+          EXPECT_LT(error_m, std::max(15e-6, -0.01 * truth_m)) << trial << ' ' << i << ' ' << truth_m;
+          worst_m = std::max(worst_m, error_m);
+        }
+        kept += in;
+      }
+    }
+    EXPECT_GT(inside, 100);
+    EXPECT_LE(disagree, 0.002 * samples);
+    RecordProperty("worst_um", std::to_string(1e6 * worst_m));
   }
 }
 
@@ -167,10 +268,9 @@ TEST(RegionShapes, FusedEqualsRegionUponRegion) {
   s.shape(several_regions_corrected, nullptr);
   const auto hat = [&](std::size_t k, int patch, const PatchPlace& place) {
     const ContactPoint& top = s.regions[k].contact;
-    if (top.patch != patch) return 0.0;
-    double height = 1.0;
-    for (std::size_t e = 0; e < 4; ++e) height = std::min(height, place.edge[e] / top.place.edge[e]);
-    return height;
+    const auto& patches = s.model.rest.patches;
+    return hat_part(patches[static_cast<std::size_t>(top.patch)], top.place, patches[static_cast<std::size_t>(patch)])
+        .at(place);
   };
   const auto weighted = [&](std::size_t i, int patch, const PatchPlace& place) {
     Vec3 sum = Vec3::Zero();

@@ -36,6 +36,40 @@ TEST(Run, RecordsEveryInstantAtItsExactPose) {
   }
 }
 
+TEST(Run, RecordsTheBeamEndsOfEveryPressingRegion) {
+  for (const char* name : {"ball-on-cube-press", "compass-two-pins", "ellipsoid-pvc-inside"}) {
+    const scene::Scene scene = test::shipped_scene(name, scene::Formulation::corrected);
+    const auto result = run(scene);
+    const FastModel model(scene);
+    std::size_t row = 0;
+    for (const scene::InstantRecord& record : result.instants) {
+      Vec3 sum_n = Vec3::Zero();
+      for (const scene::RegionRecord& region : record.regions) {
+        for (std::size_t i = 0; i < model.skeleton.anchor_m.size(); ++i, ++row) {
+          ASSERT_LT(row, result.beams.size());
+          const BeamRecord& beam = result.beams[row];
+          EXPECT_EQ(beam.time_s, record.time_s);
+          EXPECT_EQ(beam.region_id, region.id);
+          EXPECT_EQ(beam.anchor, static_cast<int>(i));
+          EXPECT_EQ(beam.anchor_m, model.skeleton.anchor_m[i]);
+          sum_n += beam.force_n;
+          // F_i lies in the plane of the axes written beside its stress.
+          const Vec3 in_frame_n = beam.end.axes.transpose() * beam.force_n;
+          EXPECT_NEAR(in_frame_n.z(), 0.0, 1e-9 * beam.force_n.norm());
+          EXPECT_GE(in_frame_n.x() * beam.end.stress_pa[0], 0.0);
+          EXPECT_GE(beam.end.stress_pa[3], 0.0);
+          if (record.regions.size() > 1) continue;
+          const double area_m2 = model.skeleton.area_m2[i];
+          EXPECT_NEAR(beam.end.stress_pa[0] * area_m2, in_frame_n.x(), 1e-9 * beam.force_n.norm()) << name;
+        }
+      }
+      EXPECT_LT((sum_n + record.support_force_n).norm(), 1e-9 * sum_n.norm() + 1e-15) << name;
+    }
+    EXPECT_EQ(row, result.beams.size()) << name;
+    EXPECT_GT(row, 0u);
+  }
+}
+
 TEST(Run, TicksAtTheScenesRate) {
   scene::Scene scene = test::ball_on_cube();
   EXPECT_EQ(run(scene).ticks, 501);

@@ -1,0 +1,35 @@
+// What every page of results is made of: one self-contained XHTML file, no script, nothing fetched.
+#pragma once
+
+#include "scene/plan.h"
+#include "scene/results.h"
+
+#include <string>
+
+namespace touchstone::compare {
+
+/// An element around a text, which is escaped. @param attributes as written within the tag
+[[nodiscard]] std::string tag(const std::string& name, const std::string& text, const std::string& attributes = "");
+
+[[nodiscard]] std::string cell(const std::string& text);
+[[nodiscard]] std::string number_cell(const std::string& text);
+
+/// A drawing with its caption, which may be empty.
+/// @param wide  takes a whole row among others
+[[nodiscard]] std::string figure(const std::string& svg, const std::string& caption, bool wide = false);
+
+/// One large number with what it is and a note.
+[[nodiscard]] std::string tile(const std::string& what, const std::string& number, const std::string& note);
+
+/// What the page calls the scene.
+[[nodiscard]] std::string scene_title(const scene::Scene& scene);
+
+[[nodiscard]] std::string plan_table(const scene::Plan& plan);
+
+/// @param beside  what else the folder holds, a sentence
+[[nodiscard]] std::string manifest_section(const scene::Manifest& manifest, const std::string& beside);
+
+/// The whole file around a body.
+[[nodiscard]] std::string page(const std::string& title, const std::string& body);
+
+}  // namespace touchstone::compare

@@ -1,0 +1,36 @@
+// The paper's experiments, Figs. 13 to 18: the shipped scenes run by the real-time model, in both formulations.
+#pragma once
+
+#include "fast/run.h"
+#include "unit/fast/shipped_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace touchstone::test {
+
+/// Parameter: the formulation.
+class Experiment : public testing::TestWithParam<scene::Formulation> {
+ protected:
+  [[nodiscard]] static bool published() { return GetParam() == scene::Formulation::published; }
+  [[nodiscard]] static scene::Scene scene(const std::string& name) { return shipped_scene(name, GetParam()); }
+  /// The instants at which the tool pushes on the body.
+  [[nodiscard]] static std::vector<scene::InstantRecord> in_contact(const scene::Scene& scene) {
+    std::vector<scene::InstantRecord> instants = fast::run(scene).instants;
+    std::erase_if(instants, [](const scene::InstantRecord& instant) { return instant.regions.empty(); });
+    return instants;
+  }
+  /// A number for reports/experiments.md, into the file of --gtest_output.
+  static void record(const std::string& name, double number) { RecordProperty(name, std::to_string(number)); }
+};
+
+inline std::string formulation_name(const testing::TestParamInfo<scene::Formulation>& info) {
+  return info.param == scene::Formulation::published ? "published" : "corrected";
+}
+
+inline const auto both_formulations = testing::Values(scene::Formulation::published, scene::Formulation::corrected);
+
+}  // namespace touchstone::test
