@@ -23,6 +23,12 @@ void in_lanes(int lanes, int count, const Work& work) {
   for (std::thread& thread : others) thread.join();
 }
 
+std::vector<MixedMaterial> mixed(const std::vector<scene::Material>& materials, scene::Kinematics kinematics) {
+  std::vector<MixedMaterial> result;
+  for (const scene::Material& material : materials) result.emplace_back(material, kinematics);
+  return result;
+}
+
 /// Weights of the three Gauss-Lobatto points on [0,1], which are the nodes of a quadratic side.
 constexpr double simpson[3] = {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
 
@@ -37,7 +43,7 @@ ContactProblem<dim>::ContactProblem(Mesh<dim> mesh, const scene::Material& mater
       mirror_x_(mirror_x),
       mirror_y_(mirror_y),
       threads_(threads),
-      element_(MixedMaterial(material, kinematics)),
+      element_(MixedMaterial(material, kinematics), mixed(mesh_.inclusion_materials, kinematics)),
       solver_(threads) {
   const int n = mesh_.node_count();
   hanging_.assign(n, -1);
@@ -95,8 +101,8 @@ ContactProblem<dim>::ContactProblem(Mesh<dim> mesh, const scene::Material& mater
   for (const auto& hanging : mesh_.hanging) {
     for (const auto& [master, weight] : hanging.masters) area_m2_[master] += weight * area_m2_[hanging.node];
   }
-  // Outward is away from the cell behind the face; on these bodies that is the side away from the middle.
-  const Point middle = 0.5 * (mesh_.points_m.rowwise().maxCoeff() + mesh_.points_m.rowwise().minCoeff());
+  // Outward is away from the cell behind the face; on convex bodies that is the side away from the nodes' mean.
+  const Point middle = mesh_.points_m.rowwise().mean();
   for (const auto& face : mesh_.faces) {
     if (face.boundary != Boundary::free) continue;
     for (const int node : face.nodes) {
@@ -211,7 +217,7 @@ typename ContactProblem<dim>::Forces ContactProblem<dim>::forces(const State<dim
         X.col(a) = mesh_.points_m.col(cell[a]);
         u.col(a) = state.u_m.col(cell[a]);
       }
-      share.admissible = element_.evaluate(X, u, state.p_pa.col(c), false, result);
+      share.admissible = element_.evaluate(X, u, state.p_pa.col(c), false, result, mesh_.materials_of(c));
       for (int i = 0; i < dim; ++i) {
         for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
           share.nodal_n(i, cell[a]) += result.force_n[i * Mesh<dim>::nodes_per_cell + a];
@@ -374,7 +380,7 @@ void ContactProblem<dim>::assemble(const State<dim>& state) {
         u.col(a) = state.u_m.col(cell[a]);
         plain = plain && hanging_[cell[a]] < 0 && eliminated_[cell[a]] < 0 && step_offset_m_.col(cell[a]).isZero(0.0);
       }
-      element_.evaluate(X, u, state.p_pa.col(c), true, result);
+      element_.evaluate(X, u, state.p_pa.col(c), true, result, mesh_.materials_of(c));
       pressure_gain_[c] = result.pressure_gain;
       pressure_offset_pa_.col(c) = result.pressure_offset_pa;
       if (plain) {
@@ -639,7 +645,7 @@ Observation ContactProblem<dim>::observe(const State<dim>& state) const {
         X.col(a) = mesh_.points_m.col(mesh_.cells[c][a]);
         u.col(a) = state.u_m.col(mesh_.cells[c][a]);
       }
-      element_.evaluate(X, u, state.p_pa.col(c), false, result);
+      element_.evaluate(X, u, state.p_pa.col(c), false, result, mesh_.materials_of(c));
       change_m3 += result.volume_change_m3;
       rest_m3 += result.rest_volume_m3;
     }

@@ -85,17 +85,18 @@ MixedMaterial::MixedMaterial(const scene::Material& material, scene::Kinematics 
       kinematics(kinematics_in) {}
 
 template <int dim>
-Element<dim>::Element(const MixedMaterial& material) : material_(material) {
+Element<dim>::Element(const MixedMaterial& body, const std::vector<MixedMaterial>& inclusions) : materials_{body} {
+  materials_.insert(materials_.end(), inclusions.begin(), inclusions.end());
   for (const auto& point : rule_.points) shapes_.emplace_back(point);
 }
 
 template <int dim>
 bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& p_pa, bool with_tangent,
-                            CellResult<dim>& out) const {
+                            CellResult<dim>& out, const Materials* materials) const {
   constexpr int padded = (nodes + 3) / 4 * 4;
   constexpr int pressures = CellResult<dim>::pressures;
   constexpr int hoop = 2;  // the out-of-plane direction of a ring
-  const bool finite = material_.kinematics == scene::Kinematics::finite;
+  const bool finite = materials_[0].kinematics == scene::Kinematics::finite;
 
   out.force_n.setZero();
   out.volume_m3.setZero();
@@ -107,7 +108,8 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
   const Eigen::Matrix<double, dim, 1> low_m = X_m.rowwise().minCoeff(), high_m = X_m.rowwise().maxCoeff();
   const Eigen::Matrix<double, dim, 1> center_m = 0.5 * (low_m + high_m);
   const double scale_m = (high_m - low_m).maxCoeff();
-  Eigen::Matrix<double, pressures, pressures> pressure_mass = Eigen::Matrix<double, pressures, pressures>::Zero();
+  // Integral of psi psi' / kappa, with the tangent's kappa.
+  Eigen::Matrix<double, pressures, pressures> compliance = Eigen::Matrix<double, pressures, pressures>::Zero();
 
   // Blocks (i, j), i <= j, of the tangent, and the part that is the same on the diagonal blocks.
   constexpr int blocks = dim * (dim + 1) / 2;
@@ -124,6 +126,7 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
 
   for (int q = 0; q < GaussRule<dim>::size; ++q) {
     const Q2<dim>& shape = shapes_[q];
+    const MixedMaterial& material = materials_[materials ? (*materials)[q] : 0];
     const Eigen::Matrix<double, dim, dim> jacobian_m = X_m * shape.gradient;
     const Eigen::Matrix<double, nodes, dim> G = shape.gradient * jacobian_m.inverse();  // dN/dX
     double W_m3 = rule_.weights[q] * jacobian_m.determinant();
@@ -140,13 +143,13 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
     psi[0] = 1.0;
     psi.template tail<dim>() = (place_m - center_m) / scale_m;
     const double p = psi.dot(p_pa);
-    const PointLaw law = finite ? neo_hookean(H, material_.mu_pa, p) : linear_elastic(H, material_.mu_pa, p);
+    const PointLaw law = finite ? neo_hookean(H, material.mu_pa, p) : linear_elastic(H, material.mu_pa, p);
     out.smallest_J = std::min(out.smallest_J, 1.0 + law.J_minus_1);
     if (finite && law.J <= smallest_allowed_J) return false;
     out.rest_volume_m3 += W_m3;
     out.volume_change_m3 += W_m3 * law.J_minus_1;
-    out.volume_m3 += W_m3 * (law.J_minus_1 - material_.inverse_kappa_per_pa * p) * psi;
-    pressure_mass += W_m3 * psi * psi.transpose();
+    out.volume_m3 += W_m3 * (law.J_minus_1 - material.inverse_kappa_per_pa * p) * psi;
+    compliance += material.inverse_kappa_tangent_per_pa * W_m3 * psi * psi.transpose();
 
     const Eigen::Matrix<double, nodes, dim> gradients = G * law.F_inverse.template topLeftCorner<dim, dim>();
     const Eigen::Matrix3d tau = law.tau_iso_pa + law.pJ_pa * Eigen::Matrix3d::Identity();
@@ -228,9 +231,8 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
       }
     }
   }
-  // Condense: dp = M_kappa^-1 (volume + coupling du), M_kappa = mass / kappa in the tangent.
-  const Eigen::Matrix<double, pressures, pressures> inverse =
-      (material_.inverse_kappa_tangent_per_pa * pressure_mass).inverse();
+  // Condense: dp = compliance^-1 (volume + coupling du).
+  const Eigen::Matrix<double, pressures, pressures> inverse = compliance.inverse();
   out.pressure_gain = inverse * coupling;
   out.pressure_offset_pa = inverse * out.volume_m3;
   out.stiffness.noalias() += coupling.transpose() * out.pressure_gain;

@@ -24,20 +24,46 @@ using scene::Scene;
 using Clock = std::chrono::steady_clock;
 
 /// Raised with every change of method that moves a result; results of other versions are then not found.
-constexpr const char* method_version = "touchstone reference 1: Q2-P1disc u-p, primal-dual active set";
+constexpr const char* method_version = "touchstone reference 2: Q2-P1disc u-p, primal-dual active set";
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+void add_solid(const scene::Solid& solid, std::ostream& text) {
+  switch (solid.shape) {
+    case scene::BodyShape::box:
+      text << "box " << solid.size_m.transpose();
+      break;
+    case scene::BodyShape::sphere:
+      text << "sphere " << solid.radius_m;
+      break;
+    case scene::BodyShape::ellipsoid:
+      text << "ellipsoid " << solid.semi_axes_m.transpose();
+      break;
+    case scene::BodyShape::revolution:
+      text << "revolution";
+      for (const Eigen::Vector2d& corner_m : solid.profile.rz_m) text << " (" << corner_m.transpose() << ')';
+      for (const double radius_m : solid.profile.arc_radius_m) text << ' ' << radius_m;
+      break;
+  }
+  text << '\n';
+}
 
 std::string identity_text(const Scene& scene) {
   std::ostringstream text;
   text << std::setprecision(17) << method_version << '\n';
-  if (scene.body.shape == scene::BodyShape::box) {
-    text << "body box " << scene.body.size_m.transpose() << '\n';
-  } else {
-    text << "body sphere " << scene.body.radius_m << " held below " << scene.body.support_height_m << '\n';
+  const auto add_material = [&](const scene::Material& material) {
+    text << "E " << material.youngs_modulus_pa << " nu " << material.poissons_ratio << '\n';
+  };
+  text << "body ";
+  add_solid(scene.body, text);
+  if (!scene.body.flat_bottom()) text << "held below " << scene.body.support_height_m << '\n';
+  add_material(scene.body.material);
+  for (const scene::Inclusion& inclusion : scene.body.inclusions) {
+    text << "inclusion at " << inclusion.center_m.transpose() << ' ';
+    add_solid(inclusion, text);
+    add_material(inclusion.material);
   }
-  text << "E " << scene.body.material.youngs_modulus_pa << " nu " << scene.body.material.poissons_ratio << '\n'
-       << "tool sphere " << scene.tool.radius_m << '\n'
+  text << "tool sphere " << scene.tool.radius_m << '\n'
        << "kinematics " << (scene.reference.kinematics == scene::Kinematics::finite ? "finite" : "small") << " levels "
        << scene.reference.levels << " element "
        << (scene.reference.element_size_m ? std::to_string(*scene.reference.element_size_m * 1e9) + " nm" : "automatic")
@@ -146,15 +172,6 @@ std::optional<BallTool<dim>> tool_at(const Scene& scene, const scene::Shape& bod
     return BallTool<3>{scene.tool.radius_m, pose.position_m};
   } else {
     return BallTool<2>{scene.tool.radius_m, {0.0, pose.position_m.z()}};
-  }
-}
-
-template <int dim>
-Mesh<dim> level_mesh(const Scene& scene, const ModelChoice& choice, int level) {
-  if constexpr (dim == 3) {
-    return box_level(scene, choice, level);
-  } else {
-    return ball_level(scene, level);
   }
 }
 
@@ -376,8 +393,8 @@ class Run {
 
 /// Displacement unknowns of a level, without counting the few prescribed ones out.
 std::string expected_unknowns(const Scene& scene, const ModelChoice& choice, int level) {
-  const int nodes = choice.dim == 2 ? static_cast<int>(ball_level(scene, level).node_count())
-                                    : static_cast<int>(box_level(scene, choice, level).node_count());
+  const int nodes = choice.dim == 2 ? level_mesh<2>(scene, choice, level).node_count()
+                                    : level_mesh<3>(scene, choice, level).node_count();
   return "at most " + std::to_string(choice.dim * nodes) + " displacement unknowns";
 }
 
@@ -389,21 +406,20 @@ std::string content_key(const Scene& scene) { return Store::key(identity_text(sc
 
 scene::Plan plan(const Scene& scene) {
   const ModelChoice choice = choose_model(scene);
-  const bool box = scene.body.shape == scene::BodyShape::box;
   const int mirrors = (choice.mirror_x ? 1 : 0) + (choice.mirror_y ? 1 : 0);
   scene::Plan plan;
   const auto add = [&](const char* part, bool modelled, const std::string& reason, const std::string& cost = {}) {
     plan.push_back({part, modelled, reason, cost});
   };
-  if (!box) {
-    add("axial symmetry", true, "ball on the axis of a ball: one meridian plane is the whole body");
+  if (choice.dim == 2) {
+    add("axial symmetry", true, "a ball on the axis of a body of revolution: one meridian plane is the whole body");
   } else if (mirrors > 0) {
     add(mirrors == 2 ? "quarter symmetry" : "half symmetry", true,
-        mirrors == 2 ? "box, tool and track lie on both symmetry planes"
-                     : "box, tool and track lie on one symmetry plane",
+        mirrors == 2 ? "body, inclusions and track share the planes x = 0 and y = 0"
+                     : "body, inclusions and track share one of the planes x = 0 and y = 0",
         mirrors == 2 ? "a quarter of the unknowns" : "half of the unknowns");
   } else {
-    add("symmetry", false, "the track leaves both symmetry planes of the box", "the full box is meshed");
+    add("symmetry", false, "body, inclusions and track share no symmetry plane", "the whole body is meshed");
   }
   const bool finite = scene.reference.kinematics == scene::Kinematics::finite;
   add("finite strain", finite,
@@ -416,7 +432,14 @@ scene::Plan plan(const Scene& scene) {
   add("pressure unknowns", true, nu.str(), "eliminated cell by cell, none in the global matrix");
   add("friction", false, "the scene has none");
   add("several contact regions", false, "a ball on a convex body touches it once");
-  add("inclusions", false, "the body is of one material");
+  const std::size_t inclusions = scene.body.inclusions.size();
+  if (inclusions == 0) {
+    add("inclusions", false, "the body is of one material");
+  } else {
+    add("inclusions", true,
+        std::to_string(inclusions) + " of another material, each integration point has the one it lies in",
+        "small cells at their surfaces");
+  }
   add("uncertainty", scene.reference.levels >= 3,
       scene.reference.levels >= 3 ? "from " + std::to_string(scene.reference.levels) + " refinement levels"
                                   : "fewer than three levels: unknown, reported as infinite");

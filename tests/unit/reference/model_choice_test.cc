@@ -34,7 +34,7 @@ TEST(ModelChoice, EveryLevelIsFinerUnderTheTool) {
   int cells = 0;
   for (int level = 0; level < 3; ++level) {
     EXPECT_DOUBLE_EQ(element_size_m(scene, level), 2.0 * element_size_m(scene, level + 1));
-    const Mesh<3> mesh = box_level(scene, choose_model(scene), level);
+    const Mesh<3> mesh = level_mesh<3>(scene, choose_model(scene), level);
     EXPECT_GT(mesh.cell_count(), cells);
     cells = mesh.cell_count();
   }
@@ -53,30 +53,10 @@ TEST(ModelChoice, NamesWhatItCannotDo) {
   EXPECT_NE(unsupported_parts(scene)[0].message.find("z axis"), std::string::npos);
 }
 
-TEST(BallMesh, LiesInsideTheBallAndHoldsItsSupport) {
-  const BallSpec spec{0.03, 0.006, {{}, 0.5, 0.004}};
-  const Mesh<2> mesh = ball_mesh(spec);
-  EXPECT_LT(((mesh.points_m.colwise() - Eigen::Vector2d(0, 0.03)).colwise().norm()).maxCoeff(), 0.03 * (1 + 1e-12));
-  for (const auto& face : mesh.faces) {
-    for (const int node : face.nodes) {
-      const double z_m = mesh.points_m(1, node);
-      if (face.boundary == Boundary::held) {
-        EXPECT_LT(z_m, 0.006 + 1e-9);
-      }
-      if (face.boundary == Boundary::free) {
-        EXPECT_GT(z_m, 0.006 - 1e-9);
-      }
-      if (face.boundary == Boundary::plane_x) {
-        EXPECT_NEAR(mesh.points_m(0, node), 0.0, 1e-12);
-      }
-    }
-  }
-}
-
 TEST(SurfaceSampler, GivesBackALinearFieldEverywhereAroundTheBody) {
   const scene::Scene scene = cube({0, 0, .07}, {0, 0, .068});
   const ModelChoice choice = choose_model(scene);
-  const Mesh<3> mesh = box_level(scene, choice, 0);
+  const Mesh<3> mesh = level_mesh<3>(scene, choice, 0);
   Eigen::Matrix3Xd points_m(3, 3);
   points_m << .0123, -.0123, .03, .0077, -.0177, -.011, .06, .06, .02;
   const SurfaceSampler<3> sampler(mesh, points_m, choice.mirror_x, choice.mirror_y);
