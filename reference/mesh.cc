@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace touchstone::reference {
 namespace {
@@ -55,12 +57,17 @@ double distance_to(const FineDisc<dim>& disc, const Corners<dim>& corners_m) {
   return distance_to(disc, near);
 }
 
-/// Distance from the ball around a cell to a set.
+/// Distance from a cell to a set: zero where it changes sign, else of the nearest corner. With growth < 1 no set is so
+/// small that it hides between the corners.
 template <int dim>
 double distance_to(const FineSet<dim>& set, const Corners<dim>& corners_m) {
-  const Eigen::Matrix<double, dim, 1> middle_m = corners_m.rowwise().mean();
-  return std::max(0.0,
-                  std::abs(set.distance_m(middle_m)) - (corners_m.colwise() - middle_m).colwise().norm().maxCoeff());
+  double low_m = std::numeric_limits<double>::infinity(), high_m = -low_m;
+  for (const auto& corner_m : corners_m.colwise()) {
+    const double distance_m = set.distance_m(corner_m);
+    low_m = std::min(low_m, distance_m);
+    high_m = std::max(high_m, distance_m);
+  }
+  return std::max({0.0, low_m, -high_m});
 }
 
 template <int dim>
@@ -80,13 +87,16 @@ void refine(dealii::Triangulation<dim>& grid, const Grading<dim>& grading, const
     for (const auto& cell : grid.active_cell_iterators()) {
       Corners<dim> corners_m;
       for (const unsigned int v : cell->vertex_indices()) corners_m.col(v) = place_m(to_eigen<dim>(cell->vertex(v)));
-      double edge = 0.0;
+      // The longest edge of each direction, on average.
+      std::array<double, dim> longest{};
       for (unsigned int line = 0; line < dealii::GeometryInfo<dim>::lines_per_cell; ++line) {
-        const auto end = [&](unsigned int k) {
-          return corners_m.col(dealii::GeometryInfo<dim>::line_to_cell_vertices(line, k));
-        };
-        edge = std::max(edge, (end(1) - end(0)).norm());
+        const unsigned int from = dealii::GeometryInfo<dim>::line_to_cell_vertices(line, 0);
+        const unsigned int to = dealii::GeometryInfo<dim>::line_to_cell_vertices(line, 1);
+        // Lexicographic corners of an edge differ in the bit of its direction.
+        double& edge = longest[(to - from) / 2];
+        edge = std::max(edge, (corners_m.col(to) - corners_m.col(from)).norm());
       }
+      const double edge = std::accumulate(longest.begin(), longest.end(), 0.0) / dim;
       double wished = grading.largest_m;
       for (const FineDisc<dim>& disc : grading.discs) {
         wished = std::min(wished, std::max(disc.size_m, grading.growth * distance_to(disc, corners_m)));

@@ -18,7 +18,7 @@ constexpr double right_angle = 0.5 * std::numbers::pi;
 /// The grid's own coordinates: q from 0 on the axis to 1, zeta from -1 at the bottom to 1 at the top. The core is
 /// q, |zeta| <= core; the shell runs from it to the surface q = 1 or |zeta| = 1 in similar rectangles.
 constexpr double core = 0.5;
-constexpr int shell_layers = 2;
+constexpr int shell_layers = 1;
 
 /// A stretch of the profile: within one piece, by shares of its length.
 struct Section {
@@ -61,6 +61,38 @@ double cap_share(const Revolution& shape, bool top) {
   return turn > 0.0 ? std::min(widest_share, widest_cap / turn) : widest_share;
 }
 
+/// The largest balls inside: their radius, and the stretch of the axis that holds their centres.
+struct Spine {
+  double radius_m, low_m, high_m;
+};
+
+Spine spine(const Revolution& shape) {
+  constexpr double nearly = 0.999;
+  constexpr int steps = 60;
+  const double bottom_m = shape.piece(0).start_m.y(), top_m = shape.piece(shape.piece_count() - 1).end_m.y();
+  // The depth below the surface is concave along the axis.
+  const auto depth_m = [&](double z_m) { return -shape.signed_distance_m({0.0, 0.0, z_m}); };
+  double low_m = bottom_m, high_m = top_m;
+  for (int step = 0; step < steps; ++step) {
+    const double third_m = (high_m - low_m) / 3.0;
+    if (depth_m(low_m + third_m) < depth_m(high_m - third_m)) {
+      low_m += third_m;
+    } else {
+      high_m -= third_m;
+    }
+  }
+  const double middle_m = 0.5 * (low_m + high_m), radius_m = depth_m(middle_m);
+  const auto end_m = [&](double outside_m) {
+    double inside_m = middle_m;
+    for (int step = 0; step < steps; ++step) {
+      const double half_m = 0.5 * (inside_m + outside_m);
+      (depth_m(half_m) >= nearly * radius_m ? inside_m : outside_m) = half_m;
+    }
+    return inside_m;
+  };
+  return {radius_m, end_m(bottom_m), end_m(top_m)};
+}
+
 /// The profile cut into a bottom, sides and a top.
 struct Cuts {
   Section bottom, top;         // bottom.begin and top.end are the poles
@@ -90,16 +122,13 @@ Cuts cut(const Revolution& shape, double support_height_m) {
   std::sort(rings.begin(), rings.end(), before);
 
   Cuts cuts{{0, 0.0, lower.share}, {last, upper.share, 1.0}, {}};
-  // Sides no longer than one and a half times the half thickness, nor turning more than a core's corner can.
-  const double radius_m = shape.bounds().upper_m.x();
-  const double thickness_m = std::min(radius_m, 0.5 * (shape.piece(last).end_m.y() - shape.piece(0).start_m.y()));
+  const double wished_m = 0.8 * spine(shape).radius_m;
   rings.push_back(upper);
   Ring from = lower;
   for (const Ring& to : rings) {
     if (!before(from, to)) continue;
     const Section section{to.piece, from.piece == to.piece ? from.share : 0.0, to.share};
     from = to;
-    const double wished_m = 1.5 * thickness_m;
     const int parts = std::max(1, static_cast<int>(std::ceil(length_m(shape, section) / wished_m - 1e-9)));
     for (int k = 0; k < parts; ++k) {
       const double step = (section.end - section.begin) / parts;
@@ -113,15 +142,12 @@ Cuts cut(const Revolution& shape, double support_height_m) {
 /// From the grid's coordinates to the meridian plane.
 class Meridian {
  public:
-  explicit Meridian(const RoundSpec& spec) : shape_(spec.profile), cuts_(cut(shape_, spec.support_height_m)) {
-    const double radius_m = shape_.bounds().upper_m.x();
-    bottom_m_ = shape_.piece(0).start_m.y();
-    const double top_m = shape_.piece(shape_.piece_count() - 1).end_m.y();
-    const double thickness_m = std::min(radius_m, 0.5 * (top_m - bottom_m_));
+  explicit Meridian(const RoundSpec& spec) : shape_(spec.profile), cuts_(cut(shape_, spec.support_height_m)), bottom_m_(shape_.piece(0).start_m.y()) {
+    const Spine middle = spine(shape_);
     // The core's corners: half-way from the nearest point of the body's spine.
     for (int ring = 0; ring <= layers(); ++ring) {
       const Vec2 outer_m = ring < layers() ? at(cuts_.sides[ring], 0.0) : at(cuts_.sides.back(), 1.0);
-      const Vec2 spine_m(0.0, std::max(thickness_m, std::min(outer_m.y(), top_m - bottom_m_ - thickness_m)));
+      const Vec2 spine_m(0.0, std::clamp(outer_m.y(), middle.low_m - bottom_m_, middle.high_m - bottom_m_));
       corners_m_.push_back(0.5 * (spine_m + outer_m));
     }
   }
@@ -165,7 +191,7 @@ class Meridian {
 
   Revolution shape_;
   Cuts cuts_;
-  double bottom_m_ = 0.0;
+  double bottom_m_;
   std::vector<Vec2> corners_m_;  // of the core, from the bottom up
 };
 
