@@ -124,9 +124,19 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
   alignas(64) double g[dim][padded] = {}, h[dim][padded] = {}, t[dim][padded] = {}, s[dim][padded] = {};
   alignas(64) double v[dim][padded] = {}, e[padded] = {}, x[3][padded] = {}, y[padded] = {};
 
+  // The pressure unknowns are the least compressible material's. Points of softer bulk have a pressure of their own,
+  // kappa (J - 1), and are only tied to the unknowns so weakly that these stay determined in a sliver.
+  const MixedMaterial* least_compressible = &materials_[materials ? (*materials)[0] : 0];
+  for (int q = 1; materials && q < GaussRule<dim>::size; ++q) {
+    const MixedMaterial& material = materials_[(*materials)[q]];
+    if (material.inverse_kappa_per_pa < least_compressible->inverse_kappa_per_pa) least_compressible = &material;
+  }
+  const double tie_per_pa = 1e-4 / least_compressible->mu_pa;
+
   for (int q = 0; q < GaussRule<dim>::size; ++q) {
     const Q2<dim>& shape = shapes_[q];
     const MixedMaterial& material = materials_[materials ? (*materials)[q] : 0];
+    const bool own_pressure = material.inverse_kappa_per_pa > least_compressible->inverse_kappa_per_pa;
     const Eigen::Matrix<double, dim, dim> jacobian_m = X_m * shape.gradient;
     const Eigen::Matrix<double, nodes, dim> G = shape.gradient * jacobian_m.inverse();  // dN/dX
     double W_m3 = rule_.weights[q] * jacobian_m.determinant();
@@ -142,14 +152,22 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
     Pressure psi;
     psi[0] = 1.0;
     psi.template tail<dim>() = (place_m - center_m) / scale_m;
-    const double p = psi.dot(p_pa);
-    const PointLaw law = finite ? neo_hookean(H, material.mu_pa, p) : linear_elastic(H, material.mu_pa, p);
+    const double unknown_pa = psi.dot(p_pa);
+    const double p =
+        own_pressure ? (finite ? volume_change(H) : H.trace()) / material.inverse_kappa_per_pa : unknown_pa;
+    PointLaw law = finite ? neo_hookean(H, material.mu_pa, p) : linear_elastic(H, material.mu_pa, p);
+    if (own_pressure) law.V_pa += law.J * law.J / material.inverse_kappa_per_pa;
     out.smallest_J = std::min(out.smallest_J, 1.0 + law.J_minus_1);
     if (finite && law.J <= smallest_allowed_J) return false;
     out.rest_volume_m3 += W_m3;
     out.volume_change_m3 += W_m3 * law.J_minus_1;
-    out.volume_m3 += W_m3 * (law.J_minus_1 - material.inverse_kappa_per_pa * p) * psi;
-    compliance += material.inverse_kappa_tangent_per_pa * W_m3 * psi * psi.transpose();
+    if (own_pressure) {
+      out.volume_m3 -= W_m3 * tie_per_pa * unknown_pa * psi;
+      compliance += tie_per_pa * W_m3 * psi * psi.transpose();
+    } else {
+      out.volume_m3 += W_m3 * (law.J_minus_1 - material.inverse_kappa_per_pa * unknown_pa) * psi;
+      compliance += material.inverse_kappa_tangent_per_pa * W_m3 * psi * psi.transpose();
+    }
 
     const Eigen::Matrix<double, nodes, dim> gradients = G * law.F_inverse.template topLeftCorner<dim, dim>();
     const Eigen::Matrix3d tau = law.tau_iso_pa + law.pJ_pa * Eigen::Matrix3d::Identity();
@@ -211,6 +229,7 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
       for (int a = 0; a < nodes; ++a) y[a] = W_m3 * hoop_pa * e[a];
       add(K[0], y, e, none, none, none, none);
     }
+    if (own_pressure) continue;
     for (int i = 0; i < dim; ++i) {
       for (int m = 0; m < pressures; ++m) {
         const double factor = W_m3 * law.J * psi[m];

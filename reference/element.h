@@ -53,7 +53,7 @@ struct CellResult {
   using Pressure = Eigen::Matrix<double, pressures, 1>;
 
   Vector force_n;      ///< internal force at the given displacement and pressure
-  Pressure volume_m3;  ///< integral of psi_m (J - 1 - p / kappa): zero at the solution
+  Pressure volume_m3;  ///< integral of psi_m (J - 1 - p / kappa) where p is the unknown: zero at the solution
   double rest_volume_m3 = 0.0;
   double volume_change_m3 = 0.0;
   double smallest_J = 1.0;

@@ -73,7 +73,7 @@ double top_curvature_per_m(const scene::Body& body) {
 
 template <int dim>
 Grading<dim> level_grading(const Scene& scene, int level) {
-  constexpr double coarsest_cells = dim == 2 ? 4.0 : 2.0;  // to the radius of an inclusion
+  constexpr double coarsest_cells = dim == 2 ? 8.0 : 2.0;  // to the radius of an inclusion
   Grading<dim> grading;
   for (const ExpectedContact& contact : expected_contacts(scene)) {
     FineDisc<dim> disc;
