@@ -9,6 +9,9 @@
 namespace touchstone::reference {
 namespace {
 
+/// mu / kappa of what Newton takes for incompressible.
+constexpr double nearly_incompressible = 1e-4;
+
 /// Values and slopes of the three quadratic Lagrange polynomials with nodes 0, 1/2, 1.
 void quadratic(double x, double (&value)[3], double (&slope)[3]) {
   value[0] = (1.0 - x) * (1.0 - 2.0 * x);
@@ -81,12 +84,17 @@ GaussRule<dim>::GaussRule() {
 MixedMaterial::MixedMaterial(const scene::Material& material, scene::Kinematics kinematics_in)
     : mu_pa(material.shear_modulus_pa()),
       inverse_kappa_per_pa(3.0 * (1.0 - 2.0 * material.poissons_ratio) / material.youngs_modulus_pa),
-      inverse_kappa_tangent_per_pa(std::max(inverse_kappa_per_pa, 1e-4 / mu_pa)),
+      inverse_kappa_tangent_per_pa(std::max(inverse_kappa_per_pa, nearly_incompressible / mu_pa)),
       kinematics(kinematics_in) {}
 
 template <int dim>
 Element<dim>::Element(const MixedMaterial& body, const std::vector<MixedMaterial>& inclusions) : materials_{body} {
   materials_.insert(materials_.end(), inclusions.begin(), inclusions.end());
+  // A soft incompressible inclusion is squeezed by the stiffer body around it: Newton needs a bulk modulus to match.
+  for (MixedMaterial& material : materials_) {
+    material.inverse_kappa_tangent_per_pa =
+        std::max(material.inverse_kappa_per_pa, nearly_incompressible / std::max(material.mu_pa, body.mu_pa));
+  }
   for (const auto& point : rule_.points) shapes_.emplace_back(point);
 }
 
@@ -131,7 +139,7 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
     const MixedMaterial& material = materials_[(*materials)[q]];
     if (material.inverse_kappa_per_pa < least_compressible->inverse_kappa_per_pa) least_compressible = &material;
   }
-  const double tie_per_pa = 1e-4 / least_compressible->mu_pa;
+  const double tie_per_pa = nearly_incompressible / least_compressible->mu_pa;
 
   for (int q = 0; q < GaussRule<dim>::size; ++q) {
     const Q2<dim>& shape = shapes_[q];

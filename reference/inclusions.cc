@@ -29,8 +29,7 @@ bool alike(const Inclusion& a, const Inclusion& b) {
     return std::tie(i.shape, i.radius_m, i.profile.arc_radius_m, i.material.youngs_modulus_pa,
                     i.material.poissons_ratio);
   };
-  return key(a) == key(b) && a.size_m == b.size_m && a.semi_axes_m == b.semi_axes_m &&
-         a.profile.rz_m == b.profile.rz_m;
+  return key(a) == key(b) && a.size_m == b.size_m && a.semi_axes_m == b.semi_axes_m && a.profile.rz_m == b.profile.rz_m;
 }
 
 }  // namespace

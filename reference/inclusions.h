@@ -6,9 +6,9 @@
 
 namespace touchstone::reference {
 
-/// Gives every Gauss point the material it lies in. Cells that an inclusion's surface crosses have points of both, which
-/// keeps the inclusion's volume right on average; the error is that of one layer of cells, and small cells there make
-/// it small (refine_at_inclusions).
+/// Gives every Gauss point the material it lies in. Cells that an inclusion's surface crosses have points of both,
+/// which keeps the inclusion's volume right on average; the error is that of one layer of cells, and small cells there
+/// make it small (refine_at_inclusions).
 template <int dim>
 void embed_inclusions(const scene::Body& body, Mesh<dim>& mesh);
 

@@ -199,8 +199,7 @@ template <int dim>
 Mesh<dim> level_mesh(const Scene& scene, const ModelChoice& choice, int level) {
   Mesh<dim> mesh;
   if constexpr (dim == 3) {
-    mesh = scene.body.shape == BodyShape::box ? box_mesh(scene, choice, level)
-                                              : round_level<dim>(scene, choice, level);
+    mesh = scene.body.shape == BodyShape::box ? box_mesh(scene, choice, level) : round_level<dim>(scene, choice, level);
   } else {
     mesh = round_level<dim>(scene, choice, level);
   }

@@ -18,9 +18,9 @@ struct ModelChoice {
   [[nodiscard]] std::string name(scene::Kinematics kinematics) const;  ///< "quarter 3D u-p finite strain"
 };
 
-/// A ball on the axis of a body of revolution is axisymmetric, when the inclusions are too. Otherwise the body is mirrored
-/// in x = 0 and y = 0 if the inclusions are their own mirror image and the plane holds the whole track; places are
-/// compared to a millionth of the tool's radius.
+/// A ball on the axis of a body of revolution is axisymmetric, when the inclusions are too. Otherwise the body is
+/// mirrored in x = 0 and y = 0 if the inclusions are their own mirror image and the plane holds the whole track; places
+/// are compared to a millionth of the tool's radius.
 [[nodiscard]] ModelChoice choose_model(const scene::Scene& scene);
 
 /// What of the scene this solver cannot do.
@@ -35,10 +35,11 @@ struct ModelChoice {
 /// tenth of its depth. From scene.reference.element_size_m; automatic: a / 1.5 in three dimensions, a / 4 in two.
 [[nodiscard]] double element_size_m(const scene::Scene& scene, int level);
 
-/// Mesh of the refinement sequence, inclusions in it. Under the tool every level halves the cells; away from it cells grow with the
-/// distance, and both that growth and the largest cell shrink by 2^(1/3) a level: finer everywhere, though not by the
-/// same factor. The smooth far field of quadratic elements needs no more. Halved as well are the cells at the edge of a
-/// round body's support, where the displacement has a singular gradient, and at the surface of an inclusion.
+/// Mesh of the refinement sequence, inclusions in it. Under the tool every level halves the cells; away from it cells
+/// grow with the distance, and both that growth and the largest cell shrink by 2^(1/3) a level: finer everywhere,
+/// though not by the same factor. The smooth far field of quadratic elements needs no more. Halved as well are the
+/// cells at the edge of a round body's support, where the displacement has a singular gradient, and at the surface of
+/// an inclusion.
 template <int dim>
 [[nodiscard]] Mesh<dim> level_mesh(const scene::Scene& scene, const ModelChoice& choice, int level);
 

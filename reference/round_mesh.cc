@@ -53,8 +53,8 @@ double cap_share(const Revolution& shape, bool top) {
   constexpr double sharp = 0.7, widest_cap = 0.87, widest_share = 0.55;  // [rad], [rad], of the piece
   const int last = shape.piece_count() - 1;
   const RevolutionPiece& piece = shape.piece(top ? last : 0);
-  const double turn_at_corner = top ? piece.start_angle - shape.piece(last - 1).end_angle
-                                    : shape.piece(1).start_angle - piece.end_angle;
+  const double turn_at_corner =
+      top ? piece.start_angle - shape.piece(last - 1).end_angle : shape.piece(1).start_angle - piece.end_angle;
   const bool level = piece.straight() && std::abs(piece.start_angle) >= right_angle - 1e-7;
   if (level || (turn_at_corner > sharp && shape.piece_count() > 2)) return 1.0;
   const double turn = piece.end_angle - piece.start_angle;
@@ -142,7 +142,8 @@ Cuts cut(const Revolution& shape, double support_height_m) {
 /// From the grid's coordinates to the meridian plane.
 class Meridian {
  public:
-  explicit Meridian(const RoundSpec& spec) : shape_(spec.profile), cuts_(cut(shape_, spec.support_height_m)), bottom_m_(shape_.piece(0).start_m.y()) {
+  explicit Meridian(const RoundSpec& spec)
+      : shape_(spec.profile), cuts_(cut(shape_, spec.support_height_m)), bottom_m_(shape_.piece(0).start_m.y()) {
     const Spine middle = spine(shape_);
     // The core's corners: half-way from the nearest point of the body's spine.
     for (int ring = 0; ring <= layers(); ++ring) {
