@@ -73,7 +73,7 @@ struct FineSet {
 };
 
 /// Cell size as a function of place: cell edge <= max(size_m, growth * distance) for every disc and set, and
-/// <= largest_m.
+/// <= largest_m. The edge of a cell is the longest in each direction, on average over the directions.
 template <int dim>
 struct Grading {
   std::vector<FineDisc<dim>> discs;

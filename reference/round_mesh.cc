@@ -47,16 +47,19 @@ Ring ring_at(const Revolution& shape, double height_m) {
   return {index, (angle - piece.start_angle) / (piece.end_angle - piece.start_angle)};
 }
 
-/// How much of an end's piece, from the pole, becomes the end of the mesh: all when it is level, or when a corner parts
-/// it from a side; else a cap.
+/// How much of an end's piece, from the pole, becomes the end of the mesh: all when it is level, or low and parted from
+/// a side by a corner; else a cap.
 double cap_share(const Revolution& shape, bool top) {
   constexpr double sharp = 0.7, widest_cap = 0.87, widest_share = 0.55;  // [rad], [rad], of the piece
+  constexpr double low = 0.25;                                           // of the body's height
   const int last = shape.piece_count() - 1;
   const RevolutionPiece& piece = shape.piece(top ? last : 0);
   const double turn_at_corner =
       top ? piece.start_angle - shape.piece(last - 1).end_angle : shape.piece(1).start_angle - piece.end_angle;
   const bool level = piece.straight() && std::abs(piece.start_angle) >= right_angle - 1e-7;
-  if (level || (turn_at_corner > sharp && shape.piece_count() > 2)) return 1.0;
+  const double height_m = shape.piece(last).end_m.y() - shape.piece(0).start_m.y();
+  const bool parted = turn_at_corner > sharp && piece.end_m.y() - piece.start_m.y() < low * height_m;
+  if (level || parted) return 1.0;
   const double turn = piece.end_angle - piece.start_angle;
   return turn > 0.0 ? std::min(widest_share, widest_cap / turn) : widest_share;
 }
@@ -122,6 +125,7 @@ Cuts cut(const Revolution& shape, double support_height_m) {
   std::sort(rings.begin(), rings.end(), before);
 
   Cuts cuts{{0, 0.0, lower.share}, {last, upper.share, 1.0}, {}};
+  // Sides about as long as the core is thick.
   const double wished_m = 0.8 * spine(shape).radius_m;
   rings.push_back(upper);
   Ring from = lower;
@@ -355,6 +359,8 @@ std::string round_fault(const RoundSpec& spec) {
   for (int k = 0; k < shape.piece_count(); ++k) whole_m += shape.piece(k).length_m;
   std::vector<Section> sections{cuts.bottom, cuts.top};
   sections.insert(sections.end(), cuts.sides.begin(), cuts.sides.end());
+  if (support_edge_m(spec).y() + shape.piece(0).start_m.y() >= shape.meridian(cuts.top.piece, cuts.top.begin).rz_m.y())
+    return "the support's edge lies on the body's top; the reference needs it lower";
   for (const Section& section : sections) {
     const double share = length_m(shape, section) / whole_m;
     if (share >= smallest_share) continue;
