@@ -7,10 +7,10 @@
 namespace touchstone::reference {
 
 /// Gives every Gauss point the material it lies in. Cells that an inclusion's surface crosses have points of both,
-/// which keeps the inclusion's volume right on average. The error is that of one layer of cells and falls with their
-/// size: a ball of PVC in rubber, half a radius below a contact of 4 mm, changes the force by 38 %; with 4, 8, 16 cells
-/// to its radius that is off by 1.5 %, 0.2 %, 0.06 % of the force, a ball 89 times stiffer than the rubber by 4 %, 2 %,
-/// 0.8 %.
+/// which keeps the inclusion's volume right on average. The error is of first order in the size of those cells.
+/// Measured on a rubber ball pressed by 4 mm, with a ball of 8 mm radius 5 mm below its top: of PVC (89 times softer,
+/// nu = 0.33, 38 % less force) the force is off by -1.5 %, -0.2 %, -0.1 % with 4, 8, 16 cells to the radius; 89 times
+/// stiffer (53 % more) by 5 %, 2 %, 1 %.
 template <int dim>
 void embed_inclusions(const scene::Body& body, Mesh<dim>& mesh);
 

@@ -30,6 +30,8 @@ std::vector<Named> bodies() {
   scene::Body body = round_body(scene::BodyShape::sphere);
   body.radius_m = 0.03;
   all.push_back({"sphere", body});
+  body.support_height_m = 0.025;
+  all.push_back({"sphere held high", body});
   body = round_body(scene::BodyShape::ellipsoid);
   body.semi_axes_m = {0.040, 0.030, 0.025};
   all.push_back({"ellipsoid", body});
@@ -217,7 +219,7 @@ TEST(RoundMesh, NodesLieOnTheSurfaceAndTheSupportEndsAtItsHeight) {
 }
 
 TEST(RoundMesh, QuarterHalfAndWholeAreTheSame) {
-  const scene::Body body = bodies()[1].body;
+  const scene::Body body = bodies()[2].body;
   RoundSpec spec = round_spec(body);
   Grading<3> grading;
   grading.largest_m = 0.012;
@@ -235,7 +237,9 @@ TEST(RoundMesh, RefusesSlivers) {
   scene::Body body = bodies()[0].body;
   body.support_height_m = 1e-6;
   EXPECT_NE(round_fault(round_spec(body)), "");
-  body = bodies()[4].body;
+  body.support_height_m = 0.059;
+  EXPECT_NE(round_fault(round_spec(body)), "");
+  body = bodies()[5].body;
   body.profile.rz_m.insert(body.profile.rz_m.begin() + 2, {0.0300001, 0.0001});
   EXPECT_NE(round_fault(round_spec(body)), "");
 }
