@@ -84,7 +84,7 @@ typename ContactProblem<dim>::Forces ContactProblem<dim>::forces(const State<dim
         X.col(a) = mesh_.points_m.col(cell[a]);
         u.col(a) = state.u_m.col(cell[a]);
       }
-      share.admissible = element_.evaluate(X, u, state.p_pa.col(c), false, result);
+      share.admissible = element_.evaluate(X, u, state.p_pa.col(c), false, result, mesh_.materials_of(c));
       for (int i = 0; i < dim; ++i) {
         for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
           share.nodal_n(i, cell[a]) += result.force_n[i * Mesh<dim>::nodes_per_cell + a];
@@ -233,7 +233,7 @@ void ContactProblem<dim>::assemble(const State<dim>& state) {
         u.col(a) = state.u_m.col(cell[a]);
         plain = plain && hanging_[cell[a]] < 0 && eliminated_[cell[a]] < 0 && step_offset_m_.col(cell[a]).isZero(0.0);
       }
-      element_.evaluate(X, u, state.p_pa.col(c), true, result);
+      element_.evaluate(X, u, state.p_pa.col(c), true, result, mesh_.materials_of(c));
       pressure_gain_[c] = result.pressure_gain;
       pressure_offset_pa_.col(c) = result.pressure_offset_pa;
       if (plain) {

@@ -8,6 +8,12 @@
 namespace touchstone::reference {
 namespace {
 
+std::vector<MixedMaterial> mixed(const std::vector<scene::Material>& materials, scene::Kinematics kinematics) {
+  std::vector<MixedMaterial> result;
+  for (const scene::Material& material : materials) result.emplace_back(material, kinematics);
+  return result;
+}
+
 /// Weights of the three Gauss-Lobatto points on [0,1], which are the nodes of a quadratic side.
 constexpr double simpson[3] = {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
 
@@ -22,7 +28,7 @@ ContactProblem<dim>::ContactProblem(Mesh<dim> mesh, const scene::Material& mater
       mirror_x_(mirror_x),
       mirror_y_(mirror_y),
       threads_(threads),
-      element_(MixedMaterial(material, kinematics)),
+      element_(MixedMaterial(material, kinematics), mixed(mesh_.inclusion_materials, kinematics)),
       solver_(threads) {
   const int n = mesh_.node_count();
   hanging_.assign(n, -1);
@@ -80,8 +86,8 @@ ContactProblem<dim>::ContactProblem(Mesh<dim> mesh, const scene::Material& mater
   for (const auto& hanging : mesh_.hanging) {
     for (const auto& [master, weight] : hanging.masters) area_m2_[master] += weight * area_m2_[hanging.node];
   }
-  // Outward is away from the cell behind the face; on these bodies that is the side away from the middle.
-  const Point middle = 0.5 * (mesh_.points_m.rowwise().maxCoeff() + mesh_.points_m.rowwise().minCoeff());
+  // Outward is away from the cell behind the face; on convex bodies that is the side away from the nodes' mean.
+  const Point middle = mesh_.points_m.rowwise().mean();
   for (const auto& face : mesh_.faces) {
     if (face.boundary != Boundary::free) continue;
     for (const int node : face.nodes) {

@@ -1,5 +1,7 @@
 #include "reference/model_choice.h"
 
+#include "reference/inclusions.h"
+#include "reference/round_mesh.h"
 #include "reference/tool_distance.h"
 #include "reference/tool_symmetry.h"
 #include "scene/surface.h"
@@ -48,9 +50,12 @@ void expect_contacts(const Scene& scene, ModelChoice& choice) {
                 [&](const ContactPatch& patch) { return patch.depth_m < shallowest_share * largest_m; });
 }
 
-/// Small cells where the contacts and the tight bends of the tool are, on the mesh's side of its mirror planes.
+/// Small cells where the contacts, the tight bends of the tool and the inclusions' surfaces are, on the mesh's side of
+/// its mirror planes.
 template <int dim>
-void add_discs(const Scene& scene, const ModelChoice& choice, int level, Grading<dim>& grading) {
+Grading<dim> level_grading(const Scene& scene, const ModelChoice& choice, int level) {
+  constexpr double coarsest_cells = dim == 2 ? 8.0 : 2.0;  // to the radius of an inclusion
+  Grading<dim> grading;
   const double base_m = element_size_m(scene, choice, level);
   const auto add = [&](const Vec3& center_m, const Vec3& normal, double radius_m, double size_m) {
     if constexpr (dim == 3) {
@@ -76,6 +81,65 @@ void add_discs(const Scene& scene, const ModelChoice& choice, int level, Grading
       add(place_m, patch.normal, 0.0, rim_m);
     }
   }
+  refine_at_inclusions(scene.body, coarsest_cells * std::exp2(level), grading);
+  return grading;
+}
+
+/// 2^(-level / 3): how the far field shrinks.
+double far_share(int level) { return std::exp2(-level / 3.0); }
+
+Mesh<3> box_mesh(const Scene& scene, const ModelChoice& choice, int level) {
+  const Vec3 size_m = scene.body.size_m;
+  BlockSpec spec;
+  spec.lower_m = {choice.mirror_x ? 0.0 : -0.5 * size_m.x(), choice.mirror_y ? 0.0 : -0.5 * size_m.y(), 0.0};
+  spec.upper_m = {0.5 * size_m.x(), 0.5 * size_m.y(), size_m.z()};
+  spec.symmetric_x = choice.mirror_x;
+  spec.symmetric_y = choice.mirror_y;
+  spec.grading = level_grading<3>(scene, choice, level);
+  spec.grading.growth = 0.9 * far_share(level);
+  spec.grading.largest_m = 0.25 * size_m.maxCoeff() * far_share(level);
+  return block_mesh(spec);
+}
+
+template <int dim>
+Mesh<dim> round_level(const Scene& scene, const ModelChoice& choice, int level) {
+  RoundSpec spec = round_spec(scene.body);
+  spec.symmetric_x = choice.mirror_x;
+  spec.symmetric_y = choice.mirror_y;
+  const scene::Bounds bounds = scene::body_shape(scene.body)->bounds();
+  const double half_m = 0.5 * (bounds.upper_m - bounds.lower_m).maxCoeff();
+  Grading<dim> grading = level_grading<dim>(scene, choice, level);
+  grading.growth = (dim == 2 ? 0.5 : 0.9) * far_share(level);
+  grading.largest_m = (dim == 2 ? 0.25 : 0.5) * half_m * far_share(level);
+  // Around the edge of the support; on an ellipsoid its distance is taken across the longer axis.
+  const Eigen::Vector2d edge_m = support_edge_m(spec);
+  const Eigen::Vector2d stretch = spec.stretch;
+  grading.sets.push_back({[edge_m, stretch](const Eigen::Matrix<double, dim, 1>& x_m) {
+                            double r_m = x_m[0] / stretch.x();
+                            if constexpr (dim == 3) r_m = x_m.template head<2>().cwiseQuotient(stretch).norm();
+                            return std::hypot((r_m - edge_m.x()) * stretch.maxCoeff(), x_m[dim - 1] - edge_m.y());
+                          },
+                          half_m / (dim == 2 ? 32.0 : 8.0) / std::exp2(level)});
+  return round_mesh(spec, grading);
+}
+
+/// Mean principal curvature of the body's top [1/m].
+double top_curvature_per_m(const scene::Body& body) {
+  switch (body.shape) {
+    case BodyShape::box:
+      return 0.0;
+    case BodyShape::sphere:
+      return 1.0 / body.radius_m;
+    case BodyShape::ellipsoid: {
+      const Vec3 a_m = body.semi_axes_m;
+      return a_m.z() / (a_m.x() * a_m.y());
+    }
+    case BodyShape::revolution: {
+      const scene::Revolution shape(body.profile);
+      return shape.meridian(shape.piece_count() - 1, 1.0).curvature_along_per_m;
+    }
+  }
+  return 0.0;
 }
 
 /// Times at which a symmetry is looked at: those with a pose of their own, and one in between, not in the middle.
@@ -97,9 +161,6 @@ double lowest_m(const scene::Tool& tool, const scene::Pose& pose) {
   return (pose.orientation.toRotationMatrix() * points_m).row(2).minCoeff() + pose.position_m.z();
 }
 
-/// 2^(-level / 3): how the far field shrinks.
-double far_share(int level) { return std::exp2(-level / 3.0); }
-
 }  // namespace
 
 std::string ModelChoice::name(scene::Kinematics kinematics) const {
@@ -120,11 +181,10 @@ ModelChoice choose_model(const Scene& scene) {
     });
   };
   ModelChoice choice;
-  choice.mirror_x = always(Vec3(-1.0, 1.0, 1.0).asDiagonal());
-  choice.mirror_y = always(Vec3(1.0, -1.0, 1.0).asDiagonal());
+  choice.mirror_x = mirrored(scene.body.inclusions, 0) && always(Vec3(-1.0, 1.0, 1.0).asDiagonal());
+  choice.mirror_y = mirrored(scene.body.inclusions, 1) && always(Vec3(1.0, -1.0, 1.0).asDiagonal());
   // A turn by one radian is no symmetry but of a body of revolution.
-  const bool revolution = always(Eigen::AngleAxisd(1.0, Vec3::UnitZ()).toRotationMatrix());
-  if (scene.body.shape == BodyShape::sphere && revolution) choice.dim = 2;
+  if (revolved(scene.body) && always(Eigen::AngleAxisd(1.0, Vec3::UnitZ()).toRotationMatrix())) choice.dim = 2;
   choice.tool = tool_distance(scene.tool);
   expect_contacts(scene, choice);
   return choice;
@@ -133,9 +193,6 @@ ModelChoice choose_model(const Scene& scene) {
 std::vector<scene::Fault> unsupported_parts(const Scene& scene) {
   std::vector<scene::Fault> faults;
   const auto add = [&](const std::string& message) { faults.push_back({"", 0, 0, message}); };
-  if (scene.body.shape == BodyShape::ellipsoid || scene.body.shape == BodyShape::revolution)
-    add("body.shape: the reference solves box and sphere bodies only");
-  if (!scene.body.inclusions.empty()) add("body.inclusion: the reference solves bodies of one material only");
   if (scene.tool.shape == scene::ToolShape::cylinder &&
       scene.tool.edge_radius_m < smallest_fillet_share * scene.tool.radius_m) {
     std::ostringstream text;
@@ -146,22 +203,13 @@ std::vector<scene::Fault> unsupported_parts(const Scene& scene) {
   }
   if (scene.contact.friction) add("contact.friction: the reference solves frictionless contact only");
   if (!faults.empty()) return faults;
-  const ModelChoice choice = choose_model(scene);
-  const auto body = scene::body_shape(scene.body);
-  if (scene.body.shape == BodyShape::sphere) {
-    if (choice.dim != 2) {
-      add("track: the reference solves a sphere body only as a body of revolution; keep the tool, itself one, upright "
-          "on "
-          "the z axis (x = y = 0)");
-    }
-    const double share = scene.body.support_height_m / scene.body.radius_m;
-    if (share < BallSpec::smallest_support_share || share > BallSpec::largest_support_share) {
-      std::ostringstream text;
-      text << "body.support_height_m: the reference needs " << BallSpec::smallest_support_share << " to "
-           << BallSpec::largest_support_share << " body radii, not " << share;
-      add(text.str());
+  if (scene.body.shape != BodyShape::box) {
+    if (const std::string fault = round_fault(round_spec(scene.body)); !fault.empty()) {
+      const bool profile = scene.body.shape == BodyShape::revolution;
+      add((profile ? "body.profile_rz_m: " : "body.support_height_m: ") + fault);
     }
   }
+  const auto body = scene::body_shape(scene.body);
   for (const double time_s : scene::instants_s(scene)) {
     const scene::Pose pose = scene::pose_at(scene.track, time_s);
     const double depth_m = scene::rest_depth_m(*body, scene.tool, pose);
@@ -183,38 +231,28 @@ std::vector<scene::Fault> unsupported_parts(const Scene& scene) {
 }
 
 double expected_contact_radius_m(const Scene& scene, double depth_m) {
-  double curvature_per_m = 1.0 / scene.tool.radius_m;
-  if (scene.body.shape == BodyShape::sphere) curvature_per_m += 1.0 / scene.body.radius_m;
+  const double curvature_per_m = 1.0 / scene.tool.radius_m + top_curvature_per_m(scene.body);
   return std::min(std::sqrt(depth_m / curvature_per_m), scene.tool.radius_m);
 }
 
 double element_size_m(const Scene& scene, const ModelChoice& choice, int level) {
-  const double cells_per_radius = scene.body.shape == BodyShape::box ? 1.5 : 4.0;
+  const double cells_per_radius = choice.dim == 3 ? 1.5 : 4.0;
   return scene.reference.element_size_m.value_or(choice.half_width_m / cells_per_radius) / std::exp2(level);
 }
 
-Mesh<3> box_level(const Scene& scene, const ModelChoice& choice, int level) {
-  const Vec3 size_m = scene.body.size_m;
-  BlockSpec spec;
-  spec.lower_m = {choice.mirror_x ? 0.0 : -0.5 * size_m.x(), choice.mirror_y ? 0.0 : -0.5 * size_m.y(), 0.0};
-  spec.upper_m = {0.5 * size_m.x(), 0.5 * size_m.y(), size_m.z()};
-  spec.symmetric_x = choice.mirror_x;
-  spec.symmetric_y = choice.mirror_y;
-  spec.grading.growth = 0.9 * far_share(level);
-  spec.grading.largest_m = 0.25 * size_m.maxCoeff() * far_share(level);
-  add_discs(scene, choice, level, spec.grading);
-  return block_mesh(spec);
+template <int dim>
+Mesh<dim> level_mesh(const Scene& scene, const ModelChoice& choice, int level) {
+  Mesh<dim> mesh;
+  if constexpr (dim == 3) {
+    mesh = scene.body.shape == BodyShape::box ? box_mesh(scene, choice, level) : round_level<dim>(scene, choice, level);
+  } else {
+    mesh = round_level<dim>(scene, choice, level);
+  }
+  embed_inclusions(scene.body, mesh);
+  return mesh;
 }
 
-Mesh<2> ball_level(const Scene& scene, const ModelChoice& choice, int level) {
-  const double R_m = scene.body.radius_m, support_m = scene.body.support_height_m;
-  BallSpec spec{R_m, support_m, {}};
-  spec.grading.growth = 0.5 * far_share(level);
-  spec.grading.largest_m = 0.25 * R_m * far_share(level);
-  add_discs(scene, choice, level, spec.grading);
-  const double support_radius_m = std::sqrt(std::max(0.0, support_m * (2.0 * R_m - support_m)));
-  spec.grading.discs.push_back({{support_radius_m, support_m}, {0.0, 1.0}, 0.0, R_m / 32.0 / std::exp2(level)});
-  return ball_mesh(spec);
-}
+template Mesh<2> level_mesh(const Scene&, const ModelChoice&, int);
+template Mesh<3> level_mesh(const Scene&, const ModelChoice&, int);
 
 }  // namespace touchstone::reference

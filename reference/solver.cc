@@ -63,16 +63,42 @@ std::string tool_text(const scene::Tool& tool) {
   return text.str();
 }
 
+void add_solid(const scene::Solid& solid, std::ostream& text) {
+  switch (solid.shape) {
+    case scene::BodyShape::box:
+      text << "box " << solid.size_m.transpose();
+      break;
+    case scene::BodyShape::sphere:
+      text << "sphere " << solid.radius_m;
+      break;
+    case scene::BodyShape::ellipsoid:
+      text << "ellipsoid " << solid.semi_axes_m.transpose();
+      break;
+    case scene::BodyShape::revolution:
+      text << "revolution";
+      for (const Eigen::Vector2d& corner_m : solid.profile.rz_m) text << " (" << corner_m.transpose() << ')';
+      for (const double radius_m : solid.profile.arc_radius_m) text << ' ' << radius_m;
+      break;
+  }
+  text << '\n';
+}
+
 std::string identity_text(const Scene& scene) {
   std::ostringstream text;
   text << std::setprecision(17) << method_version << '\n';
-  if (scene.body.shape == scene::BodyShape::box) {
-    text << "body box " << scene.body.size_m.transpose() << '\n';
-  } else {
-    text << "body sphere " << scene.body.radius_m << " held below " << scene.body.support_height_m << '\n';
+  const auto add_material = [&](const scene::Material& material) {
+    text << "E " << material.youngs_modulus_pa << " nu " << material.poissons_ratio << '\n';
+  };
+  text << "body ";
+  add_solid(scene.body, text);
+  if (!scene.body.flat_bottom()) text << "held below " << scene.body.support_height_m << '\n';
+  add_material(scene.body.material);
+  for (const scene::Inclusion& inclusion : scene.body.inclusions) {
+    text << "inclusion at " << inclusion.center_m.transpose() << ' ';
+    add_solid(inclusion, text);
+    add_material(inclusion.material);
   }
-  text << "E " << scene.body.material.youngs_modulus_pa << " nu " << scene.body.material.poissons_ratio << '\n'
-       << "tool " << tool_text(scene.tool) << '\n'
+  text << "tool " << tool_text(scene.tool) << '\n'
        << "regions " << scene.fast.r_th_m << " apart\n"
        << "kinematics " << (scene.reference.kinematics == scene::Kinematics::finite ? "finite" : "small") << " levels "
        << scene.reference.levels << " element "
@@ -185,15 +211,6 @@ class Estimate {
  private:
   double work_left_, work_done_ = 0.0, seconds_ = 0.0;
 };
-
-template <int dim>
-Mesh<dim> level_mesh(const Scene& scene, const ModelChoice& choice, int level) {
-  if constexpr (dim == 3) {
-    return box_level(scene, choice, level);
-  } else {
-    return ball_level(scene, choice, level);
-  }
-}
 
 /// The depth of each region: of the one, the tool's; of several, that of the mesh's triangles nearest to each.
 std::vector<double> region_depths_m(const Scene& scene, const scene::Shape& body, const scene::Pose& pose,
@@ -474,8 +491,8 @@ class Run {
 
 /// Displacement unknowns of a level, without counting the few prescribed ones out.
 std::string expected_unknowns(const Scene& scene, const ModelChoice& choice, int level) {
-  const int nodes = choice.dim == 2 ? static_cast<int>(ball_level(scene, choice, level).node_count())
-                                    : static_cast<int>(box_level(scene, choice, level).node_count());
+  const int nodes = choice.dim == 2 ? level_mesh<2>(scene, choice, level).node_count()
+                                    : level_mesh<3>(scene, choice, level).node_count();
   return "at most " + std::to_string(choice.dim * nodes) + " displacement unknowns";
 }
 
@@ -504,21 +521,20 @@ std::string content_key(const Scene& scene) { return Store::key(identity_text(sc
 
 scene::Plan plan(const Scene& scene) {
   const ModelChoice choice = choose_model(scene);
-  const bool box = scene.body.shape == scene::BodyShape::box;
   const int mirrors = (choice.mirror_x ? 1 : 0) + (choice.mirror_y ? 1 : 0);
   scene::Plan plan;
   const auto add = [&](const char* part, bool modelled, const std::string& reason, const std::string& cost = {}) {
     plan.push_back({part, modelled, reason, cost});
   };
-  if (!box) {
+  if (choice.dim == 2) {
     add("axial symmetry", true, "body and tool are of revolution about one axis: one meridian plane is the whole body");
   } else if (mirrors > 0) {
     add(mirrors == 2 ? "quarter symmetry" : "half symmetry", true,
-        mirrors == 2 ? "box, tool and track lie on both symmetry planes"
-                     : "box, tool and track lie on one symmetry plane",
+        mirrors == 2 ? "body, inclusions, tool and track share the planes x = 0 and y = 0"
+                     : "body, inclusions, tool and track share one of the planes x = 0 and y = 0",
         mirrors == 2 ? "a quarter of the unknowns" : "half of the unknowns");
   } else {
-    add("symmetry", false, "the track leaves both symmetry planes of the box", "the full box is meshed");
+    add("symmetry", false, "body, inclusions, tool and track share no symmetry plane", "the whole body is meshed");
   }
   const bool finite = scene.reference.kinematics == scene::Kinematics::finite;
   add("finite strain", finite,
@@ -534,7 +550,14 @@ scene::Plan plan(const Scene& scene) {
       scene.tool.convex() ? "a convex tool touches a convex body once"
                           : "touching nodes nearer than fast.r_th_m, or of one cell face, are one region");
   add_tool_line(scene, add);
-  add("inclusions", false, "the body is of one material");
+  const std::size_t inclusions = scene.body.inclusions.size();
+  if (inclusions == 0) {
+    add("inclusions", false, "the body is of one material");
+  } else {
+    add("inclusions", true,
+        std::to_string(inclusions) + " of another material, each integration point has the one it lies in",
+        "small cells at their surfaces");
+  }
   add("uncertainty", scene.reference.levels >= 3,
       scene.reference.levels >= 3 ? "from " + std::to_string(scene.reference.levels) + " refinement levels"
                                   : "fewer than three levels: unknown, reported as infinite");

@@ -1,6 +1,8 @@
 // Closed forms that the solvers are held against, each with its range and source. SI units; the tool is rigid.
 #pragma once
 
+#include "scene/scene.h"
+
 #include <cmath>
 
 namespace touchstone::verification {
@@ -71,6 +73,19 @@ inline RoundedPunch rounded_punch(double E_star_pa, double b_m, double e_m, doub
 /// Incompressible neo-Hookean bar: force over rest area at stretch lam, P = mu (lam - lam^-2); negative in compression.
 /// Laterally free, P = lam sigma_1 / lam with sigma_1 - sigma_2 = mu (lam^2 - 1/lam) and sigma_2 = 0.
 inline double neo_hookean_bar_pa(double mu_pa, double lam) { return mu_pa * (lam - 1.0 / (lam * lam)); }
+
+/// A ball of radius b with a concentric one of radius a inside, in small strain; its surface is moved out by strain *
+/// b: the radial stress there. In the outer part u = B r + C / r^2, inside u = A r; displacement and stress 3 K A and
+/// 3 K B - 4 mu C / r^3 are continuous. R. M. Christensen, Mechanics of Composite Materials (1979), 2.3.
+inline double two_ball_stress_pa(const scene::Material& outer, const scene::Material& inner, double a_m, double b_m,
+                                 double strain) {
+  const double K = outer.bulk_modulus_pa(), mu = outer.shear_modulus_pa(), K_inner = inner.bulk_modulus_pa();
+  const double share = std::pow(a_m / b_m, 3);
+  // C = c a^3 with 3 K_inner (B + c) = 3 K B - 4 mu c, and B + c share = strain.
+  const double c_over_B = 3.0 * (K - K_inner) / (3.0 * K_inner + 4.0 * mu);
+  const double B = strain / (1.0 + c_over_B * share);
+  return 3.0 * K * B - 4.0 * mu * c_over_B * B * share;
+}
 
 /// Inflation of a thick incompressible neo-Hookean sphere, inner radius A, outer B, outside free: inner pressure at
 /// inner stretch la, p = 2 mu [1/lb - 1/la + (lb^-4 - la^-4) / 4], lb^3 = 1 + (la^3 - 1)(A/B)^3. A. E. Green, W. Zerna,
