@@ -443,6 +443,8 @@ class Run {
       record.displacement_m = shapes[instant];
       add_regions(seen.regions, instant, ids, record);
       result.instants.push_back(std::move(record));
+      std::vector<scene::Vec3>& middles_m = result.region_middles_m.emplace_back();
+      for (const ContactRegion& region : seen.regions) middles_m.push_back(region.center_m);
       result.residual_penetration_m.push_back(seen.node_penetration_m);
       result.between_nodes_penetration_m.push_back(seen.between_nodes_penetration_m);
       result.equilibrium_rel.push_back(seen.equilibrium_rel);
