@@ -90,6 +90,44 @@ TEST(Bodies, EllipsoidWithEqualAxesIsTheSphere) {
   EXPECT_LT((a.points_m - b.points_m).cwiseAbs().maxCoeff(), 1e-15);
 }
 
+/// Force of the tool of a scene at its last place, on a mesh of the refinement sequence.
+template <int dim>
+double last_force_n(const scene::Scene& scene, ModelChoice choice, int level) {
+  choice.dim = dim;
+  ContactProblem<dim> body(level_mesh<dim>(scene, choice, level), scene.body.material, scene::Kinematics::finite,
+                           choice.mirror_x, choice.mirror_y, 1);
+  State<dim> state = body.rest();
+  for (const double time_s : scene::instants_s(scene)) {
+    body.set_tool({choice.tool, scene::pose_at(scene.track, time_s)});
+    const NewtonReport report = body.solve(state);
+    EXPECT_TRUE(report.converged) << report.trouble;
+  }
+  return body.observe(state).force_n.z();
+}
+
+/// A round punch on a round body with a ball in it, on the meshes the solver takes.
+TEST(Bodies, PunchedCylinderInSpaceAgreesWithItsMeridianPlane) {
+  scene::Scene scene;
+  scene.body = turned({{{0.0, 0.0}, {0.03, 0.0}, {0.03, 0.04}, {0.0, 0.04}}, {}});
+  scene::Inclusion& ball = scene.body.inclusions.emplace_back();
+  ball.shape = scene::BodyShape::sphere;
+  ball.radius_m = 0.01;
+  ball.center_m = {0.0, 0.0, 0.02};
+  ball.material = {3e5, 0.33};
+  scene.tool.shape = scene::ToolShape::cylinder;
+  scene.tool.radius_m = 0.01;
+  scene.tool.length_m = 0.03;
+  scene.tool.edge_radius_m = 0.005;
+  scene.track = {{0.0, {{0.0, 0.0, 0.05475}, Eigen::Quaterniond::Identity()}},
+                 {1.0, {{0.0, 0.0, 0.05400}, Eigen::Quaterniond::Identity()}}};
+  scene.compare.instants = 4;
+  const ModelChoice choice = choose_model(scene);
+  ASSERT_EQ(choice.dim, 2);
+  const double plane_n = last_force_n<2>(scene, choice, 2);
+  EXPECT_GT(plane_n, 10.0);
+  EXPECT_NEAR(last_force_n<3>(scene, choice, 0) / plane_n, 1.0, 0.02);
+}
+
 /// The same ellipsoid with its longer axis along x and along y: the mesh has no preferred side.
 TEST(Bodies, EllipsoidTurnedByARightAngle) {
   double force_n[2];

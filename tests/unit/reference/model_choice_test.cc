@@ -150,6 +150,30 @@ TEST(ModelChoice, NeedsTheToolsSymmetryToo) {
   EXPECT_EQ(choose_model(scene).dim, 3);
 }
 
+TEST(ModelChoice, AxialSymmetryNeedsBodyToolAndInclusions) {
+  scene::Scene scene = cube({0, 0, .0555}, {0, 0, .052});
+  scene.body.shape = scene::BodyShape::revolution;
+  scene.body.profile = scene::cylinder_profile(0.03, 0.04, 0.005);
+  scene.tool.shape = scene::ToolShape::cylinder;
+  scene.tool.radius_m = 0.006;
+  scene.tool.length_m = 0.03;
+  scene.tool.edge_radius_m = 0.0015;
+  EXPECT_EQ(choose_model(scene).dim, 2);
+  EXPECT_TRUE(unsupported_parts(scene).empty());
+  scene::Inclusion& ball = scene.body.inclusions.emplace_back();
+  ball.shape = scene::BodyShape::sphere;
+  ball.radius_m = 0.005;
+  ball.center_m = {0, 0, .02};
+  EXPECT_EQ(choose_model(scene).dim, 2);
+  ball.center_m.x() = 0.01;
+  EXPECT_EQ(choose_model(scene).name(scene::Kinematics::finite), "half 3D u-p finite strain");
+  EXPECT_TRUE(choose_model(scene).mirror_y);
+  scene.body.inclusions.clear();
+  scene.tool.shape = scene::ToolShape::box;
+  scene.tool.size_m = {.01, .012, .03};
+  EXPECT_EQ(choose_model(scene).name(scene::Kinematics::finite), "quarter 3D u-p finite strain");
+}
+
 TEST(ModelChoice, RefusesAPinTooSharp) {
   scene::Scene scene = cube({0, 0, .08}, {0, 0, .074});
   scene.tool.shape = scene::ToolShape::cylinder;
