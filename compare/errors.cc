@@ -1,6 +1,7 @@
 #include "compare/errors.h"
 
 #include "compare/moved_surface.h"
+#include "reference/tool_distance.h"
 
 #include <fmt/format.h>
 
@@ -61,7 +62,7 @@ void require_aligned(const fast::Run& run, const reference::Result& result) {
               result.displacement_uncertainty_m.size() == instants &&
               result.residual_penetration_m.size() == instants &&
               result.between_nodes_penetration_m.size() == instants && result.equilibrium_rel.size() == instants &&
-              result.volume_change_rel.size() == instants,
+              result.volume_change_rel.size() == instants && result.region_middles_m.size() == instants,
           "a series lacks an instant");
   const Eigen::Index points = run.surface.points_m.cols();
   for (std::size_t t = 0; t < instants; ++t) {
@@ -113,9 +114,17 @@ void compare_forces(const fast::Run& run, const reference::Result& result, Error
   if (deep_instants > 0 && !deep_without_force) errors.force_rel_deep = deep.relative();
 }
 
+/// Of the rest surface: below the middle of every region, or nearest to the tool's centre where there is none.
+std::vector<scene::Vec3> contact_points_m(const scene::Shape& body, const reference::Result& result, std::size_t t) {
+  std::vector<scene::Vec3> points_m = result.region_middles_m[t];
+  if (points_m.empty()) points_m.push_back(result.instants[t].tool.position_m);
+  for (scene::Vec3& p_m : points_m) p_m = body.query(p_m).point_m;
+  return points_m;
+}
+
 void compare_shapes(const scene::Scene& scene, const fast::Run& run, const reference::Result& result, Errors& errors) {
   const auto body = scene::body_shape(scene.body);
-  const auto tool = scene::tool_shape(scene.tool);
+  const auto tool = reference::tool_distance(scene.tool);
   const scene::Surface& surface = run.surface;
   const Eigen::Index points = surface.points_m.cols();
   const double rest_m3 = enclosed_volume_m3(surface, Eigen::Matrix3Xd::Zero(3, points));
@@ -130,7 +139,7 @@ void compare_shapes(const scene::Scene& scene, const fast::Run& run, const refer
     const Eigen::Matrix3Xd& reference_m = result.instants[t].displacement_m;
     const Eigen::VectorXd& uncertainty_m = result.displacement_uncertainty_m[t];
     const scene::Pose& pose = result.instants[t].tool;
-    const scene::Vec3 contact_m = body->query(pose.position_m).point_m;
+    const std::vector<scene::Vec3> contacts_m = contact_points_m(*body, result, t);
     const double tolerance_m = contact_tolerance_share * e.depth_m;
 
     e.touched_fast.assign(static_cast<std::size_t>(points), false);
@@ -154,8 +163,10 @@ void compare_shapes(const scene::Scene& scene, const fast::Run& run, const refer
       now.add(area_m2, error_m, uncertainty_m[i], scale_m);
       all.add(area_m2, error_m, uncertainty_m[i], scale_m);
       if (e.in_contact) {
-        SquareSums& part = (surface.points_m.col(i) - contact_m).norm() <= scene.fast.r_R_m ? inside : outside;
-        part.add(area_m2, error_m, uncertainty_m[i], scale_m);
+        const bool near = std::any_of(contacts_m.begin(), contacts_m.end(), [&](const scene::Vec3& contact_m) {
+          return (surface.points_m.col(i) - contact_m).norm() <= scene.fast.r_R_m;
+        });
+        (near ? inside : outside).add(area_m2, error_m, uncertainty_m[i], scale_m);
       }
       if (std::isnan(error_m) || error_m > e.shape_max_m) {
         e.shape_max_m = error_m;

@@ -63,9 +63,9 @@ struct Errors {
   Measure force_rel_deep;
   /// sqrt(sum over instants and rest points of A |u_f - u_r|^2 / the same of A |u_r|^2). Uncertainty: of u_r, same sum.
   Measure shape_rel_l2;
-  /// The same sums over rest points within, and beyond, fast.r_R_m of the contact point, instants in contact.
-  /// The contact point is the point of the rest surface nearest to the tool's centre; the distance is straight, at
-  /// rest.
+  /// The same sums over rest points within, and beyond, fast.r_R_m of a contact point, instants in contact.
+  /// Contact points are the points of the rest surface nearest to the middles of the reference's regions, to the tool's
+  /// centre where it has none; the distance is straight, at rest, to the nearest.
   Measure shape_inside_r_rel_l2, shape_outside_r_rel_l2;
   /// Share of the summed squared shape error that lies beyond fast.r_R_m; absent where there is no error.
   std::optional<double> shape_error_outside_share;

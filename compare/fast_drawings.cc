@@ -301,32 +301,6 @@ void show_whole(Plot& plot, const scene::Surface& surface) {
   plot.y_range = {z.first - margin_mm, z.second + margin_mm};
 }
 
-/// Part of a section: centre and half width.
-struct Window {
-  double x_m, top_m, half_m;
-};
-
-/// Where the tool reaches into the rest body, with as much again around.
-Window contact_window(const scene::Scene& scene, const scene::Surface& surface, const InstantRecord& record) {
-  const auto body = scene::body_shape(scene.body);
-  constexpr int steps = 16;
-  Vec3 low_m = Vec3::Constant(std::numeric_limits<double>::infinity()), high_m = -low_m;
-  for (const auto& outline_m : tool_outlines_m(scene.tool, record.tool, cut_y_m(surface, record.tool))) {
-    for (std::size_t i = 0; i < outline_m.size(); ++i) {
-      const Vec3& next_m = outline_m[(i + 1) % outline_m.size()];
-      for (int step = 0; step < steps; ++step) {
-        const Vec3 p_m = outline_m[i] + (next_m - outline_m[i]) * step / steps;
-        if (body->signed_distance_m(p_m) > 0.0) continue;
-        low_m = low_m.cwiseMin(p_m);
-        high_m = high_m.cwiseMax(p_m);
-      }
-    }
-  }
-  if (!(low_m.x() <= high_m.x())) low_m = high_m = body->query(record.tool.position_m).point_m;
-  return {0.5 * (low_m.x() + high_m.x()), high_m.z(),
-          std::max({0.85 * (high_m.x() - low_m.x()), 2.5 * record.depth_m, 0.01 * size_m(surface)})};
-}
-
 /// Of one scale at all instants; with several regions at a time also of one place.
 std::vector<Window> contact_windows(const scene::Scene& scene, const fast::Run& run,
                                     const std::vector<std::size_t>& instants) {
@@ -346,11 +320,6 @@ std::vector<Window> contact_windows(const scene::Scene& scene, const fast::Run& 
   }
   for (Window& window : windows) window.half_m = widest.half_m;
   return windows;
-}
-
-void show_contact(Plot& plot, const Window& window) {
-  plot.x_range = {1e3 * (window.x_m - window.half_m), 1e3 * (window.x_m + window.half_m)};
-  plot.y_range = {1e3 * (window.top_m - 0.75 * window.half_m), 1e3 * (window.top_m + 0.5 * window.half_m)};
 }
 
 /// The same section at several instants, side by side.

@@ -66,11 +66,11 @@ double hausdorff_m(const scene::Surface& surface, const Eigen::Matrix3Xd& displa
 }
 
 Eigen::VectorXd tool_gaps_m(const scene::Surface& surface, const Eigen::Matrix3Xd& displacement_m,
-                            const scene::Shape& tool, const scene::Pose& pose) {
+                            const reference::ToolDistance& tool, const scene::Pose& pose) {
   Eigen::VectorXd gaps_m(surface.points_m.cols());
   for (Eigen::Index i = 0; i < surface.points_m.cols(); ++i) {
     const scene::Vec3 p_W_m = surface.points_m.col(i) + displacement_m.col(i);
-    gaps_m[i] = tool.signed_distance_m(pose.orientation.conjugate() * (p_W_m - pose.position_m));
+    gaps_m[i] = tool.at(pose.orientation.conjugate() * (p_W_m - pose.position_m)).value_m;
   }
   return gaps_m;
 }

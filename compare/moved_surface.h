@@ -1,6 +1,7 @@
 // Measures of a rest surface moved by one displacement per rest point.
 #pragma once
 
+#include "reference/tool_gap.h"
 #include "scene/scene.h"
 #include "scene/surface.h"
 
@@ -15,8 +16,8 @@ namespace touchstone::compare {
 [[nodiscard]] double hausdorff_m(const scene::Surface& surface, const Eigen::Matrix3Xd& displacement_a_m,
                                  const Eigen::Matrix3Xd& displacement_b_m);
 
-/// Signed distance of every moved rest point from the tool's surface [m], negative inside the tool.
+/// Signed distance of every moved rest point from the tool's surface [m], negative inside the tool, infinite far away.
 [[nodiscard]] Eigen::VectorXd tool_gaps_m(const scene::Surface& surface, const Eigen::Matrix3Xd& displacement_m,
-                                          const scene::Shape& tool, const scene::Pose& pose);
+                                          const reference::ToolDistance& tool, const scene::Pose& pose);
 
 }  // namespace touchstone::compare

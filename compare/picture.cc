@@ -315,17 +315,41 @@ Plot section_plot(const scene::Scene& scene, const scene::Surface& surface, cons
   return plot;
 }
 
+Window contact_window(const scene::Scene& scene, const scene::Surface& surface, const scene::InstantRecord& record) {
+  const auto body = scene::body_shape(scene.body);
+  constexpr int steps = 16;
+  const double size_m = (surface.points_m.rowwise().maxCoeff() - surface.points_m.rowwise().minCoeff()).maxCoeff();
+  Vec3 low_m = Vec3::Constant(std::numeric_limits<double>::infinity()), high_m = -low_m;
+  for (const auto& outline_m : tool_outlines_m(scene.tool, record.tool, cut_y_m(surface, record.tool))) {
+    for (std::size_t i = 0; i < outline_m.size(); ++i) {
+      const Vec3& next_m = outline_m[(i + 1) % outline_m.size()];
+      for (int step = 0; step < steps; ++step) {
+        const Vec3 p_m = outline_m[i] + (next_m - outline_m[i]) * step / steps;
+        if (body->signed_distance_m(p_m) > 0.0) continue;
+        low_m = low_m.cwiseMin(p_m);
+        high_m = high_m.cwiseMax(p_m);
+      }
+    }
+  }
+  if (!(low_m.x() <= high_m.x())) low_m = high_m = body->query(record.tool.position_m).point_m;
+  return {0.5 * (low_m.x() + high_m.x()), high_m.z(),
+          std::max({0.85 * (high_m.x() - low_m.x()), 2.5 * record.depth_m, 0.01 * size_m})};
+}
+
+void show_contact(Plot& plot, const Window& window) {
+  plot.x_range = {1e3 * (window.x_m - window.half_m), 1e3 * (window.x_m + window.half_m)};
+  plot.y_range = {1e3 * (window.top_m - 0.75 * window.half_m), 1e3 * (window.top_m + 0.5 * window.half_m)};
+}
+
 std::string section_svg(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
-                        std::size_t instant, double half_width_m) {
+                        std::size_t instant, bool around_contact) {
   const scene::Pose& pose = result.instants[instant].tool;
   Plot plot = section_plot(scene, run.surface, pose,
                            {{"reference", Look::reference, result.instants[instant].displacement_m},
                             {"fast model", Look::fast, run.instants[instant].displacement_m}});
-  if (half_width_m > 0.0) {
+  if (around_contact) {
     plot.title = "Around the contact";
-    const Vec3 contact_m = scene::body_shape(scene.body)->query(pose.position_m).point_m;
-    plot.x_range = {1e3 * (contact_m.x() - half_width_m), 1e3 * (contact_m.x() + half_width_m)};
-    plot.y_range = {1e3 * (contact_m.z() - 0.75 * half_width_m), 1e3 * (contact_m.z() + 0.5 * half_width_m)};
+    show_contact(plot, contact_window(scene, run.surface, result.instants[instant]));
   } else {
     plot.title = "The whole section";
   }

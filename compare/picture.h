@@ -34,9 +34,20 @@ struct DeformedBody {
 [[nodiscard]] Plot section_plot(const scene::Scene& scene, const scene::Surface& surface, const scene::Pose& pose,
                                 const std::vector<DeformedBody>& bodies);
 
+/// Part of a section: centre and half width.
+struct Window {
+  double x_m, top_m, half_m;
+};
+
+/// Where the tool reaches into the rest body, with as much again around.
+[[nodiscard]] Window contact_window(const scene::Scene& scene, const scene::Surface& surface,
+                                    const scene::InstantRecord& record);
+
+/// Sets the ranges of a section.
+void show_contact(Plot& plot, const Window& window);
+
 /// Section at the tool's centre, y constant, true scale, in millimetres: rest outline, both deformed outlines, tool.
-/// @param half_width_m  of what is shown around the contact; zero: the whole body
 [[nodiscard]] std::string section_svg(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
-                                      std::size_t instant, double half_width_m);
+                                      std::size_t instant, bool around_contact);
 
 }  // namespace touchstone::compare

@@ -154,13 +154,12 @@ std::string shape_section(const ReportContent& c) {
   out +=
       figure(half_cut_svg(c.scene, c.run, c.result, errors.deepest),
              fmt::format("Both bodies at the deepest instant ({}, {} deep), cut in half at the tool's centre; the grey "
-                         "disc is the tool's cut. True proportions, displacements not exaggerated.",
+                         "shape is the tool's cut. True proportions, displacements not exaggerated.",
                          quantity_text(deepest.time_s, "s"), quantity_text(deepest.depth_m, "m")));
-  const double around_m = std::max(2.5 * deepest.depth_m, 1.4 * c.scene.tool.radius_m);
   out += "<div class=\"plots\">\n";
-  out += figure(section_svg(c.scene, c.run, c.result, errors.deepest, 0.0),
+  out += figure(section_svg(c.scene, c.run, c.result, errors.deepest, false),
                 "Where the cut plane of the rest body has gone; true scale.");
-  out += figure(section_svg(c.scene, c.run, c.result, errors.deepest, around_m),
+  out += figure(section_svg(c.scene, c.run, c.result, errors.deepest, true),
                 "A surface should lie on the tool where they touch, and nowhere inside it; between its points it is "
                 "drawn straight.");
   out +=

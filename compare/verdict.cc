@@ -77,10 +77,10 @@ std::string reason_paragraph(const scene::Scene& scene, const Errors& errors) {
   if (!errors.force_peak_rel.distinguishable() || !(deepest.force_fast_n > 0.0)) return "";
   const double d = deepest.depth_m;
   const double law_n = scene.contact.k1_n_per_m * d + scene.contact.k3_n_per_m3 * d * d * d;
-  const double hertz_n = hertz_force_n(scene, d);
+  const std::optional<double> hertz_n = hertz_force_n(scene, d);
   std::string text;
-  const bool too_low = law_n * mismatch < hertz_n && deepest.force_fast_n < deepest.force_reference_n;
-  const bool too_high = law_n > mismatch * hertz_n && deepest.force_fast_n > deepest.force_reference_n;
+  const bool too_low = hertz_n && law_n * mismatch < *hertz_n && deepest.force_fast_n < deepest.force_reference_n;
+  const bool too_high = hertz_n && law_n > mismatch * *hertz_n && deepest.force_fast_n > deepest.force_reference_n;
   if (too_low || too_high) {
     text = fmt::format(
         "Reason: the scene's contact constants do not describe its material. The fast model's law "
@@ -90,7 +90,7 @@ std::string reason_paragraph(const scene::Scene& scene, const Errors& errors) {
         "must be tuned.",
         number_text(scene.contact.k1_n_per_m), number_text(scene.contact.k3_n_per_m3), newtons(law_n),
         quantity_text(d, "m"), number_text(1e-6 * scene.body.material.youngs_modulus_pa),
-        number_text(scene.body.material.poissons_ratio), newtons(hertz_n));
+        number_text(scene.body.material.poissons_ratio), newtons(*hertz_n));
     if (scene.contact.k1_n_per_m == table1_k1_n_per_m && scene.contact.k3_n_per_m3 == table1_k3_n_per_m3) {
       text +=
           " These are the paper's Table I for rubber, read in millimetres and newtons; the paper tuned them to no "
@@ -119,10 +119,10 @@ std::string reason_paragraph(const scene::Scene& scene, const Errors& errors) {
   }
   if (most > 1.3 * least) {
     text += fmt::format(
-        "{}The law's form matters too: the fast model gives {} of the reference's force at {} and {} at {}, so no "
+        "{} the fast model gives {} of the reference's force at {} and {} at {}, so no "
         "single factor would put it right.",
-        text.empty() ? "" : " ", percent_text(least), quantity_text(at_least_m, "m"), percent_text(most),
-        quantity_text(at_most_m, "m"));
+        text.empty() ? "The law's form matters:" : " The law's form matters too:", percent_text(least),
+        quantity_text(at_least_m, "m"), percent_text(most), quantity_text(at_most_m, "m"));
   }
   return text;
 }
@@ -176,18 +176,23 @@ std::string cost_paragraph(const fast::Run& run, const reference::Result& result
                       [](double sum, const reference::LevelRecord& level) { return sum + level.wall_s; });
   return fmt::format(
       "What that costs: one step of the fast model takes {} (median; 99.9 % of the steps below {}); the reference took "
-      "{} for {} instants on {} meshes.",
+      "{} for {} instants on {} mesh{}.",
       quantity_text(run.step.p50_us, "us"), quantity_text(run.step.p999_us, "us"), quantity_text(wall_s, "s"),
-      result.instants.size(), result.levels.size());
+      result.instants.size(), result.levels.size(), result.levels.size() == 1 ? "" : "es");
 }
 
 }  // namespace
 
-double hertz_force_n(const scene::Scene& scene, double depth_m) {
+std::optional<double> hertz_force_n(const scene::Scene& scene, double depth_m) {
+  const scene::Body& body = scene.body;
+  if (scene.tool.shape != scene::ToolShape::sphere || body.shape == scene::BodyShape::revolution ||
+      !body.inclusions.empty())
+    return std::nullopt;
   double curvature_per_m = 1.0 / scene.tool.radius_m;
-  if (scene.body.shape == scene::BodyShape::sphere) curvature_per_m += 1.0 / scene.body.radius_m;
-  return 4.0 / 3.0 * scene.body.material.contact_modulus_pa() * std::sqrt(1.0 / curvature_per_m) *
-         std::pow(depth_m, 1.5);
+  if (body.shape == scene::BodyShape::sphere) curvature_per_m += 1.0 / body.radius_m;
+  if (body.shape == scene::BodyShape::ellipsoid)
+    curvature_per_m += body.semi_axes_m.z() / (body.semi_axes_m.x() * body.semi_axes_m.y());
+  return 4.0 / 3.0 * body.material.contact_modulus_pa() * std::sqrt(1.0 / curvature_per_m) * std::pow(depth_m, 1.5);
 }
 
 std::vector<std::string> verdict(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,

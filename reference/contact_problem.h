@@ -1,19 +1,20 @@
-// One elastic body on one mesh against the rigid ball, frictionless: assembly, active set, Newton.
+// One elastic body on one mesh against a rigid tool, frictionless: assembly, active set, Newton.
 //
 // Unknowns are nodal displacements u and per-cell pressures p. Equilibrium with contact forces lambda_n >= 0 on the
 // surface nodes n,
 //   F_int(u, p) = sum_n lambda_n grad g_n,   g_n >= 0,   lambda_n g_n = 0,
 // is solved by the primal-dual active set method: in every iteration a touching node's displacement along grad g_n is
 // eliminated exactly (n . du = -g), and lambda_n is read from the internal force. A node stays touching while
-// lambda_n / w_n - c g_n > 0 (w_n its area, c = E / R) and starts to touch when g_n < 0. At the end the gap of every
-// touching node is zero to round-off and no other node penetrates.
-// Source: M. Hintermueller, K. Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865-888; for contact S. Hueeber,
-// B. I. Wohlmuth, Comput. Methods Appl. Mech. Eng. 194 (2005) 3147-3166.
+// lambda_n / w_n - c g_n > 0 (w_n its area, c = E over the tool's half width) and starts to touch when g_n < 0. At the
+// end the gap of every touching node is zero to round-off and no other node penetrates. Source: M. Hintermueller, K.
+// Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865-888; for contact S. Hueeber, B. I. Wohlmuth, Comput. Methods Appl.
+// Mech. Eng. 194 (2005) 3147-3166.
 #pragma once
 
 #include "reference/cholmod_solver.h"
 #include "reference/element.h"
 #include "reference/mesh.h"
+#include "reference/regions.h"
 #include "reference/tool_gap.h"
 #include "scene/frames.h"
 #include "scene/scene.h"
@@ -46,8 +47,8 @@ struct NewtonReport {
 
 /// What a solved state says, of the whole body: mirror images are counted.
 struct Observation {
-  scene::Vec3 force_n = scene::Vec3::Zero();          ///< on the tool, sum of the contact pressures
-  scene::Vec3 torque_nm = scene::Vec3::Zero();        ///< on the tool, about its centre
+  scene::Vec3 force_n = scene::Vec3::Zero();          ///< on the tool, sum over the regions
+  scene::Vec3 torque_nm = scene::Vec3::Zero();        ///< on the tool, about its mass centre
   scene::Vec3 support_force_n = scene::Vec3::Zero();  ///< of the support on the body
   double area_m2 = 0.0;                               ///< of contact, on the deformed surface
   double contact_radius_m = 0.0;                      ///< bodies of revolution only: of the contact's edge
@@ -55,6 +56,7 @@ struct Observation {
   double between_nodes_penetration_m = 0.0;           ///< largest over face quadrature points and hanging nodes
   double equilibrium_rel = 0.0;                       ///< |contact + support| / |contact|
   double volume_change_rel = 0.0;
+  std::vector<ContactRegion> regions;
 };
 
 /// The discrete problem. Not thread-safe; uses `threads` threads inside.
@@ -73,7 +75,7 @@ class ContactProblem {
   void prescribe(int node, int direction, double displacement_m);
 
   /// The tool's place for the next solve; without a tool nothing touches.
-  void set_tool(const BallTool<dim>& tool) { tool_ = tool; }
+  void set_tool(const RigidTool<dim>& tool) { tool_ = tool; }
 
   [[nodiscard]] State<dim> rest() const;
 
@@ -81,14 +83,13 @@ class ContactProblem {
   /// converged: the last tangent was positive definite.
   NewtonReport solve(State<dim>& state, const Watch& watch = {});
 
-  [[nodiscard]] Observation observe(const State<dim>& state) const;
+  /// @param region_gap_m  touching nodes of one cell face, or nearer to each other than this, are of one region; in two
+  ///                      dimensions all are
+  [[nodiscard]] Observation observe(const State<dim>& state, double region_gap_m = 0.0) const;
 
   /// Internal nodal forces of a state, hanging nodes' passed on to their masters [N]: the support's force where
   /// displacement is prescribed, zero elsewhere but for contact.
   [[nodiscard]] Eigen::Matrix<double, dim, Eigen::Dynamic> internal_forces(const State<dim>& state) const;
-
-  /// True when some point of the free surface is inside the tool at rest.
-  [[nodiscard]] bool tool_reaches_rest_surface() const;
 
   [[nodiscard]] const Mesh<dim>& mesh() const noexcept { return mesh_; }
   [[nodiscard]] int unknowns() const noexcept { return unknowns_; }
@@ -146,7 +147,7 @@ class ContactProblem {
   bool mirror_x_, mirror_y_;
   int threads_;
   Element<dim> element_;
-  std::optional<BallTool<dim>> tool_;
+  std::optional<RigidTool<dim>> tool_;
 
   // Per node.
   std::vector<int> hanging_;       // index into mesh_.hanging or -1

@@ -9,6 +9,9 @@
 namespace touchstone::reference {
 namespace {
 
+/// mu / kappa of what Newton takes for incompressible.
+constexpr double nearly_incompressible = 1e-4;
+
 /// Values and slopes of the three quadratic Lagrange polynomials with nodes 0, 1/2, 1.
 void quadratic(double x, double (&value)[3], double (&slope)[3]) {
   value[0] = (1.0 - x) * (1.0 - 2.0 * x);
@@ -81,21 +84,27 @@ GaussRule<dim>::GaussRule() {
 MixedMaterial::MixedMaterial(const scene::Material& material, scene::Kinematics kinematics_in)
     : mu_pa(material.shear_modulus_pa()),
       inverse_kappa_per_pa(3.0 * (1.0 - 2.0 * material.poissons_ratio) / material.youngs_modulus_pa),
-      inverse_kappa_tangent_per_pa(std::max(inverse_kappa_per_pa, 1e-4 / mu_pa)),
+      inverse_kappa_tangent_per_pa(std::max(inverse_kappa_per_pa, nearly_incompressible / mu_pa)),
       kinematics(kinematics_in) {}
 
 template <int dim>
-Element<dim>::Element(const MixedMaterial& material) : material_(material) {
+Element<dim>::Element(const MixedMaterial& body, const std::vector<MixedMaterial>& inclusions) : materials_{body} {
+  materials_.insert(materials_.end(), inclusions.begin(), inclusions.end());
+  // A soft incompressible inclusion is squeezed by the stiffer body around it: Newton needs a bulk modulus to match.
+  for (MixedMaterial& material : materials_) {
+    material.inverse_kappa_tangent_per_pa =
+        std::max(material.inverse_kappa_per_pa, nearly_incompressible / std::max(material.mu_pa, body.mu_pa));
+  }
   for (const auto& point : rule_.points) shapes_.emplace_back(point);
 }
 
 template <int dim>
 bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& p_pa, bool with_tangent,
-                            CellResult<dim>& out) const {
+                            CellResult<dim>& out, const Materials* materials) const {
   constexpr int padded = (nodes + 3) / 4 * 4;
   constexpr int pressures = CellResult<dim>::pressures;
   constexpr int hoop = 2;  // the out-of-plane direction of a ring
-  const bool finite = material_.kinematics == scene::Kinematics::finite;
+  const bool finite = materials_[0].kinematics == scene::Kinematics::finite;
 
   out.force_n.setZero();
   out.volume_m3.setZero();
@@ -107,7 +116,8 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
   const Eigen::Matrix<double, dim, 1> low_m = X_m.rowwise().minCoeff(), high_m = X_m.rowwise().maxCoeff();
   const Eigen::Matrix<double, dim, 1> center_m = 0.5 * (low_m + high_m);
   const double scale_m = (high_m - low_m).maxCoeff();
-  Eigen::Matrix<double, pressures, pressures> pressure_mass = Eigen::Matrix<double, pressures, pressures>::Zero();
+  // Integral of psi psi' / kappa, with the tangent's kappa.
+  Eigen::Matrix<double, pressures, pressures> compliance = Eigen::Matrix<double, pressures, pressures>::Zero();
 
   // Blocks (i, j), i <= j, of the tangent, and the part that is the same on the diagonal blocks.
   constexpr int blocks = dim * (dim + 1) / 2;
@@ -122,8 +132,19 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
   alignas(64) double g[dim][padded] = {}, h[dim][padded] = {}, t[dim][padded] = {}, s[dim][padded] = {};
   alignas(64) double v[dim][padded] = {}, e[padded] = {}, x[3][padded] = {}, y[padded] = {};
 
+  // The pressure unknowns are the least compressible material's. Points of softer bulk have a pressure of their own,
+  // kappa (J - 1), and are only tied to the unknowns so weakly that these stay determined in a sliver.
+  const MixedMaterial* least_compressible = &materials_[materials ? (*materials)[0] : 0];
+  for (int q = 1; materials && q < GaussRule<dim>::size; ++q) {
+    const MixedMaterial& material = materials_[(*materials)[q]];
+    if (material.inverse_kappa_per_pa < least_compressible->inverse_kappa_per_pa) least_compressible = &material;
+  }
+  const double tie_per_pa = nearly_incompressible / least_compressible->mu_pa;
+
   for (int q = 0; q < GaussRule<dim>::size; ++q) {
     const Q2<dim>& shape = shapes_[q];
+    const MixedMaterial& material = materials_[materials ? (*materials)[q] : 0];
+    const bool own_pressure = material.inverse_kappa_per_pa > least_compressible->inverse_kappa_per_pa;
     const Eigen::Matrix<double, dim, dim> jacobian_m = X_m * shape.gradient;
     const Eigen::Matrix<double, nodes, dim> G = shape.gradient * jacobian_m.inverse();  // dN/dX
     double W_m3 = rule_.weights[q] * jacobian_m.determinant();
@@ -139,14 +160,22 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
     Pressure psi;
     psi[0] = 1.0;
     psi.template tail<dim>() = (place_m - center_m) / scale_m;
-    const double p = psi.dot(p_pa);
-    const PointLaw law = finite ? neo_hookean(H, material_.mu_pa, p) : linear_elastic(H, material_.mu_pa, p);
+    const double unknown_pa = psi.dot(p_pa);
+    const double p =
+        own_pressure ? (finite ? volume_change(H) : H.trace()) / material.inverse_kappa_per_pa : unknown_pa;
+    PointLaw law = finite ? neo_hookean(H, material.mu_pa, p) : linear_elastic(H, material.mu_pa, p);
+    if (own_pressure) law.V_pa += law.J * law.J / material.inverse_kappa_per_pa;
     out.smallest_J = std::min(out.smallest_J, 1.0 + law.J_minus_1);
     if (finite && law.J <= smallest_allowed_J) return false;
     out.rest_volume_m3 += W_m3;
     out.volume_change_m3 += W_m3 * law.J_minus_1;
-    out.volume_m3 += W_m3 * (law.J_minus_1 - material_.inverse_kappa_per_pa * p) * psi;
-    pressure_mass += W_m3 * psi * psi.transpose();
+    if (own_pressure) {
+      out.volume_m3 -= W_m3 * tie_per_pa * unknown_pa * psi;
+      compliance += tie_per_pa * W_m3 * psi * psi.transpose();
+    } else {
+      out.volume_m3 += W_m3 * (law.J_minus_1 - material.inverse_kappa_per_pa * unknown_pa) * psi;
+      compliance += material.inverse_kappa_tangent_per_pa * W_m3 * psi * psi.transpose();
+    }
 
     const Eigen::Matrix<double, nodes, dim> gradients = G * law.F_inverse.template topLeftCorner<dim, dim>();
     const Eigen::Matrix3d tau = law.tau_iso_pa + law.pJ_pa * Eigen::Matrix3d::Identity();
@@ -208,6 +237,7 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
       for (int a = 0; a < nodes; ++a) y[a] = W_m3 * hoop_pa * e[a];
       add(K[0], y, e, none, none, none, none);
     }
+    if (own_pressure) continue;
     for (int i = 0; i < dim; ++i) {
       for (int m = 0; m < pressures; ++m) {
         const double factor = W_m3 * law.J * psi[m];
@@ -228,9 +258,8 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
       }
     }
   }
-  // Condense: dp = M_kappa^-1 (volume + coupling du), M_kappa = mass / kappa in the tangent.
-  const Eigen::Matrix<double, pressures, pressures> inverse =
-      (material_.inverse_kappa_tangent_per_pa * pressure_mass).inverse();
+  // Condense: dp = compliance^-1 (volume + coupling du).
+  const Eigen::Matrix<double, pressures, pressures> inverse = compliance.inverse();
   out.pressure_gain = inverse * coupling;
   out.pressure_offset_pa = inverse * out.volume_m3;
   out.stiffness.noalias() += coupling.transpose() * out.pressure_gain;

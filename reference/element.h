@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 namespace touchstone::reference {
@@ -52,7 +53,7 @@ struct CellResult {
   using Pressure = Eigen::Matrix<double, pressures, 1>;
 
   Vector force_n;      ///< internal force at the given displacement and pressure
-  Pressure volume_m3;  ///< integral of psi_m (J - 1 - p / kappa): zero at the solution
+  Pressure volume_m3;  ///< integral of psi_m (J - 1 - p / kappa) where p is the unknown: zero at the solution
   double rest_volume_m3 = 0.0;
   double volume_change_m3 = 0.0;
   double smallest_J = 1.0;
@@ -63,7 +64,7 @@ struct CellResult {
   Pressure pressure_offset_pa;
 };
 
-/// One cell of the mixed element. Stateless but for the material; every method may be called by several threads.
+/// One cell of the mixed element. Stateless but for the materials; every method may be called by several threads.
 template <int dim>
 class Element {
  public:
@@ -71,19 +72,23 @@ class Element {
   using Nodal = Eigen::Matrix<double, dim, nodes>;
   using Pressure = typename CellResult<dim>::Pressure;
 
-  explicit Element(const MixedMaterial& material);
+  /// Material of each Gauss point: 0 the body's, k the k-th inclusion's.
+  using Materials = std::array<std::uint8_t, GaussRule<dim>::size>;
+
+  explicit Element(const MixedMaterial& body, const std::vector<MixedMaterial>& inclusions = {});
 
   /// @param X_m nodal rest places; @param u_m nodal displacements
   /// @param p_pa pressure coefficients of 1, (X - Xc) / h
+  /// @param materials nullptr: the body's throughout
   /// @returns false, with the result unfinished, when some point has J <= smallest_allowed_J (finite strain only)
-  bool evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& p_pa, bool with_tangent,
-                CellResult<dim>& out) const;
+  bool evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& p_pa, bool with_tangent, CellResult<dim>& out,
+                const Materials* materials = nullptr) const;
 
   /// Newton may pass through strongly distorted states, not through these.
   static constexpr double smallest_allowed_J = 0.02;
 
  private:
-  MixedMaterial material_;
+  std::vector<MixedMaterial> materials_;  // the body's first
   GaussRule<dim> rule_;
   std::vector<Q2<dim>> shapes_;  // at the rule's points
 };

@@ -22,8 +22,8 @@ HalfSpaceAnswer indent_half_space(const HalfSpaceProblem& problem) {
 
   const Solved<2> rest{0.0, body.rest(), false};
   Solved<2> end;
-  LoadPath<2> path(body, [&](double share) -> std::optional<BallTool<2>> {
-    return BallTool<2>{R_m, {0.0, L_m + R_m - share * problem.depth_m}};
+  LoadPath<2> path(body, [&](double share) -> std::optional<RigidTool<2>> {
+    return ball_tool<2>(R_m, {0.0, L_m + R_m - share * problem.depth_m});
   });
   const AdvanceReport report = path.advance(nullptr, rest, 1.0, end, {}, {});
   if (!report.converged) throw NotConverged("ball on half space: " + report.last.trouble);

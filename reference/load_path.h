@@ -33,7 +33,7 @@ class LoadPath {
  public:
   /// The tool at a time; nothing when it does not reach the body at rest. Frictionless contact leaves no trace, so the
   /// body is then at rest whatever came before.
-  using ToolAt = std::function<std::optional<BallTool<dim>>(double time_s)>;
+  using ToolAt = std::function<std::optional<RigidTool<dim>>(double time_s)>;
 
   LoadPath(ContactProblem<dim>& problem, ToolAt tool_at) : problem_(problem), tool_at_(std::move(tool_at)) {}
 
@@ -84,7 +84,7 @@ class LoadPath {
  private:
   std::optional<Solved<dim>> attempt(const Solved<dim>* previous, const Solved<dim>& current, double time_s,
                                      AdvanceReport& report, const typename ContactProblem<dim>::Watch& watch) {
-    const std::optional<BallTool<dim>> tool = tool_at_(time_s);
+    const std::optional<RigidTool<dim>> tool = tool_at_(time_s);
     if (!tool) return Solved<dim>{time_s, problem_.rest(), false};
     problem_.set_tool(*tool);
     Solved<dim> next{time_s, current.state, true};

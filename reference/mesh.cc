@@ -8,13 +8,13 @@
 #include <deal.II/fe/mapping_q.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
-#include <deal.II/grid/manifold_lib.h>
 #include <deal.II/grid/tria.h>
 #include <deal.II/lac/affine_constraints.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <limits>
+#include <numeric>
 
 namespace touchstone::reference {
 namespace {
@@ -38,14 +38,13 @@ double distance_to(const FineDisc<dim>& disc, const Eigen::Matrix<double, dim, 1
   return std::hypot(above, beyond);
 }
 
+template <int dim>
+using Corners = Eigen::Matrix<double, dim, 1 << dim>;
+
 /// Distance from a cell to a disc: from the nearest point of the cell's bounding box.
-template <int dim, class Cell>
-double distance_to(const FineDisc<dim>& disc, const Cell& cell) {
-  Eigen::Matrix<double, dim, 1> low = to_eigen<dim>(cell->vertex(0)), high = low;
-  for (const unsigned int v : cell->vertex_indices()) {
-    low = low.cwiseMin(to_eigen<dim>(cell->vertex(v)));
-    high = high.cwiseMax(to_eigen<dim>(cell->vertex(v)));
-  }
+template <int dim>
+double distance_to(const FineDisc<dim>& disc, const Corners<dim>& corners_m) {
+  const Eigen::Matrix<double, dim, 1> low = corners_m.rowwise().minCoeff(), high = corners_m.rowwise().maxCoeff();
   // The box point nearest to the disc's centre is not nearest to the disc, but one projection towards it is.
   Eigen::Matrix<double, dim, 1> near = disc.center_m.cwiseMax(low).cwiseMin(high);
   const Eigen::Matrix<double, dim, 1> from = near - disc.center_m;
@@ -58,20 +57,52 @@ double distance_to(const FineDisc<dim>& disc, const Cell& cell) {
   return distance_to(disc, near);
 }
 
+/// Distance from a cell to a set: zero where it changes sign, else of the nearest corner. With growth < 1 no set is so
+/// small that it hides between the corners.
 template <int dim>
-void refine(dealii::Triangulation<dim>& grid, const Grading<dim>& grading) {
+double distance_to(const FineSet<dim>& set, const Corners<dim>& corners_m) {
+  double low_m = std::numeric_limits<double>::infinity(), high_m = -low_m;
+  for (const auto& corner_m : corners_m.colwise()) {
+    const double distance_m = set.distance_m(corner_m);
+    low_m = std::min(low_m, distance_m);
+    high_m = std::max(high_m, distance_m);
+  }
+  return std::max({0.0, low_m, -high_m});
+}
+
+template <int dim>
+Eigen::Matrix<double, dim, 1> unmapped(const Eigen::Matrix<double, dim, 1>& x) {
+  return x;
+}
+
+template <int dim>
+using Map = std::function<Eigen::Matrix<double, dim, 1>(const Eigen::Matrix<double, dim, 1>&)>;
+
+template <int dim>
+void refine(dealii::Triangulation<dim>& grid, const Grading<dim>& grading, const Map<dim>& place_m = unmapped<dim>) {
   // A cell a hair above the wished size is small enough.
   constexpr double slack = 1.0 + 1e-6;
   for (bool changed = true; changed;) {
     changed = false;
     for (const auto& cell : grid.active_cell_iterators()) {
-      double edge = 0.0;
+      Corners<dim> corners_m;
+      for (const unsigned int v : cell->vertex_indices()) corners_m.col(v) = place_m(to_eigen<dim>(cell->vertex(v)));
+      // The longest edge of each direction, on average.
+      std::array<double, dim> longest{};
       for (unsigned int line = 0; line < dealii::GeometryInfo<dim>::lines_per_cell; ++line) {
-        edge = std::max(edge, cell->line(line)->diameter());
+        const unsigned int from = dealii::GeometryInfo<dim>::line_to_cell_vertices(line, 0);
+        const unsigned int to = dealii::GeometryInfo<dim>::line_to_cell_vertices(line, 1);
+        // Lexicographic corners of an edge differ in the bit of its direction.
+        double& edge = longest[(to - from) / 2];
+        edge = std::max(edge, (corners_m.col(to) - corners_m.col(from)).norm());
       }
+      const double edge = std::accumulate(longest.begin(), longest.end(), 0.0) / dim;
       double wished = grading.largest_m;
       for (const FineDisc<dim>& disc : grading.discs) {
-        wished = std::min(wished, std::max(disc.size_m, grading.growth * distance_to(disc, cell)));
+        wished = std::min(wished, std::max(disc.size_m, grading.growth * distance_to(disc, corners_m)));
+      }
+      for (const FineSet<dim>& set : grading.sets) {
+        wished = std::min(wished, std::max(set.size_m, grading.growth * distance_to(set, corners_m)));
       }
       if (edge > slack * wished) {
         cell->set_refine_flag();
@@ -101,14 +132,14 @@ double smallest_size(const Grading<dim>& grading) {
 
 /// Plain arrays from a finished grid: one quadratic scalar degree of freedom is one node.
 template <int dim>
-Mesh<dim> to_arrays(const dealii::Triangulation<dim>& grid) {
+Mesh<dim> to_arrays(const dealii::Triangulation<dim>& grid, const Map<dim>& place_m = unmapped<dim>) {
   using namespace dealii;
   using Out = Mesh<dim>;
   const FE_Q<dim> element(2);
   DoFHandler<dim> nodes(grid);
   nodes.distribute_dofs(element);
   const std::vector<unsigned int> to_lexicographic = FETools::hierarchic_to_lexicographic_numbering<dim>(2);
-  const MappingQ<dim> mapping(2);
+  const MappingQ<dim> mapping(1);
 
   Out mesh;
   mesh.points_m.resize(dim, nodes.n_dofs());
@@ -119,7 +150,7 @@ Mesh<dim> to_arrays(const dealii::Triangulation<dim>& grid) {
     for (int a = 0; a < Out::nodes_per_cell; ++a) {
       ordered[to_lexicographic[a]] = static_cast<int>(indices[a]);
       mesh.points_m.col(indices[a]) =
-          to_eigen<dim>(mapping.transform_unit_to_real_cell(cell, element.unit_support_point(a)));
+          place_m(to_eigen<dim>(mapping.transform_unit_to_real_cell(cell, element.unit_support_point(a))));
     }
     mesh.cells.push_back(ordered);
     for (const unsigned int f : cell->face_indices()) {
@@ -191,47 +222,29 @@ Mesh<2> cylinder_mesh(const CylinderSpec& spec) {
   return to_arrays(grid);
 }
 
-Mesh<2> ball_mesh(const BallSpec& spec) {
-  const double R = spec.radius_m;
-  // Polar angle from the top. Outer vertices: top, half-way, the support's edge, bottom; inner ones half as far out.
-  const double support = std::acos(std::clamp((spec.support_height_m - R) / R, -1.0, 1.0));
-  const double polar[4] = {0.0, 0.5 * support, support, std::numbers::pi};
-  const dealii::Point<2> center(0.0, R);
-  std::vector<dealii::Point<2>> vertices;
-  for (const double share : {1.0, 0.5}) {
-    for (const double angle : polar) {
-      vertices.emplace_back(share * R * std::sin(angle), R + share * R * std::cos(angle));
-    }
-    vertices[vertices.size() - 4][0] = vertices.back()[0] = 0.0;  // exactly on the axis
+template <int dim>
+Mesh<dim> mapped_mesh(const MappedSpec<dim>& spec) {
+  std::vector<dealii::Point<dim>> vertices(spec.vertices.size());
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    for (int d = 0; d < dim; ++d) vertices[v][d] = spec.vertices[v][d];
   }
-  // Right-handed in (r, z).
-  const auto cell = [](unsigned int v00, unsigned int v10, unsigned int v01, unsigned int v11) {
-    dealii::CellData<2> data;
-    data.vertices = {v00, v10, v01, v11};
-    return data;
-  };
-  std::vector<dealii::CellData<2>> cells{cell(7, 6, 4, 5), cell(4, 5, 0, 1), cell(6, 2, 5, 1), cell(3, 2, 7, 6)};
-  // Refinement relies on both cells at an edge running it the same way.
-  dealii::GridTools::consistently_order_cells(cells);
-  dealii::Triangulation<2> grid;
+  std::vector<dealii::CellData<dim>> cells(spec.cells.size());
+  for (std::size_t c = 0; c < cells.size(); ++c) cells[c].vertices.assign(spec.cells[c].begin(), spec.cells[c].end());
+  // Refinement in the plane relies on both cells at an edge running it the same way.
+  if constexpr (dim == 2) dealii::GridTools::consistently_order_cells(cells);
+  dealii::Triangulation<dim> grid;
   grid.create_triangulation(vertices, cells, dealii::SubCellData());
-  for (const auto& active : grid.active_cell_iterators()) {
-    for (const unsigned int f : active->face_indices()) {
-      const auto face = active->face(f);
-      if (!face->at_boundary()) continue;
-      const dealii::Point<2> middle = face->center();
-      if (std::abs(middle[0]) < 1e-12 * R) {
-        face->set_boundary_id(id_of(Boundary::plane_x));
-        continue;
-      }
-      const double angle = std::atan2(middle[0], middle[1] - R);
-      face->set_boundary_id(id_of(angle > support ? Boundary::held : Boundary::free));
-      face->set_manifold_id(1);
+  for (const auto& cell : grid.active_cell_iterators()) {
+    for (const unsigned int f : cell->face_indices()) {
+      const auto face = cell->face(f);
+      if (face->at_boundary()) face->set_all_boundary_ids(id_of(spec.boundary(to_eigen<dim>(face->center()))));
     }
   }
-  grid.set_manifold(1, dealii::SphericalManifold<2>(center));
-  refine(grid, spec.grading);
-  return to_arrays(grid);
+  refine(grid, spec.grading, spec.place_m);
+  return to_arrays(grid, spec.place_m);
 }
+
+template Mesh<2> mapped_mesh(const MappedSpec<2>&);
+template Mesh<3> mapped_mesh(const MappedSpec<3>&);
 
 }  // namespace touchstone::reference

@@ -2,9 +2,13 @@
 // deal.II builds them (mesh.cc is the only file that sees it); everything after is free of it.
 #pragma once
 
+#include "scene/scene.h"
+
 #include <Eigen/Core>
 
 #include <array>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace touchstone::reference {
@@ -40,7 +44,14 @@ struct Mesh {
   std::vector<std::array<int, nodes_per_cell>> cells;
   std::vector<Face> faces;  ///< of the boundary
   std::vector<Hanging> hanging;
+  /// Per cell and Gauss point its material: 0 the body's, k inclusion_materials[k - 1]. Empty: all the body's.
+  std::vector<std::array<std::uint8_t, nodes_per_cell>> materials;
+  std::vector<scene::Material> inclusion_materials;
 
+  /// Of one cell, or nullptr when all of the mesh is of the body's material.
+  [[nodiscard]] const std::array<std::uint8_t, nodes_per_cell>* materials_of(int cell) const noexcept {
+    return materials.empty() ? nullptr : &materials[static_cast<std::size_t>(cell)];
+  }
   [[nodiscard]] int node_count() const noexcept { return static_cast<int>(points_m.cols()); }
   [[nodiscard]] int cell_count() const noexcept { return static_cast<int>(cells.size()); }
 };
@@ -54,12 +65,21 @@ struct FineDisc {
   double size_m = 0.0;  ///< largest cell edge inside
 };
 
-/// Cell size as a function of place: cell edge <= max(size_m, growth * distance) for every disc, and <= largest_m.
+/// The same about a surface or a line given by its distance, of either sign.
+template <int dim>
+struct FineSet {
+  std::function<double(const Eigen::Matrix<double, dim, 1>&)> distance_m;
+  double size_m = 0.0;
+};
+
+/// Cell size as a function of place: cell edge <= max(size_m, growth * distance) for every disc and set, and
+/// <= largest_m. The edge of a cell is the longest in each direction, on average over the directions.
 template <int dim>
 struct Grading {
   std::vector<FineDisc<dim>> discs;
   double growth = 0.5;
   double largest_m = 0.0;
+  std::vector<FineSet<dim>> sets = {};
 };
 
 /// Box [lower, upper]; its z = lower face is held. With symmetric_x the box is the half x >= 0 of the body and
@@ -78,14 +98,19 @@ struct CylinderSpec {
 };
 [[nodiscard]] Mesh<2> cylinder_mesh(const CylinderSpec& spec);
 
-/// Ball of this radius standing on the origin, centre (0, radius); its surface up to support_height is held. The
-/// height is a vertex of every mesh, so that the held surface is the same on all levels.
-struct BallSpec {
-  double radius_m = 0.0;
-  double support_height_m = 0.0;  ///< between smallest and largest share of the radius below
-  static constexpr double smallest_support_share = 0.01, largest_support_share = 1.5;
-  Grading<2> grading;
+/// A coarse grid in coordinates of its own, its cells between flat sides, and the map that makes the body of it. The
+/// map is continuous, and smooth in each coarse cell. Nodes are mapped one by one: those of the boundary lie on the
+/// body's surface to round-off, but for hanging ones.
+template <int dim>
+struct MappedSpec {
+  using Point = Eigen::Matrix<double, dim, 1>;
+  std::vector<Point> vertices;
+  std::vector<std::array<int, 1 << dim>> cells;  ///< vertices in lexicographic order, right-handed
+  std::function<Point(const Point&)> place_m;
+  std::function<Boundary(const Point&)> boundary;  ///< of the coarse face with this middle, in the grid's coordinates
+  Grading<dim> grading;
 };
-[[nodiscard]] Mesh<2> ball_mesh(const BallSpec& spec);
+template <int dim>
+[[nodiscard]] Mesh<dim> mapped_mesh(const MappedSpec<dim>& spec);
 
 }  // namespace touchstone::reference

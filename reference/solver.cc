@@ -1,13 +1,17 @@
 #include "reference/solver.h"
 
 #include "reference/contact_problem.h"
+#include "reference/distance_grid.h"
 #include "reference/load_path.h"
 #include "reference/model_choice.h"
 #include "reference/sampling.h"
 #include "reference/store.h"
+#include "reference/tool_distance.h"
 #include "reference/uncertainty.h"
+#include "scene/hash.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <iomanip>
@@ -24,26 +28,86 @@ using scene::Scene;
 using Clock = std::chrono::steady_clock;
 
 /// Raised with every change of method that moves a result; results of other versions are then not found.
-constexpr const char* method_version = "touchstone reference 1: Q2-P1disc u-p, primal-dual active set";
+constexpr const char* method_version = "touchstone reference 2: Q2-P1disc u-p, primal-dual active set";
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+std::string tool_text(const scene::Tool& tool) {
+  std::ostringstream text;
+  text << std::setprecision(17);
+  switch (tool.shape) {
+    case scene::ToolShape::sphere:
+      text << "sphere " << tool.radius_m;
+      break;
+    case scene::ToolShape::capsule:
+      text << "capsule " << tool.radius_m << ' ' << tool.length_m;
+      break;
+    case scene::ToolShape::cylinder:
+      text << "cylinder " << tool.radius_m << ' ' << tool.length_m << ' ' << tool.edge_radius_m;
+      break;
+    case scene::ToolShape::box:
+      text << "box " << tool.size_m.transpose() << " rounded by " << box_edge_share;
+      break;
+    case scene::ToolShape::mesh: {
+      const scene::TriangleMesh& mesh = *tool.mesh;
+      const auto bytes = [](const auto* data, auto count) {
+        return std::string_view(reinterpret_cast<const char*>(data), count * sizeof *data);
+      };
+      text << "mesh " << scene::hash_text(bytes(mesh.points_m.data(), mesh.points_m.size())) << ' '
+           << scene::hash_text(bytes(mesh.triangles.data(), mesh.triangles.size())) << " on a grid of "
+           << grid_spacing_m(mesh);
+      break;
+    }
+  }
+  if (tool.mass_center_m) text << " mass centre " << tool.mass_center_m->transpose();
+  return text.str();
+}
+
+void add_solid(const scene::Solid& solid, std::ostream& text) {
+  switch (solid.shape) {
+    case scene::BodyShape::box:
+      text << "box " << solid.size_m.transpose();
+      break;
+    case scene::BodyShape::sphere:
+      text << "sphere " << solid.radius_m;
+      break;
+    case scene::BodyShape::ellipsoid:
+      text << "ellipsoid " << solid.semi_axes_m.transpose();
+      break;
+    case scene::BodyShape::revolution:
+      text << "revolution";
+      for (const Eigen::Vector2d& corner_m : solid.profile.rz_m) text << " (" << corner_m.transpose() << ')';
+      for (const double radius_m : solid.profile.arc_radius_m) text << ' ' << radius_m;
+      break;
+  }
+  text << '\n';
+}
 
 std::string identity_text(const Scene& scene) {
   std::ostringstream text;
   text << std::setprecision(17) << method_version << '\n';
-  if (scene.body.shape == scene::BodyShape::box) {
-    text << "body box " << scene.body.size_m.transpose() << '\n';
-  } else {
-    text << "body sphere " << scene.body.radius_m << " held below " << scene.body.support_height_m << '\n';
+  const auto add_material = [&](const scene::Material& material) {
+    text << "E " << material.youngs_modulus_pa << " nu " << material.poissons_ratio << '\n';
+  };
+  text << "body ";
+  add_solid(scene.body, text);
+  if (!scene.body.flat_bottom()) text << "held below " << scene.body.support_height_m << '\n';
+  add_material(scene.body.material);
+  for (const scene::Inclusion& inclusion : scene.body.inclusions) {
+    text << "inclusion at " << inclusion.center_m.transpose() << ' ';
+    add_solid(inclusion, text);
+    add_material(inclusion.material);
   }
-  text << "E " << scene.body.material.youngs_modulus_pa << " nu " << scene.body.material.poissons_ratio << '\n'
-       << "tool sphere " << scene.tool.radius_m << '\n'
+  text << "tool " << tool_text(scene.tool) << '\n'
+       << "regions " << scene.fast.r_th_m << " apart\n"
        << "kinematics " << (scene.reference.kinematics == scene::Kinematics::finite ? "finite" : "small") << " levels "
        << scene.reference.levels << " element "
        << (scene.reference.element_size_m ? std::to_string(*scene.reference.element_size_m * 1e9) + " nm" : "automatic")
        << '\n';
   for (const double time_s : scene::instants_s(scene)) {
-    text << "instant " << time_s << " tool at " << scene::pose_at(scene.track, time_s).position_m.transpose() << '\n';
+    const scene::Pose pose = scene::pose_at(scene.track, time_s);
+    text << "instant " << time_s << " tool at " << pose.position_m.transpose() << " turned "
+         << pose.orientation.coeffs().transpose() << '\n';
   }
   return text.str();
 }
@@ -78,6 +142,11 @@ Record to_record(const Solved<dim>& solved, const Step& step) {
     record.put(value);
   }
   for (const int value : {step.unknowns, step.newton_iterations, step.halvings, step.indefinite}) record.put(value);
+  record.put(static_cast<int>(step.seen.regions.size()));
+  for (const ContactRegion& region : step.seen.regions) {
+    for (const scene::Vec3& vector : {region.force_n, region.torque_nm, region.center_m}) record.put(vector.data(), 3);
+    record.put(region.area_m2);
+  }
   record.put(std::string_view(step.linear_solver));
   return record;
 }
@@ -107,6 +176,11 @@ std::optional<std::pair<Solved<dim>, Step>> from_record(Record record, const Mes
     }
     for (int* value : {&step.unknowns, &step.newton_iterations, &step.halvings, &step.indefinite}) {
       *value = record.take_int();
+    }
+    for (int regions = record.take_int(); regions > 0; --regions) {
+      ContactRegion& region = step.seen.regions.emplace_back();
+      for (scene::Vec3* vector : {&region.force_n, &region.torque_nm, &region.center_m}) record.take(vector->data(), 3);
+      region.area_m2 = record.take_double();
     }
     step.linear_solver = record.take_text();
     if (!record.at_end()) return std::nullopt;
@@ -138,24 +212,39 @@ class Estimate {
   double work_left_, work_done_ = 0.0, seconds_ = 0.0;
 };
 
-template <int dim>
-std::optional<BallTool<dim>> tool_at(const Scene& scene, const scene::Shape& body, double time_s) {
-  const scene::Pose pose = scene::pose_at(scene.track, time_s);
-  if (scene::rest_depth_m(body, scene.tool, pose) <= 0.0) return std::nullopt;
-  if constexpr (dim == 3) {
-    return BallTool<3>{scene.tool.radius_m, pose.position_m};
-  } else {
-    return BallTool<2>{scene.tool.radius_m, {0.0, pose.position_m.z()}};
+/// The depth of each region: of the one, the tool's; of several, that of the mesh's triangles nearest to each.
+std::vector<double> region_depths_m(const Scene& scene, const scene::Shape& body, const scene::Pose& pose,
+                                    const std::vector<ContactRegion>& regions) {
+  const scene::Tool& tool = scene.tool;
+  if (regions.size() < 2 || tool.shape != scene::ToolShape::mesh) {
+    return std::vector<double>(regions.size(), scene::rest_depth_m(body, tool, pose));
   }
-}
-
-template <int dim>
-Mesh<dim> level_mesh(const Scene& scene, const ModelChoice& choice, int level) {
-  if constexpr (dim == 3) {
-    return box_level(scene, choice, level);
-  } else {
-    return ball_level(scene, level);
+  const scene::TriangleMesh mesh = scene::tool_mesh(tool);
+  std::vector<std::vector<std::array<std::int32_t, 3>>> parts(regions.size());
+  for (const auto& t : mesh.triangles) {
+    const scene::Vec3 middle_T_m = (mesh.points_m.col(t[0]) + mesh.points_m.col(t[1]) + mesh.points_m.col(t[2])) / 3.0;
+    const scene::Vec3 middle_m = pose.orientation * middle_T_m + pose.position_m;
+    const auto nearest = std::min_element(regions.begin(), regions.end(), [&](const auto& a, const auto& b) {
+      return (a.center_m - middle_m).squaredNorm() < (b.center_m - middle_m).squaredNorm();
+    });
+    parts[nearest - regions.begin()].push_back(t);
   }
+  std::vector<double> depths_m;
+  for (const auto& part : parts) {
+    // Loose triangles, so that no vertex is without one.
+    scene::TriangleMesh piece;
+    piece.points_m.resize(3, 3 * static_cast<Eigen::Index>(part.size()));
+    for (const auto& t : part) {
+      const auto first = static_cast<std::int32_t>(3 * piece.triangles.size());
+      for (int k = 0; k < 3; ++k) piece.points_m.col(first + k) = mesh.points_m.col(t[k]);
+      piece.triangles.push_back({first, first + 1, first + 2});
+    }
+    scene::Tool one = tool;
+    one.mesh = std::make_shared<scene::TriangleMesh>(std::move(piece));
+    one.mass_center_m = scene::Vec3::Zero();
+    depths_m.push_back(scene::rest_depth_m(body, one, pose));
+  }
+  return depths_m;
 }
 
 /// One scene being answered. Levels and instants count from zero here, from one in everything shown.
@@ -196,7 +285,7 @@ class Run {
       std::vector<Eigen::Matrix3Xd> shapes;
       solve_level(level, store, steps, shapes, result.from_store);
       LevelRecord record;
-      record.element_size_m = element_size_m(scene_, level);
+      record.element_size_m = element_size_m(scene_, choice_, level);
       for (const Step& step : steps) {
         record.unknowns = std::max(record.unknowns, step.unknowns);
         record.newton_iterations += step.newton_iterations;
@@ -293,7 +382,10 @@ class Run {
                       .instants = count(),
                       .depth_m = depth_m(time_s),
                       .unknowns = problem.unknowns()};
-    LoadPath<dim> path(problem, [&](double t) { return tool_at<dim>(scene_, *body_, t); });
+    LoadPath<dim> path(problem, [&](double t) -> std::optional<RigidTool<dim>> {
+      if (depth_m(t) <= 0.0) return std::nullopt;
+      return RigidTool<dim>(choice_.tool, scene::pose_at(scene_.track, t));
+    });
     // A track that starts in contact is entered from rest, a moment before its first instant.
     const double lead_s = times_s_.size() > 1 ? times_s_[1] - times_s_[0] : 1.0;
     const Solved<dim> from = current ? *current : Solved<dim>{time_s - lead_s, problem.rest(), false};
@@ -315,7 +407,7 @@ class Run {
         });
     if (!report.converged) throw NotConverged(not_converged_text(level, instant, report));
     if (solved.touching) {
-      step.seen = problem.observe(solved.state);
+      step.seen = problem.observe(solved.state, scene_.fast.r_th_m);
       step.linear_solver = problem.linear_solver();
     }
     step.newton_iterations = report.newton_iterations;
@@ -333,13 +425,14 @@ class Run {
          << " of the acting forces (asked: " << ContactProblem<dim>::force_tolerance
          << "), stuck at t = " << report.stuck_time_s << " s after " << report.halvings
          << " halvings. Finished steps are kept. Try a smaller reference.element_size_m (now "
-         << element_size_m(scene_, 0) << " m on the coarsest level), more instants, or less depth.";
+         << element_size_m(scene_, choice_, 0) << " m on the coarsest level), more instants, or less depth.";
     return text.str();
   }
 
   /// The finest level's records.
   void finish(const std::vector<Step>& steps, const std::vector<Eigen::Matrix3Xd>& shapes, Result& result) const {
     int indefinite = 0;
+    RegionIds ids;
     for (int instant = 0; instant < count(); ++instant) {
       const Observation& seen = steps[instant].seen;
       scene::InstantRecord record;
@@ -348,8 +441,10 @@ class Run {
       record.depth_m = depth_m(record.time_s);
       record.support_force_n = seen.support_force_n;
       record.displacement_m = shapes[instant];
-      if (record.depth_m > 0.0) record.regions.push_back({record.depth_m, seen.force_n, seen.torque_nm, seen.area_m2});
+      add_regions(seen.regions, instant, ids, record);
       result.instants.push_back(std::move(record));
+      std::vector<scene::Vec3>& middles_m = result.region_middles_m.emplace_back();
+      for (const ContactRegion& region : seen.regions) middles_m.push_back(region.center_m);
       result.residual_penetration_m.push_back(seen.node_penetration_m);
       result.between_nodes_penetration_m.push_back(seen.between_nodes_penetration_m);
       result.equilibrium_rel.push_back(seen.equilibrium_rel);
@@ -361,6 +456,28 @@ class Run {
           "; " + std::to_string(indefinite) +
           " tangents were not positive definite and went without the tool's curvature or to UMFPACK";
     }
+  }
+
+  /// A region's centre moves no farther than the tool there, and a little.
+  void add_regions(const std::vector<ContactRegion>& regions, int instant, RegionIds& ids,
+                   scene::InstantRecord& record) const {
+    double reach_m = scene_.fast.r_th_m;
+    if (instant > 0) {
+      const scene::Pose before = scene::pose_at(scene_.track, times_s_[instant - 1]);
+      double lever_m = 0.0;
+      for (const ContactRegion& region : regions) {
+        lever_m = std::max(lever_m, (region.center_m - record.tool.position_m).norm());
+      }
+      reach_m += (record.tool.position_m - before.position_m).norm() +
+                 lever_m * record.tool.orientation.angularDistance(before.orientation);
+    }
+    const std::vector<double> depths_m = region_depths_m(scene_, *body_, record.tool, regions);
+    for (const RegionIds::Place& place : ids.follow(regions, reach_m)) {
+      const ContactRegion& region = regions[place.region];
+      record.regions.push_back({depths_m[place.region], region.force_n, region.torque_nm, region.area_m2, place.id});
+    }
+    // The tool may dip in between the nodes.
+    if (regions.empty() && record.depth_m > 0.0) record.regions.push_back({.depth_m = record.depth_m});
   }
 
   const Scene& scene_;
@@ -376,9 +493,26 @@ class Run {
 
 /// Displacement unknowns of a level, without counting the few prescribed ones out.
 std::string expected_unknowns(const Scene& scene, const ModelChoice& choice, int level) {
-  const int nodes = choice.dim == 2 ? static_cast<int>(ball_level(scene, level).node_count())
-                                    : static_cast<int>(box_level(scene, choice, level).node_count());
+  const int nodes = choice.dim == 2 ? level_mesh<2>(scene, choice, level).node_count()
+                                    : level_mesh<3>(scene, choice, level).node_count();
   return "at most " + std::to_string(choice.dim * nodes) + " displacement unknowns";
+}
+
+template <class Add>
+void add_tool_line(const Scene& scene, const Add& add) {
+  std::ostringstream how;
+  how << std::setprecision(3);
+  if (scene.tool.shape == scene::ToolShape::mesh) {
+    how << "signed distance on a grid of " << 1e3 * grid_spacing_m(*scene.tool.mesh)
+        << " mm with a tricubic spline; sharp edges are rounded over about as much";
+  } else {
+    how << "exact signed distance";
+    if (scene.tool.shape == scene::ToolShape::box) {
+      how << " of a box with edges rounded by " << 0.5e3 * box_edge_share * scene.tool.size_m.minCoeff()
+          << " mm: sharp ones have unbounded pressure";
+    }
+  }
+  add("tool", true, how.str());
 }
 
 }  // namespace
@@ -389,21 +523,20 @@ std::string content_key(const Scene& scene) { return Store::key(identity_text(sc
 
 scene::Plan plan(const Scene& scene) {
   const ModelChoice choice = choose_model(scene);
-  const bool box = scene.body.shape == scene::BodyShape::box;
   const int mirrors = (choice.mirror_x ? 1 : 0) + (choice.mirror_y ? 1 : 0);
   scene::Plan plan;
   const auto add = [&](const char* part, bool modelled, const std::string& reason, const std::string& cost = {}) {
     plan.push_back({part, modelled, reason, cost});
   };
-  if (!box) {
-    add("axial symmetry", true, "ball on the axis of a ball: one meridian plane is the whole body");
+  if (choice.dim == 2) {
+    add("axial symmetry", true, "body and tool are of revolution about one axis: one meridian plane is the whole body");
   } else if (mirrors > 0) {
     add(mirrors == 2 ? "quarter symmetry" : "half symmetry", true,
-        mirrors == 2 ? "box, tool and track lie on both symmetry planes"
-                     : "box, tool and track lie on one symmetry plane",
+        mirrors == 2 ? "body, inclusions, tool and track share the planes x = 0 and y = 0"
+                     : "body, inclusions, tool and track share one of the planes x = 0 and y = 0",
         mirrors == 2 ? "a quarter of the unknowns" : "half of the unknowns");
   } else {
-    add("symmetry", false, "the track leaves both symmetry planes of the box", "the full box is meshed");
+    add("symmetry", false, "body, inclusions, tool and track share no symmetry plane", "the whole body is meshed");
   }
   const bool finite = scene.reference.kinematics == scene::Kinematics::finite;
   add("finite strain", finite,
@@ -415,14 +548,24 @@ scene::Plan plan(const Scene& scene) {
                                                    : "the same mixed element serves every nu, so nothing locks");
   add("pressure unknowns", true, nu.str(), "eliminated cell by cell, none in the global matrix");
   add("friction", false, "the scene has none");
-  add("several contact regions", false, "a ball on a convex body touches it once");
-  add("inclusions", false, "the body is of one material");
+  add("several contact regions", !scene.tool.convex(),
+      scene.tool.convex() ? "a convex tool touches a convex body once"
+                          : "touching nodes nearer than fast.r_th_m, or of one cell face, are one region");
+  add_tool_line(scene, add);
+  const std::size_t inclusions = scene.body.inclusions.size();
+  if (inclusions == 0) {
+    add("inclusions", false, "the body is of one material");
+  } else {
+    add("inclusions", true,
+        std::to_string(inclusions) + " of another material, each integration point has the one it lies in",
+        "small cells at their surfaces");
+  }
   add("uncertainty", scene.reference.levels >= 3,
       scene.reference.levels >= 3 ? "from " + std::to_string(scene.reference.levels) + " refinement levels"
                                   : "fewer than three levels: unknown, reported as infinite");
   for (int level = 0; level < scene.reference.levels; ++level) {
     std::ostringstream size;
-    size << "cells of " << std::setprecision(3) << 1e3 * element_size_m(scene, level)
+    size << "cells of " << std::setprecision(3) << 1e3 * element_size_m(scene, choice, level)
          << " mm at the deepest contact's rim";
     add(("level " + std::to_string(level + 1)).c_str(), true, size.str(), expected_unknowns(scene, choice, level));
   }

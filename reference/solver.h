@@ -51,6 +51,7 @@ struct Result {
   std::string key;            ///< content address in the store
   std::string linear_solver;  ///< with the BLAS it ran on
   std::vector<scene::InstantRecord> instants;
+  std::vector<std::vector<scene::Vec3>> region_middles_m;   ///< per instant, one for every region
   std::vector<double> force_uncertainty_n;                  ///< per instant, conservative half width
   std::vector<Eigen::VectorXd> displacement_uncertainty_m;  ///< per instant, per rest point
   std::vector<double> residual_penetration_m;               ///< per instant, largest over contact nodes

@@ -1,10 +1,12 @@
 // The rigid tool as a gap function of a material point, with the two derivatives Newton needs.
 #pragma once
 
+#include "scene/frames.h"
+
 #include <Eigen/Core>
 
-#include <cmath>
 #include <limits>
+#include <memory>
 
 namespace touchstone::reference {
 
@@ -12,44 +14,55 @@ namespace touchstone::reference {
 template <int dim>
 struct Gap {
   double value_m = std::numeric_limits<double>::infinity();  ///< negative: the point is inside the tool
-  Eigen::Matrix<double, dim, 1> gradient;                    ///< unit length, out of the tool; contact pushes along it
-  Eigen::Matrix<double, dim, dim> hessian_per_m;
+  /// Out of the tool; contact pushes along it. Unit length, but for a mesh tool only nearly so, see distance_grid.h.
+  Eigen::Matrix<double, dim, 1> gradient = Eigen::Matrix<double, dim, 1>::Zero();
+  Eigen::Matrix<double, dim, dim> hessian_per_m = Eigen::Matrix<double, dim, dim>::Zero();
 };
 
-/// Rigid ball. In two dimensions its centre is on the axis, and the same formulas hold in the meridian plane.
+/// A rigid tool's shape: the signed distance from its surface, in the tool frame, whose origin is the mass centre.
+/// Immutable; queries may run at the same time.
+class ToolDistance {
+ public:
+  virtual ~ToolDistance() = default;
+  /// Value, gradient and Hessian of one function. Outside bounds() the value may be infinite.
+  [[nodiscard]] virtual Gap<3> at(const scene::Vec3& p_T_m) const = 0;
+  /// Holds the tool.
+  [[nodiscard]] virtual scene::Bounds bounds() const = 0;
+  /// Half the tool's smallest extent: the unit of tolerances.
+  [[nodiscard]] virtual double half_width_m() const = 0;
+};
+
+/// A tool at its place. In two dimensions the tool is a body of revolution about the z axis, and points are (r, z) in
+/// its meridian plane.
 template <int dim>
-struct BallTool {
+class RigidTool {
+ public:
   using Point = Eigen::Matrix<double, dim, 1>;
-  double radius_m = 0.0;
-  Point center_m = Point::Zero();
+
+  RigidTool(std::shared_ptr<const ToolDistance> distance, const scene::Pose& pose);
 
   /// Finite kinematics: signed distance of the deformed point x.
-  [[nodiscard]] Gap<dim> gap(const Point& x_m) const {
-    const Point from_center = x_m - center_m;
-    const double distance_m = from_center.norm();
-    Gap<dim> g;
-    g.value_m = distance_m - radius_m;
-    // At the very centre every direction is as good; the tool's lowest point is below it.
-    g.gradient = distance_m > 0.0 ? Point(from_center / distance_m) : Point(-Point::Unit(dim - 1));
-    g.hessian_per_m = (Eigen::Matrix<double, dim, dim>::Identity() - g.gradient * g.gradient.transpose()) /
-                      std::max(distance_m, 1e-3 * radius_m);
-    return g;
-  }
+  [[nodiscard]] Gap<dim> gap(const Point& x_m) const;
 
-  /// Small kinematics: distance along the body's rest normal N from the point X + u to the ball's surface above the
-  /// rest place X, g = s(X) - N . u. This is the boundary condition of Hertz's and Sneddon's problems.
-  [[nodiscard]] Gap<dim> gap_along(const Point& X_m, const Point& N, const Point& u_m) const {
-    const Point to_center = center_m - X_m;
-    const double height_m = to_center.dot(N);
-    const double aside2_m2 = (to_center - height_m * N).squaredNorm();
-    Gap<dim> g;
-    g.gradient = -N;
-    g.hessian_per_m.setZero();
-    if (aside2_m2 < radius_m * radius_m) {
-      g.value_m = height_m - std::sqrt(radius_m * radius_m - aside2_m2) - u_m.dot(N);
-    }
-    return g;
-  }
+  /// Small kinematics: distance along the body's rest normal N from the point X + u to the tool's surface above the
+  /// rest place X, g = s(X) - N . u. This is the boundary condition of Hertz's and Sneddon's problems. A line that
+  /// passes the tool by has no gap.
+  [[nodiscard]] Gap<dim> gap_along(const Point& X_m, const Point& N, const Point& u_m) const;
+
+  [[nodiscard]] const scene::Vec3& mass_center_m() const noexcept { return pose_.position_m; }
+  [[nodiscard]] double half_width_m() const { return distance_->half_width_m(); }
+
+ private:
+  [[nodiscard]] scene::Vec3 in_tool_frame(const Point& x_m) const;
+  [[nodiscard]] scene::Vec3 turned_into_tool_frame(const Point& direction) const;
+
+  std::shared_ptr<const ToolDistance> distance_;
+  scene::Pose pose_;
+  scene::Mat3 to_world_;
 };
+
+/// A ball about its mass centre.
+template <int dim>
+[[nodiscard]] RigidTool<dim> ball_tool(double radius_m, const Eigen::Matrix<double, dim, 1>& center_m);
 
 }  // namespace touchstone::reference

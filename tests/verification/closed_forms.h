@@ -1,6 +1,8 @@
 // Closed forms that the solvers are held against, each with its range and source. SI units; the tool is rigid.
 #pragma once
 
+#include "scene/scene.h"
+
 #include <cmath>
 
 namespace touchstone::verification {
@@ -47,9 +49,43 @@ inline Indentation sneddon(double E_star_pa, double R_m, double d_m) {
   return {sneddon_force_n(E_star_pa, R_m, a_m), a_m};
 }
 
+/// Flat punch of flat radius b with a fillet of radius e, contact radius a between b and b + e, in small strain:
+/// Sneddon's solution for any profile f(r), d = a I[f'], F = 2 E* I[r^2 f'], I[g] = integral of g / sqrt(a^2 - r^2)
+/// from 0 to a, with f' = (r - b) / sqrt(e^2 - (r - b)^2) on the fillet. By r = a sin t the integrals are smooth.
+struct RoundedPunch {
+  double depth_m = 0.0, force_n = 0.0;
+};
+inline RoundedPunch rounded_punch(double E_star_pa, double b_m, double e_m, double a_m) {
+  RoundedPunch punch;
+  const double begin = std::asin(b_m / a_m);
+  constexpr int intervals = 2000;
+  const double step = (M_PI_2 - begin) / intervals;
+  for (int k = 0; k <= intervals; ++k) {  // Simpson's rule
+    const double weight = (k == 0 || k == intervals ? 1.0 : k % 2 == 1 ? 4.0 : 2.0) * step / 3.0;
+    const double r_m = a_m * std::sin(begin + k * step), up_m = r_m - b_m;
+    const double slope = up_m / std::sqrt(e_m * e_m - up_m * up_m);
+    punch.depth_m += weight * a_m * slope;
+    punch.force_n += weight * 2.0 * E_star_pa * r_m * r_m * slope;
+  }
+  return punch;
+}
+
 /// Incompressible neo-Hookean bar: force over rest area at stretch lam, P = mu (lam - lam^-2); negative in compression.
 /// Laterally free, P = lam sigma_1 / lam with sigma_1 - sigma_2 = mu (lam^2 - 1/lam) and sigma_2 = 0.
 inline double neo_hookean_bar_pa(double mu_pa, double lam) { return mu_pa * (lam - 1.0 / (lam * lam)); }
+
+/// A ball of radius b with a concentric one of radius a inside, in small strain; its surface is moved out by strain *
+/// b: the radial stress there. In the outer part u = B r + C / r^2, inside u = A r; displacement and stress 3 K A and
+/// 3 K B - 4 mu C / r^3 are continuous. R. M. Christensen, Mechanics of Composite Materials (1979), 2.3.
+inline double two_ball_stress_pa(const scene::Material& outer, const scene::Material& inner, double a_m, double b_m,
+                                 double strain) {
+  const double K = outer.bulk_modulus_pa(), mu = outer.shear_modulus_pa(), K_inner = inner.bulk_modulus_pa();
+  const double share = std::pow(a_m / b_m, 3);
+  // C = c a^3 with 3 K_inner (B + c) = 3 K B - 4 mu c, and B + c share = strain.
+  const double c_over_B = 3.0 * (K - K_inner) / (3.0 * K_inner + 4.0 * mu);
+  const double B = strain / (1.0 + c_over_B * share);
+  return 3.0 * K * B - 4.0 * mu * c_over_B * B * share;
+}
 
 /// Inflation of a thick incompressible neo-Hookean sphere, inner radius A, outer B, outside free: inner pressure at
 /// inner stretch la, p = 2 mu [1/lb - 1/la + (lb^-4 - la^-4) / 4], lb^3 = 1 + (la^3 - 1)(A/B)^3. A. E. Green, W. Zerna,

@@ -26,6 +26,14 @@ TEST(ClosedForms, ThickSpherePressure) {
   }
 }
 
+TEST(ClosedForms, RoundedPunchIsABallWithoutFlatAndAFlatPunchWithoutFillet) {
+  const RoundedPunch ball = rounded_punch(1.0, 0.0, 1.0, 0.6);
+  EXPECT_NEAR(ball.depth_m, sneddon_depth_m(1.0, 0.6), 1e-12);
+  EXPECT_NEAR(ball.force_n, sneddon_force_n(1.0, 1.0, 0.6), 1e-12);
+  const RoundedPunch sharp = rounded_punch(1.0, 1.0, 1e-6, 1.0 + 5e-7);
+  EXPECT_NEAR(sharp.force_n / (2.0 * sharp.depth_m), 1.0, 1e-6);
+}
+
 TEST(ClosedForms, CantileverOfOneMaterial) {
   EXPECT_DOUBLE_EQ(cantilever_tip_m(3.0, 2.0, 4.0), 3.0 * 8.0 / (3.0 * 4.0));
   EXPECT_NEAR(cantilever_tip_m(3.0, 2.0, 4.0, 4.0, 0.5, 1.0), cantilever_tip_m(3.0, 2.0, 4.0), 1e-15);

@@ -1,6 +1,7 @@
 // States of uniform strain, which the element must hold to round-off on any mesh: patch tests and the uniaxial bar.
 #include "reference/contact_problem.h"
 #include "reference/mesh.h"
+#include "reference/round_mesh.h"
 #include "verification/closed_forms.h"
 
 #include <gtest/gtest.h>
@@ -87,6 +88,38 @@ TEST(PatchTest, RingsWithHangingNodes) {
   ASSERT_GT(mesh.hanging.size(), 0u);
   free_all_boundaries(mesh);
   expect_patch<2>(mesh, Eigen::Matrix2d(Eigen::Vector2d(0.08, -0.1).asDiagonal()), scene::Kinematics::finite, 0.3);
+}
+
+TEST(PatchTest, RoundBodies) {
+  scene::Body body;
+  body.support_height_m = 0.005;
+  body.shape = scene::BodyShape::ellipsoid;
+  body.semi_axes_m = {0.040, 0.030, 0.025};
+  std::vector<RoundSpec> specs{round_spec(body)};
+  specs.front().symmetric_x = true;
+  body.shape = scene::BodyShape::revolution;
+  for (const scene::Profile& profile : {scene::capsule_profile(0.02, 0.03), scene::cylinder_profile(0.03, 0.04, 0.005),
+                                        scene::Profile{{{0.0, 0.0}, {0.03, 0.0}, {0.0, 0.05}}, {}}}) {
+    body.profile = profile;
+    specs.push_back(round_spec(body));
+    specs.back().symmetric_x = specs.back().symmetric_y = true;
+    Grading<2> grading;
+    grading.largest_m = 0.008;
+    grading.discs = {{{0.0, 0.0}, {0.0, 1.0}, 0.001, 0.003}};
+    Mesh<2> mesh = round_mesh<2>(specs.back(), grading);
+    ASSERT_GT(mesh.hanging.size(), 0u);
+    free_all_boundaries(mesh);
+    expect_patch<2>(mesh, Eigen::Matrix2d(Eigen::Vector2d(0.08, -0.1).asDiagonal()), scene::Kinematics::finite, 0.3);
+  }
+  for (const RoundSpec& spec : specs) {
+    Grading<3> grading;
+    grading.largest_m = 0.02;
+    grading.discs = {{{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 0.001, 0.006}};
+    Mesh<3> mesh = round_mesh<3>(spec, grading);
+    ASSERT_GT(mesh.hanging.size(), 0u);
+    free_all_boundaries(mesh);
+    expect_patch<3>(mesh, shear_and_squeeze, scene::Kinematics::finite, 0.45);
+  }
 }
 
 class Bar : public testing::TestWithParam<double> {};

@@ -18,7 +18,7 @@ Observation press(bool mirror_x, bool mirror_y, double nu) {
   ContactProblem<3> body(block_mesh(spec), {3e6, nu}, scene::Kinematics::finite, mirror_x, mirror_y);
   State<3> state = body.rest();
   for (const double depth_m : {0.001, 0.003}) {
-    body.set_tool({0.01, {0.0, 0.0, half_m + 0.01 - depth_m}});
+    body.set_tool(ball_tool<3>(0.01, {0.0, 0.0, half_m + 0.01 - depth_m}));
     const NewtonReport report = body.solve(state);
     EXPECT_TRUE(report.converged) << report.trouble;
   }

@@ -2,6 +2,7 @@
 
 #include "compare/figures.h"
 #include "synthetic.h"
+#include "unit/reference/mesh_tools.h"
 
 #include <gtest/gtest.h>
 
@@ -84,6 +85,27 @@ TEST(Errors, ShapeIsSplitAtTheLocalRadius) {
   wide.scene.fast.r_R_m = 1.0;
   EXPECT_NEAR(*errors_of(wide).shape_inside_r_rel_l2.value, std::sqrt(8.0 / 109.0), 1e-13);
   EXPECT_FALSE(errors_of(wide).shape_outside_r_rel_l2.value);
+}
+
+TEST(Errors, EveryRegionHasALocalRadiusOfItsOwn) {
+  Sides sides = with_shapes();
+  // Below point 0 and below point 2, which lie far apart.
+  const Vec3 under_m(0.0, 0.0, -1e-3);
+  sides.result.region_middles_m[1] = {sides.run.surface.points_m.col(0) + under_m,
+                                      sides.run.surface.points_m.col(2) + under_m};
+  const Errors e = errors_of(sides);
+  EXPECT_NEAR(*e.shape_inside_r_rel_l2.value, std::sqrt(8.0 / 101.0), 1e-13);
+  EXPECT_NEAR(*e.shape_outside_r_rel_l2.value, 0.0, 1e-13);
+}
+
+TEST(Errors, AMeshToolTouchesWhereItsShapeDoes) {
+  Sides sides = testing::pressed(3, 2000);
+  const Errors exact = errors_of(sides);
+  sides.scene.tool = reference::mesh_tool(scene::Sphere(Vec3::Zero(), sides.scene.tool.radius_m), 5120);
+  const Errors e = errors_of(sides);
+  ASSERT_GT(exact.instants[2].penetration_fast_m, 0.0);
+  EXPECT_NEAR(e.instants[2].penetration_fast_m / exact.instants[2].penetration_fast_m, 1.0, 0.05);
+  EXPECT_NEAR(*e.contact_area_iou, *exact.contact_area_iou, 0.1);
 }
 
 TEST(Errors, LargestShapeErrorIsRelativeToTheDepthOfItsInstant) {

@@ -1,5 +1,7 @@
 #include "compare/moved_surface.h"
 
+#include "reference/tool_distance.h"
+
 #include "synthetic.h"
 
 #include <gtest/gtest.h>
@@ -74,14 +76,17 @@ TEST(MovedSurface, GapsAreTakenInTheToolFrame) {
   surface.points_m.col(0) = Vec3(0.0, 3.05, 0.0);  // off the long end of the turned tool
   surface.points_m.col(1) = Vec3(3.0, 1.0, 0.0);   // where that end would be without the turn
   Eigen::Matrix3Xd moved_m = Eigen::Matrix3Xd::Zero(3, 2);
-  const scene::Box tool(Vec3::Zero(), Vec3(4.0, 1.0, 1.0));
+  scene::Tool box;
+  box.shape = scene::ToolShape::box;
+  box.size_m = Vec3(4.0, 1.0, 1.0);
+  const auto tool = reference::tool_distance(box);
   scene::Pose pose;
   pose.position_m = Vec3(0.0, 1.0, 0.0);
   pose.orientation = Eigen::AngleAxisd(std::acos(0.0), Vec3::UnitZ());
-  EXPECT_NEAR(tool_gaps_m(surface, moved_m, tool, pose)[0], 0.05, 1e-12);
-  EXPECT_NEAR(tool_gaps_m(surface, moved_m, tool, pose)[1], 2.5, 1e-12);
+  EXPECT_NEAR(tool_gaps_m(surface, moved_m, *tool, pose)[0], 0.05, 1e-12);
+  EXPECT_NEAR(tool_gaps_m(surface, moved_m, *tool, pose)[1], 2.5, 1e-12);
   moved_m(1, 0) = -0.15;
-  EXPECT_NEAR(tool_gaps_m(surface, moved_m, tool, pose)[0], -0.10, 1e-12);
+  EXPECT_NEAR(tool_gaps_m(surface, moved_m, *tool, pose)[0], -0.10, 1e-12);
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ namespace {
 TEST(Picture, IsWellFormedAndSmallAtTheDefaultSize) {
   const testing::Sides sides = testing::pressed(3);
   for (const std::string& svg : {half_cut_svg(sides.scene, sides.run, sides.result, 2),
-                                 section_svg(sides.scene, sides.run, sides.result, 2, 0.0),
-                                 section_svg(sides.scene, sides.run, sides.result, 2, 0.014)}) {
+                                 section_svg(sides.scene, sides.run, sides.result, 2, false),
+                                 section_svg(sides.scene, sides.run, sides.result, 2, true)}) {
     EXPECT_TRUE(testing::is_well_formed(svg));
     EXPECT_FALSE(testing::shows_not_a_number(svg));
     EXPECT_LT(svg.size(), 1'500'000u);
@@ -51,7 +51,7 @@ TEST(Picture, AndItsScaleSurviveAFastModelGoneWild) {
   // The reference's panel is what it was: its own displacement sets the scale.
   const std::size_t panel = svg.find("<g stroke-width"), end = svg.find("</g>", panel);
   EXPECT_EQ(svg.substr(panel, end - panel), before.substr(panel, end - panel));
-  EXPECT_FALSE(testing::shows_not_a_number(section_svg(sides.scene, sides.run, sides.result, 2, 0.0)));
+  EXPECT_FALSE(testing::shows_not_a_number(section_svg(sides.scene, sides.run, sides.result, 2, false)));
 }
 
 TEST(Picture, OfABodyAtRest) {

@@ -16,6 +16,7 @@ void complete(reference::Result& result, std::size_t instants, Eigen::Index poin
   result.between_nodes_penetration_m.assign(instants, 0.0);
   result.equilibrium_rel.assign(instants, 0.0);
   result.volume_change_rel.assign(instants, 0.0);
+  result.region_middles_m.assign(instants, {});
 }
 
 }  // namespace

@@ -28,10 +28,26 @@ bool says(const std::string& text, const std::string& part) { return text.find(p
 
 TEST(Verdict, HertzIsFourThirdsOfTheContactModulus) {
   scene::Scene scene = testing::ball_on_cube(2, 8);
-  EXPECT_NEAR(hertz_force_n(scene, 0.001), 4.0 / 3.0 * 4.0e6 * 0.1 * std::pow(0.001, 1.5), 1e-9);
+  EXPECT_NEAR(hertz_force_n(scene, 0.001).value(), 4.0 / 3.0 * 4.0e6 * 0.1 * std::pow(0.001, 1.5), 1e-9);
   scene.body.shape = scene::BodyShape::sphere;
   scene.body.radius_m = 0.030;
-  EXPECT_NEAR(hertz_force_n(scene, 0.001), 4.0 / 3.0 * 4.0e6 * std::sqrt(0.0075) * std::pow(0.001, 1.5), 1e-9);
+  EXPECT_NEAR(hertz_force_n(scene, 0.001).value(), 4.0 / 3.0 * 4.0e6 * std::sqrt(0.0075) * std::pow(0.001, 1.5), 1e-9);
+  const double on_ball_n = hertz_force_n(scene, 0.001).value();
+  scene.body.shape = scene::BodyShape::ellipsoid;
+  scene.body.semi_axes_m = scene::Vec3::Constant(0.030);
+  EXPECT_NEAR(hertz_force_n(scene, 0.001).value(), on_ball_n, 1e-12 * on_ball_n);
+  scene.body.inclusions.emplace_back();
+  EXPECT_FALSE(hertz_force_n(scene, 0.001));
+}
+
+TEST(Verdict, DoesNotTakeAnotherToolForABall) {
+  testing::Sides sides = testing::pressed(5, 200);
+  sides.scene.tool.shape = scene::ToolShape::cylinder;
+  sides.scene.tool.length_m = 0.02;
+  EXPECT_FALSE(hertz_force_n(sides.scene, 0.001));
+  const std::string text = told(sides);
+  EXPECT_FALSE(says(text, "Hertz")) << text;
+  EXPECT_TRUE(says(text, "too low")) << text;
 }
 
 TEST(Verdict, SaysHowWrongTheForceIsAndWhy) {
@@ -51,7 +67,7 @@ TEST(Verdict, SaysHowWrongTheForceIsAndWhy) {
 TEST(Verdict, GivesNoReasonTheNumbersDoNotGive) {
   testing::Sides sides = testing::pressed(5, 200);
   // Constants that fit the material, and a force off by a constant factor.
-  sides.scene.contact.k1_n_per_m = hertz_force_n(sides.scene, 0.005) / 0.005;
+  sides.scene.contact.k1_n_per_m = hertz_force_n(sides.scene, 0.005).value() / 0.005;
   sides.scene.contact.k3_n_per_m3 = 0.0;
   for (std::size_t t = 0; t < 5; ++t) {
     if (!sides.result.instants[t].regions.empty()) {

@@ -32,8 +32,10 @@ TEST(NeoHookean, SmallStrainIsItsLimit) {
 }
 
 template <int dim>
-void expect_consistent_tangent(scene::Kinematics kinematics, double nu) {
-  const Element<dim> element(MixedMaterial({2.0, nu}, kinematics));
+void expect_consistent_tangent(scene::Kinematics kinematics, double nu, bool crossed = false) {
+  const Element<dim> element(MixedMaterial({2.0, nu}, kinematics), {MixedMaterial({9.0, 0.2}, kinematics)});
+  typename Element<dim>::Materials materials{};
+  for (std::size_t q = 0; crossed && q < materials.size(); q += 2) materials[q] = 1;
   typename Element<dim>::Nodal X, u;
   for (int a = 0; a < Element<dim>::nodes; ++a) {
     const int place[3] = {a % 3, a / 3 % 3, a / 9};
@@ -45,7 +47,7 @@ void expect_consistent_tangent(scene::Kinematics kinematics, double nu) {
   using Cell = CellResult<dim>;
   typename Element<dim>::Pressure p = Element<dim>::Pressure::Constant(0.1);
   Cell at, up, down;
-  ASSERT_TRUE(element.evaluate(X, u, p, true, at));
+  ASSERT_TRUE(element.evaluate(X, u, p, true, at, &materials));
   // Along du the pressure row asks for dp = gain du; so the condensed stiffness is the slope of the force on that line.
   const double step = 1e-6;
   for (int k = 0; k < Cell::unknowns; k += 5) {
@@ -53,9 +55,9 @@ void expect_consistent_tangent(scene::Kinematics kinematics, double nu) {
     const typename Element<dim>::Pressure dp = at.pressure_gain.col(k);
     typename Element<dim>::Nodal v = u;
     v(i, a) = u(i, a) + step;
-    ASSERT_TRUE(element.evaluate(X, v, p + step * dp, false, up));
+    ASSERT_TRUE(element.evaluate(X, v, p + step * dp, false, up, &materials));
     v(i, a) = u(i, a) - step;
-    ASSERT_TRUE(element.evaluate(X, v, p - step * dp, false, down));
+    ASSERT_TRUE(element.evaluate(X, v, p - step * dp, false, down, &materials));
     const typename Cell::Vector slope = (up.force_n - down.force_n) / (2.0 * step);
     EXPECT_LT((at.stiffness.col(k) - slope).norm(), 1e-6 * at.stiffness.norm()) << "unknown " << k;
     // The pressure row itself stays solved to first order while kappa is the tangent's.
@@ -64,6 +66,15 @@ void expect_consistent_tangent(scene::Kinematics kinematics, double nu) {
     }
   }
   EXPECT_LT((at.stiffness - at.stiffness.transpose()).norm(), 1e-12 * at.stiffness.norm());
+}
+
+TEST(Element, TangentIsTheSlopeOfTheForceWhereTwoMaterialsMeet) {
+  for (const auto kinematics : {scene::Kinematics::finite, scene::Kinematics::small}) {
+    for (const double nu : {0.1, 0.3, 0.5}) {  // the other has 0.2
+      expect_consistent_tangent<2>(kinematics, nu, true);
+      expect_consistent_tangent<3>(kinematics, nu, true);
+    }
+  }
 }
 
 TEST(Element, TangentIsTheSlopeOfTheForce) {

@@ -138,6 +138,18 @@ TEST_F(SolverTest, KeyFollowsTheAnswerOnly) {
   other = scene_;
   other.track[1].pose.position_m.z() += 1e-9;
   EXPECT_NE(content_key(other), key);
+  other = scene_;
+  other.body.inclusions.emplace_back();
+  const std::string with_inclusion = content_key(other);
+  EXPECT_NE(with_inclusion, key);
+  other.body.inclusions[0].material.youngs_modulus_pa = 1.0;
+  EXPECT_NE(content_key(other), with_inclusion);
+  other = scene_;
+  other.body.shape = scene::BodyShape::revolution;
+  other.body.profile = scene::capsule_profile(0.03, 0.01);
+  const std::string capsule = content_key(other);
+  other.body.profile.arc_radius_m[0] += 1e-9;
+  EXPECT_NE(content_key(other), capsule);
 }
 
 TEST_F(SolverTest, FailureNamesTheInstant) {

@@ -1,0 +1,281 @@
+// From displacements to nodal forces and the global matrix.
+#include "reference/contact_problem.h"
+
+#include <algorithm>
+#include <thread>
+
+namespace touchstone::reference {
+namespace {
+
+/// Runs work(lane, begin, end) on `lanes` contiguous shares of [0, count). The shares, and so every sum's order,
+/// depend on nothing but the numbers given.
+template <class Work>
+void in_lanes(int lanes, int count, const Work& work) {
+  const auto begin = [&](int lane) { return static_cast<int>(static_cast<long>(count) * lane / lanes); };
+  std::vector<std::thread> others;
+  for (int lane = 1; lane < lanes; ++lane) {
+    others.emplace_back([&, lane] { work(lane, begin(lane), begin(lane + 1)); });
+  }
+  work(0, begin(0), begin(1));
+  for (std::thread& thread : others) thread.join();
+}
+
+}  // namespace
+
+template <int dim>
+void ContactProblem<dim>::build_pattern() {
+  std::vector<std::vector<int>> neighbours(mesh_.node_count());
+  std::vector<int> together;
+  for (const auto& cell : mesh_.cells) {
+    together.clear();
+    for (const int node : cell) {
+      if (hanging_[node] < 0) {
+        together.push_back(node);
+      } else {
+        for (const auto& [master, weight] : mesh_.hanging[hanging_[node]].masters) together.push_back(master);
+      }
+    }
+    std::sort(together.begin(), together.end());
+    together.erase(std::unique(together.begin(), together.end()), together.end());
+    for (const int a : together) {
+      for (const int b : together) {
+        if (b >= a) neighbours[a].push_back(b);
+      }
+    }
+  }
+  matrix_.column_begin.assign(1, 0);
+  matrix_.row.clear();
+  for (int a = 0; a < mesh_.node_count(); ++a) {
+    std::sort(neighbours[a].begin(), neighbours[a].end());
+    neighbours[a].erase(std::unique(neighbours[a].begin(), neighbours[a].end()), neighbours[a].end());
+    for (int i = 0; i < dim; ++i) {
+      const int column = unknown_[a * dim + i];
+      if (column < 0) continue;
+      for (const int b : neighbours[a]) {
+        for (int j = 0; j < dim; ++j) {
+          if (unknown_[b * dim + j] >= column) matrix_.row.push_back(unknown_[b * dim + j]);
+        }
+      }
+      matrix_.column_begin.push_back(static_cast<std::int64_t>(matrix_.row.size()));
+    }
+  }
+  matrix_.value.assign(matrix_.row.size(), 0.0);
+  lanes_.assign(threads_, {std::vector<double>(matrix_.row.size()), std::vector<double>(unknowns_)});
+  scratch_.resize(threads_);
+  solver_.analyse(matrix_);
+}
+
+template <int dim>
+typename ContactProblem<dim>::Forces ContactProblem<dim>::forces(const State<dim>& state) const {
+  struct Share {
+    Nodal nodal_n;
+    double volume_error_rel = 0.0;
+    bool admissible = true;
+  };
+  std::vector<Share> shares(threads_);
+  in_lanes(threads_, mesh_.cell_count(), [&](int lane, int begin, int end) {
+    Share& share = shares[lane];
+    share.nodal_n = Nodal::Zero(dim, mesh_.node_count());
+    CellResult<dim> result;
+    typename Element<dim>::Nodal X, u;
+    for (int c = begin; c < end && share.admissible; ++c) {
+      const auto& cell = mesh_.cells[c];
+      for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
+        X.col(a) = mesh_.points_m.col(cell[a]);
+        u.col(a) = state.u_m.col(cell[a]);
+      }
+      share.admissible = element_.evaluate(X, u, state.p_pa.col(c), false, result, mesh_.materials_of(c));
+      for (int i = 0; i < dim; ++i) {
+        for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
+          share.nodal_n(i, cell[a]) += result.force_n[i * Mesh<dim>::nodes_per_cell + a];
+        }
+      }
+      share.volume_error_rel =
+          std::max(share.volume_error_rel, result.volume_m3.cwiseAbs().maxCoeff() / result.rest_volume_m3);
+    }
+  });
+  Forces sum{Nodal::Zero(dim, mesh_.node_count())};
+  for (const Share& share : shares) {
+    sum.nodal_n += share.nodal_n;
+    sum.volume_error_rel = std::max(sum.volume_error_rel, share.volume_error_rel);
+    sum.admissible = sum.admissible && share.admissible;
+  }
+  for (const auto& hanging : mesh_.hanging) {
+    for (const auto& [master, weight] : hanging.masters) {
+      sum.nodal_n.col(master) += weight * sum.nodal_n.col(hanging.node);
+    }
+    sum.nodal_n.col(hanging.node).setZero();
+  }
+  return sum;
+}
+
+template <int dim>
+typename ContactProblem<dim>::Nodal ContactProblem<dim>::internal_forces(const State<dim>& state) const {
+  return forces(state).nodal_n;
+}
+
+template <int dim>
+void ContactProblem<dim>::expand(int node, int direction, double weight, Expansion& out) const {
+  if (hanging_[node] >= 0) {
+    for (const auto& [master, share] : mesh_.hanging[hanging_[node]].masters) {
+      expand(master, direction, weight * share, out);
+    }
+    return;
+  }
+  if (prescribed_[node * dim + direction]) {
+    out.offset_m += weight * step_offset_m_(direction, node);
+  } else if (eliminated_[node] == direction) {
+    // n . du = -g, solved for the largest component of n.
+    const Gap<dim>& g = gaps_[node];
+    const double n_c = g.gradient[direction];
+    out.offset_m -= weight * g.value_m / n_c;
+    for (int j = 0; j < dim; ++j) {
+      if (j == direction) continue;
+      if (prescribed_[node * dim + j]) {
+        out.offset_m -= weight * g.gradient[j] / n_c * step_offset_m_(j, node);
+      } else {
+        out.terms.emplace_back(unknown_[node * dim + j], -weight * g.gradient[j] / n_c);
+      }
+    }
+  } else {
+    out.terms.emplace_back(unknown_[node * dim + direction], weight);
+  }
+}
+
+template <int dim>
+void ContactProblem<dim>::scatter(const std::vector<std::pair<int, int>>& places, const double* K, const double* f,
+                                  Lane& lane) const {
+  // du = T x + offset for the unknowns x that these places depend on: add T' K T and -T' (f + K offset).
+  const int n = static_cast<int>(places.size());
+  std::vector<Expansion> expansions(n);
+  std::vector<int> unknowns;
+  for (int r = 0; r < n; ++r) {
+    expand(places[r].first, places[r].second, 1.0, expansions[r]);
+    for (const auto& [unknown, weight] : expansions[r].terms) unknowns.push_back(unknown);
+  }
+  std::sort(unknowns.begin(), unknowns.end());
+  unknowns.erase(std::unique(unknowns.begin(), unknowns.end()), unknowns.end());
+  const int m = static_cast<int>(unknowns.size());
+  for (Expansion& expansion : expansions) {
+    for (auto& [unknown, weight] : expansion.terms) {
+      unknown = static_cast<int>(std::lower_bound(unknowns.begin(), unknowns.end(), unknown) - unknowns.begin());
+    }
+  }
+  using Vector = Eigen::VectorXd;
+  const Eigen::Map<const Eigen::MatrixXd> K_in(K, n, n);  // symmetric, so its storage order does not matter
+  Vector out_of_balance_n = Eigen::Map<const Vector>(f, n);
+  Eigen::MatrixXd KT = Eigen::MatrixXd::Zero(n, m);
+  for (int c = 0; c < n; ++c) {
+    if (expansions[c].offset_m != 0.0) out_of_balance_n += expansions[c].offset_m * K_in.col(c);
+    for (const auto& [column, weight] : expansions[c].terms) KT.col(column) += weight * K_in.col(c);
+  }
+  Eigen::MatrixXd TKT = Eigen::MatrixXd::Zero(m, m);  // by columns: row r of T' (K T) is column r of its transpose
+  const Eigen::MatrixXd KT_transposed = KT.transpose();
+  for (int r = 0; r < n; ++r) {
+    for (const auto& [row, weight] : expansions[r].terms) {
+      TKT.col(row) += weight * KT_transposed.col(r);
+      lane.right[unknowns[row]] -= weight * out_of_balance_n[r];
+    }
+  }
+  add_sorted(unknowns.data(), m, TKT.data(), lane);
+}
+
+template <int dim>
+void ContactProblem<dim>::add_sorted(const int* unknowns, int count, const double* K, Lane& lane) const {
+  for (int c = 0; c < count; ++c) {
+    // Both lists are sorted: walk them together.
+    std::int64_t k = matrix_.column_begin[unknowns[c]];
+    for (int r = c; r < count; ++r, ++k) {
+      while (matrix_.row[k] < unknowns[r]) ++k;
+      lane.value[k] += K[c * count + r];
+    }
+  }
+}
+
+template <int dim>
+void ContactProblem<dim>::scatter_plain(const std::array<int, Mesh<dim>::nodes_per_cell>& cell,
+                                        const CellResult<dim>& result, Lane& lane) const {
+  constexpr int n = CellResult<dim>::unknowns;
+  std::array<std::pair<int, int>, n> sorted;  // unknown, local index
+  int count = 0;
+  for (int i = 0; i < dim; ++i) {
+    for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
+      const int unknown = unknown_[cell[a] * dim + i];
+      if (unknown >= 0) sorted[count++] = {unknown, i * Mesh<dim>::nodes_per_cell + a};
+    }
+  }
+  std::sort(sorted.begin(), sorted.begin() + count);
+  std::array<int, n> unknowns;
+  std::array<double, n * n> K;
+  for (int c = 0; c < count; ++c) {
+    unknowns[c] = sorted[c].first;
+    lane.right[unknowns[c]] -= result.condensed_force_n[sorted[c].second];
+    for (int r = c; r < count; ++r) K[c * count + r] = result.stiffness(sorted[c].second, sorted[r].second);
+  }
+  add_sorted(unknowns.data(), count, K.data(), lane);
+}
+
+template <int dim>
+void ContactProblem<dim>::assemble(const State<dim>& state) {
+  if (matrix_.column_begin.empty()) build_pattern();
+  in_lanes(threads_, mesh_.cell_count(), [&](int number, int begin, int end) {
+    Lane& lane = lanes_[number];
+    std::fill(lane.value.begin(), lane.value.end(), 0.0);
+    std::fill(lane.right.begin(), lane.right.end(), 0.0);
+    CellResult<dim>& result = scratch_[number];
+    typename Element<dim>::Nodal X, u;
+    std::vector<std::pair<int, int>> places(CellResult<dim>::unknowns);
+    for (int c = begin; c < end; ++c) {
+      const auto& cell = mesh_.cells[c];
+      bool plain = true;
+      for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
+        X.col(a) = mesh_.points_m.col(cell[a]);
+        u.col(a) = state.u_m.col(cell[a]);
+        plain = plain && hanging_[cell[a]] < 0 && eliminated_[cell[a]] < 0 && step_offset_m_.col(cell[a]).isZero(0.0);
+      }
+      element_.evaluate(X, u, state.p_pa.col(c), true, result, mesh_.materials_of(c));
+      pressure_gain_[c] = result.pressure_gain;
+      pressure_offset_pa_.col(c) = result.pressure_offset_pa;
+      if (plain) {
+        scatter_plain(cell, result, lane);
+        continue;
+      }
+      for (int i = 0; i < dim; ++i) {
+        for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) places[i * Mesh<dim>::nodes_per_cell + a] = {cell[a], i};
+      }
+      scatter(places, result.stiffness.data(), result.condensed_force_n.data(), lane);
+    }
+  });
+  // An eliminated component stays in the pattern as an equation of its own, scaled like its neighbours.
+  for (const int node : contact_nodes_) {
+    if (eliminated_[node] < 0) continue;
+    const int unknown = unknown_[node * dim + eliminated_[node]];
+    lanes_[0].value[matrix_.column_begin[unknown]] = material_.shear_modulus_pa() * tool_->half_width_m();
+  }
+}
+
+template <int dim>
+void ContactProblem<dim>::add_curvature() {
+  // The tangent of -lambda grad g at the touching nodes: -lambda hessian g.
+  std::vector<std::pair<int, int>> places(dim);
+  const Point no_force = Point::Zero();
+  for (const int node : contact_nodes_) {
+    if (eliminated_[node] < 0) continue;
+    for (int i = 0; i < dim; ++i) places[i] = {node, i};
+    const Eigen::Matrix<double, dim, dim> K = -lambda_n_[node] * gaps_[node].hessian_per_m;
+    scatter(places, K.data(), no_force.data(), lanes_[0]);
+  }
+}
+
+template void ContactProblem<2>::assemble(const State<2>&);
+template void ContactProblem<2>::add_curvature();
+template void ContactProblem<2>::expand(int, int, double, Expansion&) const;
+template ContactProblem<2>::Forces ContactProblem<2>::forces(const State<2>&) const;
+template ContactProblem<2>::Nodal ContactProblem<2>::internal_forces(const State<2>&) const;
+template void ContactProblem<3>::assemble(const State<3>&);
+template void ContactProblem<3>::add_curvature();
+template void ContactProblem<3>::expand(int, int, double, Expansion&) const;
+template ContactProblem<3>::Forces ContactProblem<3>::forces(const State<3>&) const;
+template ContactProblem<3>::Nodal ContactProblem<3>::internal_forces(const State<3>&) const;
+
+}  // namespace touchstone::reference
