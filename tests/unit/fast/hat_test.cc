@@ -36,9 +36,13 @@ struct Hatted {
   }
   /// Heights at every vertex of the hat over one of them.
   [[nodiscard]] std::vector<float> over(std::int32_t top, decltype(hat_part)* part_of = hat_part) const {
+    return over(patch_of[static_cast<std::size_t>(top)], place(top), part_of);
+  }
+  [[nodiscard]] std::vector<float> over(std::size_t from, const PatchPlace& top,
+                                        decltype(hat_part)* part_of = hat_part) const {
     std::vector<float> height(rest.vertex_count(), 0.0f);
     for (std::size_t p = 0; p < rest.patches.size(); ++p) {
-      const HatPart part = part_of(rest.patches[patch_of[static_cast<std::size_t>(top)]], place(top), rest.patches[p]);
+      const HatPart part = part_of(rest.patches[from], top, rest.patches[p]);
       if (!part.reaches()) continue;
       const Hat hat(rest, part);
       for (std::int32_t v = rest.patches[p].begin; v < rest.patches[p].end; ++v) {
@@ -170,6 +174,21 @@ TEST(Hat, OverAPoleSpreadsOverAllItsPatchesAlike) {
   for (const double one : sum) {
     EXPECT_GT(one, 1.0);
     EXPECT_NEAR(one, sum[0], 1e-3 * sum[0]);
+  }
+}
+
+TEST(Hat, ChangesLittleWhenItsPointComesToAnEdgeOrAnAnchorPoint) {
+  for (const auto& [name, patch] : {std::pair("box", 5), std::pair("sphere", 0)}) {
+    const Hatted on(body_named(name));
+    // Towards an edge and towards a corner of the patch.
+    for (const auto& [u, v] : {std::pair(0.0, 0.4), std::pair(0.0, 0.0)}) {
+      const auto over = [&](double off) {
+        const Vec3 p_m = on.shape->at(patch, u + off, v + (v == 0.0 ? off : 0.0)).point_m;
+        return on.over(static_cast<std::size_t>(patch), on.anchors->at(patch, p_m));
+      };
+      const std::vector<float> there = over(0.0), near = over(0.002);
+      for (std::size_t k = 0; k < there.size(); ++k) EXPECT_NEAR(near[k], there[k], 0.05) << name;
+    }
   }
 }
 
