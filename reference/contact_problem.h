@@ -15,6 +15,7 @@
 #include "reference/element.h"
 #include "reference/mesh.h"
 #include "reference/regions.h"
+#include "reference/threads.h"
 #include "reference/tool_gap.h"
 #include "scene/frames.h"
 #include "scene/scene.h"
@@ -68,7 +69,7 @@ class ContactProblem {
 
   /// @param mirror_x, mirror_y  dim = 3: the mesh is one half of the body on that side
   ContactProblem(Mesh<dim> mesh, const scene::Material& material, scene::Kinematics kinematics, bool mirror_x,
-                 bool mirror_y, int threads = 2);
+                 bool mirror_y, int threads = threads_to_use());
 
   /// Prescribes one displacement component from the next solve on; the support and symmetry planes are there already.
   /// New places are fixed only before the first solve.
