@@ -2,6 +2,8 @@
 #include "compare/verbs.h"
 #include "fast/command_line.h"
 #include "fast/live/live_verb.h"
+#include "reference/contact_shares.h"
+#include "reference/ranks.h"
 #include "scene/fields.h"
 
 #include <iostream>
@@ -9,6 +11,11 @@
 using namespace touchstone;
 
 int main(int argc, char** argv) {
+  const reference::ranks::Session session;
+  if (!reference::ranks::first()) {
+    reference::follow_first_rank();
+    return fast::done;
+  }
   CLI::App app("How wrong a fast contact model is, against a finite-strain reference with error bars.", "touchstone");
   app.add_flag_callback(
       "--scene-reference",

@@ -1,22 +1,13 @@
 #include "reference/cholmod_solver.h"
 
+#include "reference/blas.h"
+
 #include <cholmod.h>
-#include <dlfcn.h>
 #include <umfpack.h>
 
-#include <algorithm>
 #include <stdexcept>
 
 namespace touchstone::reference {
-namespace {
-
-// The BLAS is chosen when the process starts, so its name and thread count are asked from whatever is loaded.
-template <class Function>
-Function* loaded_function(const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
-}
-
-}  // namespace
 
 struct CholmodSolver::State {
   cholmod_common common;
@@ -50,7 +41,7 @@ CholmodSolver::CholmodSolver(int threads) : state_(std::make_unique<State>()) {
   state_->common.method[0].ordering = CHOLMOD_METIS;
   state_->common.method[1].ordering = CHOLMOD_AMD;
   state_->threads = threads;
-  if (auto* set_threads = loaded_function<void(int)>("openblas_set_num_threads")) set_threads(threads);
+  set_blas_threads(threads);
 }
 
 CholmodSolver::~CholmodSolver() {
@@ -72,21 +63,20 @@ bool CholmodSolver::factorise(const SymmetricMatrix& matrix) {
   return state_->common.status == CHOLMOD_OK && state_->factor->minor == state_->factor->n;
 }
 
-void CholmodSolver::solve(std::vector<double>& x) {
+void CholmodSolver::solve(Eigen::VectorXd& x) {
   cholmod_dense right{};
-  right.nrow = right.nzmax = right.d = x.size();
+  right.nrow = right.nzmax = right.d = static_cast<std::size_t>(x.size());
   right.ncol = 1;
   right.x = x.data();
   right.xtype = CHOLMOD_REAL;
   right.dtype = CHOLMOD_DOUBLE;
   cholmod_dense* solution = cholmod_l_solve(CHOLMOD_A, state_->factor, &right, &state_->common);
   if (!solution) throw std::runtime_error("CHOLMOD could not solve: out of memory");
-  const double* values = static_cast<const double*>(solution->x);
-  std::copy(values, values + x.size(), x.begin());
+  x = Eigen::Map<const Eigen::VectorXd>(static_cast<const double*>(solution->x), x.size());
   cholmod_l_free_dense(&solution, &state_->common);
 }
 
-bool CholmodSolver::solve_indefinite(const SymmetricMatrix& matrix, std::vector<double>& x) {
+bool CholmodSolver::solve_indefinite(const SymmetricMatrix& matrix, Eigen::VectorXd& x) {
   const std::int64_t n = matrix.size();
   // Both triangles by columns. Walking the columns in order keeps the rows sorted.
   std::vector<SuiteSparse_long> begin(n + 1, 0);
@@ -114,7 +104,7 @@ bool CholmodSolver::solve_indefinite(const SymmetricMatrix& matrix, std::vector<
       umfpack_dl_symbolic(n, n, begin.data(), row.data(), value.data(), &symbolic, nullptr, nullptr) == UMFPACK_OK &&
       umfpack_dl_numeric(begin.data(), row.data(), value.data(), symbolic, &numeric, nullptr, nullptr) == UMFPACK_OK;
   if (solved) {
-    const std::vector<double> right = x;
+    const Eigen::VectorXd right = x;
     solved = umfpack_dl_solve(UMFPACK_A, begin.data(), row.data(), value.data(), x.data(), right.data(), numeric,
                               nullptr, nullptr) == UMFPACK_OK;
   }
@@ -124,15 +114,8 @@ bool CholmodSolver::solve_indefinite(const SymmetricMatrix& matrix, std::vector<
 }
 
 std::string CholmodSolver::description() const {
-  std::string text = "CHOLMOD " + std::to_string(CHOLMOD_MAIN_VERSION) + "." + std::to_string(CHOLMOD_SUB_VERSION) +
-                     "." + std::to_string(CHOLMOD_SUBSUB_VERSION) + " on ";
-  if (auto* config = loaded_function<char*()>("openblas_get_config")) {
-    text += config();
-    text += ", " + std::to_string(state_->threads) + (state_->threads == 1 ? " thread" : " threads");
-  } else {
-    text += "a BLAS that is not OpenBLAS";
-  }
-  return text;
+  return "CHOLMOD " + std::to_string(CHOLMOD_MAIN_VERSION) + "." + std::to_string(CHOLMOD_SUB_VERSION) + "." +
+         std::to_string(CHOLMOD_SUBSUB_VERSION) + " on " + blas_description(state_->threads);
 }
 
 }  // namespace touchstone::reference

@@ -26,9 +26,9 @@ template <int dim>
 void ContactProblem<dim>::build_pattern() {
   std::vector<std::vector<int>> neighbours(mesh_.node_count());
   std::vector<int> together;
-  for (const auto& cell : mesh_.cells) {
+  for (const int c : cells_) {
     together.clear();
-    for (const int node : cell) {
+    for (const int node : mesh_.cells[c]) {
       if (hanging_[node] < 0) {
         together.push_back(node);
       } else {
@@ -62,23 +62,38 @@ void ContactProblem<dim>::build_pattern() {
   matrix_.value.assign(matrix_.row.size(), 0.0);
   lanes_.assign(threads_, {std::vector<double>(matrix_.row.size()), std::vector<double>(unknowns_)});
   scratch_.resize(threads_);
-  solver_.analyse(matrix_);
 }
 
 template <int dim>
 typename ContactProblem<dim>::Forces ContactProblem<dim>::forces(const State<dim>& state) const {
+  Forces sum = jointly(Order::forces, [&] {
+    send(state);
+    return forces_of_share(state);
+  });
+  for (const auto& hanging : mesh_.hanging) {
+    for (const auto& [master, weight] : hanging.masters) {
+      sum.nodal_n.col(master) += weight * sum.nodal_n.col(hanging.node);
+    }
+    sum.nodal_n.col(hanging.node).setZero();
+  }
+  return sum;
+}
+
+template <int dim>
+typename ContactProblem<dim>::Forces ContactProblem<dim>::forces_of_share(const State<dim>& state) const {
   struct Share {
     Nodal nodal_n;
     double volume_error_rel = 0.0;
     bool admissible = true;
   };
   std::vector<Share> shares(threads_);
-  in_lanes(threads_, mesh_.cell_count(), [&](int lane, int begin, int end) {
+  in_lanes(threads_, static_cast<int>(cells_.size()), [&](int lane, int begin, int end) {
     Share& share = shares[lane];
     share.nodal_n = Nodal::Zero(dim, mesh_.node_count());
     CellResult<dim> result;
     typename Element<dim>::Nodal X, u;
-    for (int c = begin; c < end && share.admissible; ++c) {
+    for (int k = begin; k < end && share.admissible; ++k) {
+      const int c = cells_[k];
       const auto& cell = mesh_.cells[c];
       for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
         X.col(a) = mesh_.points_m.col(cell[a]);
@@ -100,12 +115,9 @@ typename ContactProblem<dim>::Forces ContactProblem<dim>::forces(const State<dim
     sum.volume_error_rel = std::max(sum.volume_error_rel, share.volume_error_rel);
     sum.admissible = sum.admissible && share.admissible;
   }
-  for (const auto& hanging : mesh_.hanging) {
-    for (const auto& [master, weight] : hanging.masters) {
-      sum.nodal_n.col(master) += weight * sum.nodal_n.col(hanging.node);
-    }
-    sum.nodal_n.col(hanging.node).setZero();
-  }
+  ranks::sum_on_first(sum.nodal_n.data(), static_cast<std::size_t>(sum.nodal_n.size()));
+  sum.volume_error_rel = ranks::largest_on_first(sum.volume_error_rel);
+  sum.admissible = ranks::largest_on_first(sum.admissible ? 0.0 : 1.0) == 0.0;
   return sum;
 }
 
@@ -217,15 +229,15 @@ void ContactProblem<dim>::scatter_plain(const std::array<int, Mesh<dim>::nodes_p
 
 template <int dim>
 void ContactProblem<dim>::assemble(const State<dim>& state) {
-  if (matrix_.column_begin.empty()) build_pattern();
-  in_lanes(threads_, mesh_.cell_count(), [&](int number, int begin, int end) {
+  in_lanes(threads_, static_cast<int>(cells_.size()), [&](int number, int begin, int end) {
     Lane& lane = lanes_[number];
     std::fill(lane.value.begin(), lane.value.end(), 0.0);
     std::fill(lane.right.begin(), lane.right.end(), 0.0);
     CellResult<dim>& result = scratch_[number];
     typename Element<dim>::Nodal X, u;
     std::vector<std::pair<int, int>> places(CellResult<dim>::unknowns);
-    for (int c = begin; c < end; ++c) {
+    for (int k = begin; k < end; ++k) {
+      const int c = cells_[k];
       const auto& cell = mesh_.cells[c];
       bool plain = true;
       for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
@@ -234,8 +246,8 @@ void ContactProblem<dim>::assemble(const State<dim>& state) {
         plain = plain && hanging_[cell[a]] < 0 && eliminated_[cell[a]] < 0 && step_offset_m_.col(cell[a]).isZero(0.0);
       }
       element_.evaluate(X, u, state.p_pa.col(c), true, result, mesh_.materials_of(c));
-      pressure_gain_[c] = result.pressure_gain;
-      pressure_offset_pa_.col(c) = result.pressure_offset_pa;
+      pressure_gain_[k] = result.pressure_gain;
+      pressure_offset_pa_.col(k) = result.pressure_offset_pa;
       if (plain) {
         scatter_plain(cell, result, lane);
         continue;
@@ -267,15 +279,81 @@ void ContactProblem<dim>::add_curvature() {
   }
 }
 
+template <int dim>
+Eigen::VectorXd ContactProblem<dim>::sum_of_lanes() {
+  matrix_.value = lanes_[0].value;
+  Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(lanes_[0].right.data(), unknowns_);
+  for (std::size_t lane = 1; lane < lanes_.size(); ++lane) {
+    for (std::size_t k = 0; k < matrix_.value.size(); ++k) matrix_.value[k] += lanes_[lane].value[k];
+    right += Eigen::Map<const Eigen::VectorXd>(lanes_[lane].right.data(), unknowns_);
+  }
+  ranks::sum_on_first(right.data(), static_cast<std::size_t>(right.size()));
+  return right;
+}
+
+template <int dim>
+Eigen::VectorXd ContactProblem<dim>::assemble_tangent(const State<dim>& state, bool with_curvature) {
+  if (matrix_.column_begin.empty()) {
+    jointly(Order::pattern, [&] {
+      ranks::send(prescribed_);
+      build_pattern();
+    });
+    solver_->analyse(matrix_);
+  }
+  return jointly(Order::assemble, [&] {
+    send(state);
+    ranks::send(step_offset_m_);
+    assemble(state);
+    if (with_curvature) add_curvature();
+    return sum_of_lanes();
+  });
+}
+
+template <int dim>
+typename ContactProblem<dim>::Pressures ContactProblem<dim>::pressure_change(const Nodal& du_m) const {
+  return jointly(Order::pressures, [&] {
+    ranks::send(du_m);
+    return pressure_change_of_share(du_m);
+  });
+}
+
+template <int dim>
+typename ContactProblem<dim>::Pressures ContactProblem<dim>::pressure_change_of_share(const Nodal& du_m) const {
+  Pressures dp_pa = Pressures::Zero(dim + 1, mesh_.cell_count());
+  typename CellResult<dim>::Vector du_cell_m;
+  for (std::size_t k = 0; k < cells_.size(); ++k) {
+    for (int i = 0; i < dim; ++i) {
+      for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
+        du_cell_m[i * Mesh<dim>::nodes_per_cell + a] = du_m(i, mesh_.cells[cells_[k]][a]);
+      }
+    }
+    dp_pa.col(cells_[k]) = pressure_offset_pa_.col(static_cast<Eigen::Index>(k)) + pressure_gain_[k] * du_cell_m;
+  }
+  ranks::sum_on_first(dp_pa.data(), static_cast<std::size_t>(dp_pa.size()));
+  return dp_pa;
+}
+
 template void ContactProblem<2>::assemble(const State<2>&);
 template void ContactProblem<2>::add_curvature();
 template void ContactProblem<2>::expand(int, int, double, Expansion&) const;
+template void ContactProblem<2>::build_pattern();
 template ContactProblem<2>::Forces ContactProblem<2>::forces(const State<2>&) const;
+template ContactProblem<2>::Forces ContactProblem<2>::forces_of_share(const State<2>&) const;
+template Eigen::VectorXd ContactProblem<2>::assemble_tangent(const State<2>&, bool);
+template Eigen::VectorXd ContactProblem<2>::sum_of_lanes();
+template ContactProblem<2>::Pressures ContactProblem<2>::pressure_change(const Nodal&) const;
+template ContactProblem<2>::Pressures ContactProblem<2>::pressure_change_of_share(const Nodal&) const;
 template ContactProblem<2>::Nodal ContactProblem<2>::internal_forces(const State<2>&) const;
 template void ContactProblem<3>::assemble(const State<3>&);
 template void ContactProblem<3>::add_curvature();
 template void ContactProblem<3>::expand(int, int, double, Expansion&) const;
+template void ContactProblem<3>::build_pattern();
 template ContactProblem<3>::Forces ContactProblem<3>::forces(const State<3>&) const;
+template ContactProblem<3>::Forces ContactProblem<3>::forces_of_share(const State<3>&) const;
+template Eigen::VectorXd ContactProblem<3>::assemble_tangent(const State<3>&, bool);
+template Eigen::VectorXd ContactProblem<3>::sum_of_lanes();
+template ContactProblem<3>::Pressures ContactProblem<3>::pressure_change(const Nodal&) const;
+template ContactProblem<3>::Pressures ContactProblem<3>::pressure_change_of_share(const Nodal&) const;
 template ContactProblem<3>::Nodal ContactProblem<3>::internal_forces(const State<3>&) const;
 
 }  // namespace touchstone::reference

@@ -1,5 +1,7 @@
 #include "reference/contact_problem.h"
 
+#include "reference/contact_shares.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -29,7 +31,8 @@ ContactProblem<dim>::ContactProblem(Mesh<dim> mesh, const scene::Material& mater
       mirror_y_(mirror_y),
       threads_(threads),
       element_(MixedMaterial(material, kinematics), mixed(mesh_.inclusion_materials, kinematics)),
-      solver_(threads) {
+      lead_(make_parts()),
+      solver_(make_solver()) {
   const int n = mesh_.node_count();
   hanging_.assign(n, -1);
   for (std::size_t k = 0; k < mesh_.hanging.size(); ++k) hanging_[mesh_.hanging[k].node] = static_cast<int>(k);
@@ -107,9 +110,15 @@ ContactProblem<dim>::ContactProblem(Mesh<dim> mesh, const scene::Material& mater
     for (int i = 0; i < dim; ++i) all_fixed = all_fixed && prescribed_[node * dim + i];
     return hanging_[node] >= 0 || all_fixed;
   });
-  pressure_gain_.resize(mesh_.cell_count());
-  pressure_offset_pa_.resize(dim + 1, mesh_.cell_count());
+  cells_ = cells_of_rank(mesh_, cells_of_nodes(mesh_, contact_nodes_), ranks::own(), ranks::count());
+  pressure_gain_.resize(cells_.size());
+  pressure_offset_pa_.resize(dim + 1, static_cast<Eigen::Index>(cells_.size()));
   number_unknowns();
+}
+
+template <int dim>
+ContactProblem<dim>::~ContactProblem() {
+  lead_.reset();  // the solvers of all ranks end together
 }
 
 template <int dim>
@@ -273,29 +282,18 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
         eliminated_[node] = i;
       }
     }
-    std::vector<double> solution;
-    const auto combine = [&](bool with_curvature) {
-      assemble(state);
-      if (with_curvature) add_curvature();
-      matrix_.value = lanes_[0].value;
-      solution = lanes_[0].right;
-      for (std::size_t lane = 1; lane < lanes_.size(); ++lane) {
-        for (std::size_t k = 0; k < matrix_.value.size(); ++k) matrix_.value[k] += lanes_[lane].value[k];
-        for (int k = 0; k < unknowns_; ++k) solution[k] += lanes_[lane].right[k];
-      }
-    };
     // The curvature of the tool lowers the tangent. Where that makes it indefinite, Newton does without for one
     // iteration; a body that is itself unstable is left to an indifferent but slow solver.
-    combine(true);
-    bool definite = last_definite = solver_.factorise(matrix_);
+    Eigen::VectorXd solution = assemble_tangent(state, true);
+    bool definite = last_definite = solver_->factorise(matrix_);
     if (!definite) {
       ++report.indefinite;
-      combine(false);
-      definite = solver_.factorise(matrix_);
+      solution = assemble_tangent(state, false);
+      definite = solver_->factorise(matrix_);
     }
     if (definite) {
-      solver_.solve(solution);
-    } else if (!CholmodSolver::solve_indefinite(matrix_, solution)) {
+      solver_->solve(solution);
+    } else if (!solver_->solve_indefinite(matrix_, solution)) {
       report.trouble = "the tangent is singular";
       return report;
     }
@@ -310,16 +308,7 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
         for (const auto& [unknown, weight] : expansion.terms) du_m(i, node) += weight * solution[unknown];
       }
     }
-    Eigen::Matrix<double, dim + 1, Eigen::Dynamic> dp_pa(dim + 1, mesh_.cell_count());
-    typename CellResult<dim>::Vector du_cell_m;
-    for (int c = 0; c < mesh_.cell_count(); ++c) {
-      for (int i = 0; i < dim; ++i) {
-        for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
-          du_cell_m[i * Mesh<dim>::nodes_per_cell + a] = du_m(i, mesh_.cells[c][a]);
-        }
-      }
-      dp_pa.col(c) = pressure_offset_pa_.col(c) + pressure_gain_[c] * du_cell_m;
-    }
+    const Pressures dp_pa = pressure_change(du_m);
     if (!du_m.allFinite()) {
       report.trouble = "the displacement is not finite";
       return report;

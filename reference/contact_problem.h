@@ -11,11 +11,11 @@
 // Mech. Eng. 194 (2005) 3147-3166.
 #pragma once
 
-#include "reference/cholmod_solver.h"
 #include "reference/element.h"
+#include "reference/linear_solver.h"
 #include "reference/mesh.h"
+#include "reference/ranks.h"
 #include "reference/regions.h"
-#include "reference/threads.h"
 #include "reference/tool_gap.h"
 #include "scene/frames.h"
 #include "scene/scene.h"
@@ -23,6 +23,7 @@
 #include <Eigen/Core>
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -60,16 +61,21 @@ struct Observation {
   std::vector<ContactRegion> regions;
 };
 
-/// The discrete problem. Not thread-safe; uses `threads` threads inside.
+/// The discrete problem. Not thread-safe; uses `threads` threads inside. Of several ranks the first one makes and uses
+/// it; each has a share of the cells and of the matrix. Every cell that contact can reach is the first one's, so that
+/// all of contact is.
 template <int dim>
-class ContactProblem {
+class ContactProblem : public ranks::Part {
  public:
   /// Called after every Newton iteration; may throw to stop.
   using Watch = std::function<void(int iteration, double residual_rel)>;
 
   /// @param mirror_x, mirror_y  dim = 3: the mesh is one half of the body on that side
   ContactProblem(Mesh<dim> mesh, const scene::Material& material, scene::Kinematics kinematics, bool mirror_x,
-                 bool mirror_y, int threads = threads_to_use());
+                 bool mirror_y, int threads = ranks::threads());
+  ~ContactProblem() override;
+  ContactProblem(const ContactProblem&) = delete;
+  ContactProblem& operator=(const ContactProblem&) = delete;
 
   /// Prescribes one displacement component from the next solve on; the support and symmetry planes are there already.
   /// New places are fixed only before the first solve.
@@ -94,7 +100,10 @@ class ContactProblem {
 
   [[nodiscard]] const Mesh<dim>& mesh() const noexcept { return mesh_; }
   [[nodiscard]] int unknowns() const noexcept { return unknowns_; }
-  [[nodiscard]] std::string linear_solver() const { return solver_.description(); }
+  [[nodiscard]] std::string linear_solver() const { return solver_->description(); }
+
+  /// On the other ranks: their shares of what the first one's methods do.
+  void follow(Order order) override;
 
   /// Newton stops when the out-of-balance force is below this share of the acting forces.
   static constexpr double force_tolerance = 1e-8;
@@ -103,6 +112,7 @@ class ContactProblem {
  private:
   using Nodal = Eigen::Matrix<double, dim, Eigen::Dynamic>;
   using Point = Eigen::Matrix<double, dim, 1>;
+  using Pressures = Eigen::Matrix<double, dim + 1, Eigen::Dynamic>;
   /// du(node, direction) = offset + sum of weight * du(unknown).
   struct Expansion {
     double offset_m = 0.0;
@@ -126,6 +136,7 @@ class ContactProblem {
   void number_unknowns();
   void build_pattern();
   [[nodiscard]] Forces forces(const State<dim>& state) const;
+  [[nodiscard]] Forces forces_of_share(const State<dim>& state) const;
   [[nodiscard]] Gap<dim> gap(const State<dim>& state, int node) const;
   void expand(int node, int direction, double weight, Expansion& out) const;
   /// Adds a symmetric matrix and force on (node, direction) places, all constraints resolved.
@@ -137,10 +148,27 @@ class ContactProblem {
   void add_sorted(const int* unknowns, int count, const double* K, Lane& lane) const;
   void assemble(const State<dim>& state);
   void add_curvature();
+  /// The tangent in matrix_ and what it is to be solved for.
+  [[nodiscard]] Eigen::VectorXd assemble_tangent(const State<dim>& state, bool with_curvature);
+  /// Sums the lanes into matrix_ and the result.
+  [[nodiscard]] Eigen::VectorXd sum_of_lanes();
+  /// What the pressures do with a displacement, all cells'.
+  [[nodiscard]] Pressures pressure_change(const Nodal& du_m) const;
+  [[nodiscard]] Pressures pressure_change_of_share(const Nodal& du_m) const;
   /// Next active set; returns the largest |gap| over touching nodes [m].
   double update_touching(State<dim>& state, int iteration, bool& changed) const;
   /// Out-of-balance force and sum of the acting forces [N].
   [[nodiscard]] std::array<double, 2> residual(const State<dim>& state, const Nodal& forces_n) const;
+
+  // Between the ranks.
+  [[nodiscard]] std::unique_ptr<ranks::Lead> make_parts() const;
+  [[nodiscard]] std::unique_ptr<LinearSolver> make_solver() const;
+  template <class Share>
+  auto jointly(Order order, const Share& share) const {
+    return lead_ ? lead_->jointly(order, share) : share();
+  }
+  static void send(const State<dim>& state);
+  [[nodiscard]] State<dim> receive_state() const;
 
   Mesh<dim> mesh_;
   scene::Material material_;
@@ -164,8 +192,10 @@ class ContactProblem {
   std::vector<int> unknown_;  // number or -1
   int unknowns_ = 0;
 
-  CholmodSolver solver_;
-  SymmetricMatrix matrix_;
+  std::unique_ptr<ranks::Lead> lead_;     // on the first of several ranks
+  std::vector<int> cells_;                // this rank's, ascending
+  std::unique_ptr<LinearSolver> solver_;  // after lead_
+  SymmetricMatrix matrix_;                // this rank's part
   std::vector<Lane> lanes_;
 
   // Of the current Newton iteration.
@@ -174,8 +204,8 @@ class ContactProblem {
   std::vector<Gap<dim>> gaps_;    // per node
   std::vector<double> lambda_n_;  // per node
   std::vector<CellResult<dim>> scratch_;
-  std::vector<typename CellResult<dim>::Coupling> pressure_gain_;  // per cell
-  Eigen::Matrix<double, dim + 1, Eigen::Dynamic> pressure_offset_pa_;
+  std::vector<typename CellResult<dim>::Coupling> pressure_gain_;  // per cell of this rank
+  Pressures pressure_offset_pa_;                                   // the same
 };
 
 }  // namespace touchstone::reference
