@@ -207,6 +207,14 @@ std::array<double, 2> ContactProblem<dim>::residual(const State<dim>& state, con
       acting_n += 0.5 * std::abs(lambda_n_[node]);
       normal.normalize();
       free -= free.dot(normal) * normal;
+      if (friction_ && contact_of_[node] >= 0) {
+        const NodeContact<dim>& contact = contacts_[contact_of_[node]];
+        if (contact.slips) {
+          free -= contact.coefficient * std::max(contact.normal_n, 0.0) * slips_[contact_of_[node]].direction;
+        } else {
+          free.setZero();
+        }
+      }
     }
     sum2_n2 += free.squaredNorm();
   }
@@ -220,6 +228,7 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
   const double smallest_scale_n = 1e-10 * material_.shear_modulus_pa() * length_m * length_m;
   constexpr double volume_tolerance = 1e-9, gap_tolerance = 1e-10, place_tolerance = 1e-12;
   constexpr int most_indefinite = 3;
+  const int most_iterations = friction_ ? largest_iterations_with_friction : largest_iterations;
   bool last_definite = true;
 
   Forces current = forces(state);
@@ -227,6 +236,7 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     report.trouble = "the starting state turns an element inside out";
     return report;
   }
+  if (friction_) begin_increment(state);
   for (int iteration = 0;; ++iteration) {
     report.iterations = iteration;
     if (tool_) {
@@ -243,7 +253,10 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
       }
     }
     bool changed = false;
-    const double open_m = update_touching(state, iteration, changed);
+    const std::vector<char> before_touching = friction_ ? state.touching : std::vector<char>();
+    double open_m = update_touching(state, iteration, changed);
+    if (friction_)
+      open_m = std::max(open_m, update_slipping(state, before_touching, current.nodal_n, iteration, changed));
     double still_to_move_m = 0.0;
     for (int node = 0; node < mesh_.node_count(); ++node) {
       for (int i = 0; i < dim; ++i) {
@@ -259,16 +272,22 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
         current.volume_error_rel < volume_tolerance && still_to_move_m <= place_tolerance * largest_extent_m_) {
       // A balance whose tangent is indefinite is one the body would leave: a large step can end there, small ones do
       // not.
-      report.converged = last_definite;
-      if (!last_definite) report.trouble = "the balance found is not stable";
-      return report;
+      if (!friction_ || !begin_sliding(state)) {
+        report.converged = last_definite;
+        if (!last_definite) report.trouble = "the balance found is not stable";
+        if (friction_) keep_history(state);
+        return report;
+      }
+      update_slipping(state, state.touching, current.nodal_n, 0, changed);
     }
     if (report.indefinite > most_indefinite) {
       report.trouble = "the tangent stays indefinite";
       return report;
     }
-    if (iteration == largest_iterations) {
-      report.trouble = changed ? "the contact area keeps changing" : "the residual stays up";
+    if (iteration == most_iterations) {
+      report.trouble = changed ? (friction_ ? "the contact area or its sticking part keeps changing"
+                                            : "the contact area keeps changing")
+                               : "the residual stays up";
       return report;
     }
 
@@ -281,6 +300,9 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
         largest = std::abs(gaps_[node].gradient[i]);
         eliminated_[node] = i;
       }
+      if (friction_ && contact_of_[node] >= 0 && !contacts_[contact_of_[node]].slips) {
+        eliminated_[node] = all_directions;
+      }
     }
     // The curvature of the tool lowers the tangent. Where that makes it indefinite, Newton does without for one
     // iteration; a body that is itself unstable is left to an indifferent but slow solver.
@@ -291,7 +313,12 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
       solution = assemble_tangent(state, false);
       definite = solver_->factorise(matrix_);
     }
-    if (definite) {
+    const SlipCoupling slip = slip_rows_ > 0 ? slip_coupling() : SlipCoupling{};
+    if (!definite && slip_rows_ > 0) solution -= slip.column * slip.guess_n;
+    if (definite && slip_rows_ > 0) {
+      solve_with_slip(
+          slip, [this](Eigen::VectorXd& x) { solver_->solve(x); }, solution);
+    } else if (definite) {
       solver_->solve(solution);
     } else if (!solver_->solve_indefinite(matrix_, solution)) {
       report.trouble = "the tangent is singular";

@@ -1,4 +1,4 @@
-// One elastic body on one mesh against a rigid tool, frictionless: assembly, active set, Newton.
+// One elastic body on one mesh against a rigid tool, with or without friction: assembly, active sets, Newton.
 //
 // Unknowns are nodal displacements u and per-cell pressures p. Equilibrium with contact forces lambda_n >= 0 on the
 // surface nodes n,
@@ -9,9 +9,17 @@
 // end the gap of every touching node is zero to round-off and no other node penetrates. Source: M. Hintermueller, K.
 // Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865-888; for contact S. Hueeber, B. I. Wohlmuth, Comput. Methods Appl.
 // Mech. Eng. 194 (2005) 3147-3166.
+//
+// With friction a touching node has a force t along the surface besides N n, |t| <= m N, and a slip s: its way over the
+// tool since the last solved state, along the surface. It sticks (s = 0; its displacement is eliminated) or slips,
+//   t = m N tau / |tau|,  tau = t - c w_n s,
+// and is taken to slip when |tau| > m N. Newton's method on this is that of S. Hueeber, G. Stadler, B. I. Wohlmuth,
+// SIAM J. Sci. Comput. 30 (2008) 572-596; the part of its tangent that is not symmetric is in friction.h. One solve is
+// one increment of the backward Euler rule: t opposes the whole slip, so that no increment gives energy back.
 #pragma once
 
 #include "reference/element.h"
+#include "reference/friction.h"
 #include "reference/linear_solver.h"
 #include "reference/mesh.h"
 #include "reference/ranks.h"
@@ -36,6 +44,25 @@ struct State {
   Eigen::Matrix<double, dim, Eigen::Dynamic> u_m;       ///< one column per node, hanging ones included
   Eigen::Matrix<double, dim + 1, Eigen::Dynamic> p_pa;  ///< one column per cell: coefficients of 1, (X - Xc) / h
   std::vector<char> touching;                           ///< per node
+  // What friction remembers; empty without friction, and at rest.
+  std::vector<char> slipping{};  ///< per node: touches and slips
+  std::vector<char> sliding{};   ///< per node: touches in a region that has begun to slide as a whole
+  Eigen::Matrix3Xd on_tool_m{};  ///< per node of the free surface: its place in the tool frame
+  double dissipated_j = 0.0;     ///< by friction since the body was at rest, of the whole body
+};
+
+/// The force of the tool on the body at one touching node.
+template <int dim>
+struct NodeContact {
+  using Point = Eigen::Matrix<double, dim, 1>;
+  int node = 0;
+  Point normal = Point::Zero();      ///< unit length, out of the tool
+  double normal_n = 0.0;             ///< N
+  Point friction_n = Point::Zero();  ///< t
+  Point slip_m = Point::Zero();      ///< s; zero once the state is solved
+  double coefficient = 0.0;          ///< m
+  bool slips = false;
+  int region = 0;
 };
 
 /// How a Newton solve went.
@@ -58,6 +85,7 @@ struct Observation {
   double between_nodes_penetration_m = 0.0;           ///< largest over face quadrature points and hanging nodes
   double equilibrium_rel = 0.0;                       ///< |contact + support| / |contact|
   double volume_change_rel = 0.0;
+  double dissipated_j = 0.0;  ///< by friction since the body was at rest
   std::vector<ContactRegion> regions;
 };
 
@@ -84,6 +112,13 @@ class ContactProblem : public ranks::Part {
   /// The tool's place for the next solve; without a tool nothing touches.
   void set_tool(const RigidTool<dim>& tool) { tool_ = tool; }
 
+  /// Friction from the next solve on. Regions are told apart as by observe().
+  void set_friction(const scene::Friction& friction, double region_gap_m);
+  [[nodiscard]] bool has_friction() const noexcept { return friction_.has_value(); }
+
+  /// Lets friction know where on a tool the body's surface is: of a state that nothing touches.
+  void note_places(const RigidTool<dim>& tool, State<dim>& state) const;
+
   [[nodiscard]] State<dim> rest() const;
 
   /// Newton from the given state, which is left unfinished when it does not converge. Only stable balances count as
@@ -93,6 +128,10 @@ class ContactProblem : public ranks::Part {
   /// @param region_gap_m  touching nodes of one cell face, or nearer to each other than this, are of one region; in two
   ///                      dimensions all are
   [[nodiscard]] Observation observe(const State<dim>& state, double region_gap_m = 0.0) const;
+
+  /// Forces at the nodes that touch and can move along the surface; normal forces only without friction. The
+  /// coefficient is that of the node's region.
+  [[nodiscard]] std::vector<NodeContact<dim>> node_contacts(const State<dim>& state, double region_gap_m = 0.0) const;
 
   /// Internal nodal forces of a state, hanging nodes' passed on to their masters [N]: the support's force where
   /// displacement is prescribed, zero elsewhere but for contact.
@@ -108,6 +147,7 @@ class ContactProblem : public ranks::Part {
   /// Newton stops when the out-of-balance force is below this share of the acting forces.
   static constexpr double force_tolerance = 1e-8;
   static constexpr int largest_iterations = 25;
+  static constexpr int largest_iterations_with_friction = 50;
 
  private:
   using Nodal = Eigen::Matrix<double, dim, Eigen::Dynamic>;
@@ -126,6 +166,14 @@ class ContactProblem : public ranks::Part {
   struct Lane {
     std::vector<double> value;
     std::vector<double> right;
+    std::vector<Eigen::Triplet<double>> slip_rows{};  // of SlipCoupling
+    std::vector<double> slip_normal_n{};
+  };
+  /// Touching nodes and their regions on the whole body: node i of mirror image k is point i + k * nodes.size().
+  struct Touching {
+    std::vector<int> nodes;
+    std::vector<scene::Vec3> mirrors;
+    std::vector<int> region_of;  // per point
   };
   struct Forces {
     Nodal nodal_n;
@@ -140,7 +188,11 @@ class ContactProblem : public ranks::Part {
   [[nodiscard]] Gap<dim> gap(const State<dim>& state, int node) const;
   void expand(int node, int direction, double weight, Expansion& out) const;
   /// Adds a symmetric matrix and force on (node, direction) places, all constraints resolved.
-  void scatter(const std::vector<std::pair<int, int>>& places, const double* K, const double* f, Lane& lane) const;
+  /// @param with_slip  the slipping nodes' rows of SlipCoupling as well
+  void scatter(const std::vector<std::pair<int, int>>& places, const double* K, const double* f, Lane& lane,
+               bool with_slip = false) const;
+  void add_slip_rows(const std::vector<std::pair<int, int>>& places, const std::vector<int>& unknowns,
+                     const Eigen::MatrixXd& KT, const Eigen::VectorXd& out_of_balance_n, Lane& lane) const;
   /// The same for a cell without hanging, touching or moving prescribed nodes, which is most of them.
   void scatter_plain(const std::array<int, Mesh<dim>::nodes_per_cell>& cell, const CellResult<dim>& result,
                      Lane& lane) const;
@@ -148,6 +200,8 @@ class ContactProblem : public ranks::Part {
   void add_sorted(const int* unknowns, int count, const double* K, Lane& lane) const;
   void assemble(const State<dim>& state);
   void add_curvature();
+  void add_turning();
+  [[nodiscard]] SlipCoupling slip_coupling() const;
   /// The tangent in matrix_ and what it is to be solved for.
   [[nodiscard]] Eigen::VectorXd assemble_tangent(const State<dim>& state, bool with_curvature);
   /// Sums the lanes into matrix_ and the result.
@@ -157,6 +211,24 @@ class ContactProblem : public ranks::Part {
   [[nodiscard]] Pressures pressure_change_of_share(const Nodal& du_m) const;
   /// Next active set; returns the largest |gap| over touching nodes [m].
   double update_touching(State<dim>& state, int iteration, bool& changed) const;
+  [[nodiscard]] Touching touching_points(const State<dim>& state, double region_gap_m) const;
+  /// Where contact is looked at: in small strain at rest.
+  [[nodiscard]] Point contact_place_m(const State<dim>& state, int node) const;
+  /// Of all touching nodes, also those without freedom along the surface.
+  [[nodiscard]] std::vector<NodeContact<dim>> contacts_of(const State<dim>& state, const Nodal& forces_n,
+                                                          const Touching& touching) const;
+  /// Of a vector, what lies along the surface at a node and is free to move.
+  [[nodiscard]] Point along_surface(int node, const Point& normal, Point vector) const;
+  [[nodiscard]] bool can_slip(int node) const;
+  void begin_increment(State<dim>& state);
+  /// Which touching nodes slip next, and how; returns how far those that stick are from their places [m].
+  /// @param before  touching in the last iteration
+  double update_slipping(State<dim>& state, const std::vector<char>& before, const Nodal& forces_n, int iteration,
+                         bool& changed);
+  /// Regions of which every node slips begin to slide. @returns whether that changes the coefficient of one
+  bool begin_sliding(State<dim>& state) const;
+  /// Makes the solved state the start of the next increment.
+  void keep_history(State<dim>& state) const;
   /// Out-of-balance force and sum of the acting forces [N].
   [[nodiscard]] std::array<double, 2> residual(const State<dim>& state, const Nodal& forces_n) const;
 
@@ -177,6 +249,8 @@ class ContactProblem : public ranks::Part {
   int threads_;
   Element<dim> element_;
   std::optional<RigidTool<dim>> tool_;
+  std::optional<FrictionLaw> friction_;
+  double region_gap_m_ = 0.0;
 
   // Per node.
   std::vector<int> hanging_;       // index into mesh_.hanging or -1
@@ -200,12 +274,27 @@ class ContactProblem : public ranks::Part {
 
   // Of the current Newton iteration.
   Nodal step_offset_m_;           // what prescribed components still have to move
-  std::vector<int> eliminated_;   // per node: direction expressed by the others, or -1
+  std::vector<int> eliminated_;   // per node: direction expressed by the others, `all_directions`, or -1
   std::vector<Gap<dim>> gaps_;    // per node
   std::vector<double> lambda_n_;  // per node
   std::vector<CellResult<dim>> scratch_;
   std::vector<typename CellResult<dim>::Coupling> pressure_gain_;  // per cell of this rank
   Pressures pressure_offset_pa_;                                   // the same
+
+  // Of the current increment and Newton iteration, with friction.
+  static constexpr int all_directions = dim;
+  /// How a touching node's friction enters the tangent.
+  struct Slip {
+    Point direction = Point::Zero();  // tau / |tau|
+    double turning_n_per_m = 0.0;     // resists slip across it
+  };
+  Eigen::Matrix3Xd anchors_m_;  // per node: where on the tool its slip is measured from; NaN: nowhere yet
+  std::vector<NodeContact<dim>> contacts_;
+  std::vector<Slip> slips_;      // per contact
+  std::vector<int> contact_of_;  // per node: index into contacts_, or -1
+  std::vector<int> slip_row_;    // per node: row of SlipCoupling, or -1
+  int slip_rows_ = 0;
+  Nodal stick_m_;  // what sticking nodes still have to move
 };
 
 }  // namespace touchstone::reference
