@@ -60,14 +60,9 @@ Message hear() {
   }
 }
 
-/// Names by which Open MPI's mpirun, PMIx and PMI launchers tell a process that it is one of several. Looking at these
-/// first keeps a plain start free of MPI.
-bool launched_with_others() {
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"}) {
-    if (std::getenv(name)) return true;
-  }
-  return false;
-}
+/// By these, Open MPI's mpirun and PMIx launchers such as srun tell a process that it is one of several. Looking at
+/// them first keeps a plain start free of MPI.
+bool launched_with_others() { return std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMIX_RANK"); }
 
 /// A processor that n ranks may run on counts as 1 / n for each of them.
 int fair_threads(MPI_Comm machine, int ranks_there) {
