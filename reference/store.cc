@@ -3,8 +3,6 @@
 #include "scene/hash.h"
 
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 namespace touchstone::reference {
@@ -94,13 +92,12 @@ void Store::write(int level, int instant, const Record& record) const {
 
 std::optional<Record> Store::read(int level, int instant) const {
   const std::filesystem::path path = step_file(level, instant);
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
-  std::string content{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::optional<std::string> content = scene::read_file(path);
+  if (!content) return std::nullopt;
   const std::size_t head = magic.size() + checksum_size + 1;
-  if (content.size() >= head && content.starts_with(magic)) {
-    std::string bytes = content.substr(head);
-    if (content.compare(magic.size(), checksum_size, checksum(level, instant, bytes)) == 0) {
+  if (content->size() >= head && content->starts_with(magic)) {
+    std::string bytes = content->substr(head);
+    if (content->compare(magic.size(), checksum_size, checksum(level, instant, bytes)) == 0) {
       return Record(std::move(bytes));
     }
   }

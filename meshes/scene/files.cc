@@ -8,6 +8,8 @@
 
 #include <cerrno>
 #include <chrono>
+#include <fstream>
+#include <iterator>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -95,6 +97,13 @@ void write_file(const std::filesystem::path& path, std::string_view content) {
     if (try_write(path, content)) return;
   }
   fail("cannot write", path, ENOENT);
+}
+
+std::optional<std::string> read_file(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string content{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (!in.is_open() || in.bad() || std::filesystem::is_directory(path)) return std::nullopt;
+  return content;
 }
 
 void remove_unfinished(const std::filesystem::path& folder) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,9 @@ namespace touchstone::scene {
 /// own, to the disk, then under its name. Several processes may write the same file at a time; one of them wins.
 /// @throws std::filesystem::filesystem_error; the file is then what it was before
 void write_file(const std::filesystem::path& path, std::string_view content);
+
+/// The bytes of a file, or nothing when there is none that can be read.
+[[nodiscard]] std::optional<std::string> read_file(const std::filesystem::path& path);
 
 /// Removes the temporary files that killed runs left in a folder, not in those below it. A live run whose temporary
 /// file goes with them writes it again. @throws std::filesystem::filesystem_error

@@ -1,6 +1,7 @@
 #include "scene/study.h"
 
 #include "scene/fields.h"
+#include "scene/files.h"
 #include "scene/nearest_name.h"
 #include "scene/scene_io.h"
 
@@ -8,11 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 
 namespace touchstone::scene {
 namespace {
@@ -352,13 +350,12 @@ Fault in_study(const Fault& fault, const StudyCase& one) {
 }  // namespace
 
 Study load_study(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (!in || std::filesystem::is_directory(file) || !(text << in.rdbuf())) {
+  const std::optional<std::string> text = read_file(file);
+  if (!text) {
     throw InputError({{file.string(), 0, 0, "cannot read the study; expected a readable TOML file"}});
   }
   try {
-    const toml::table document = toml::parse(text.str(), file.string());
+    const toml::table document = toml::parse(*text, file.string());
     return Reader(document, file).read();
   } catch (const toml::parse_error& error) {
     const toml::source_position where = error.source().begin;
