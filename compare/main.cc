@@ -1,4 +1,5 @@
 // touchstone: one scene in, one result folder out.
+#include "compare/study_verb.h"
 #include "compare/verbs.h"
 #include "fast/command_line.h"
 #include "fast/live/live_verb.h"
@@ -48,6 +49,8 @@ int main(int argc, char** argv) {
                             compare::run_reference));
   add_store(
       add_with_folder("compare", "both sides, then force and shape errors: tables, VTK, report", compare::run_compare));
+  compare::StudyOptions study_options;
+  compare::add_study_verb(app, study_options, exit_code);
   live::add_live_verb(app, options, live_options, exit_code);
   return fast::run_command_line(app, argc, argv, exit_code);
 }

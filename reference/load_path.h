@@ -85,6 +85,9 @@ class LoadPath {
     return report;
   }
 
+  /// The unfinished state of the last attempt that failed.
+  [[nodiscard]] const std::optional<Solved<dim>>& stuck() const noexcept { return stuck_; }
+
  private:
   std::optional<Solved<dim>> attempt(const Solved<dim>* previous, const Solved<dim>& current, double time_s,
                                      AdvanceReport& report, const typename ContactProblem<dim>::Watch& watch) {
@@ -103,13 +106,15 @@ class LoadPath {
     report.last = problem_.solve(next.state, watch);
     report.newton_iterations += report.last.iterations;
     report.indefinite += report.last.indefinite;
-    if (!report.last.converged) return std::nullopt;
-    return next;
+    if (report.last.converged) return next;
+    stuck_ = std::move(next);
+    return std::nullopt;
   }
 
   ContactProblem<dim>& problem_;
   ToolAt tool_at_;
   ToolAnywhere approach_;
+  std::optional<Solved<dim>> stuck_;
 };
 
 }  // namespace touchstone::reference

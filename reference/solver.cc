@@ -6,8 +6,10 @@
 #include "reference/model_choice.h"
 #include "reference/sampling.h"
 #include "reference/store.h"
+#include "reference/stuck_contact.h"
 #include "reference/tool_distance.h"
 #include "reference/uncertainty.h"
+#include "scene/files.h"
 #include "scene/hash.h"
 
 #include <algorithm>
@@ -447,7 +449,10 @@ class Run {
           halved.note = note.str();
           show(halved);
         });
-    if (!report.converged) throw NotConverged(not_converged_text(level, instant, report));
+    if (!report.converged) {
+      const std::string where = stuck_contact_text(problem, path.stuck()->state, scene_.fast.r_th_m);
+      throw NotConverged(not_converged_text(level, instant, report, where));
+    }
     if (solved.touching) {
       step.seen = problem.observe(solved.state, scene_.fast.r_th_m);
       step.linear_solver = problem.linear_solver();
@@ -459,14 +464,15 @@ class Run {
     return result;
   }
 
-  [[nodiscard]] std::string not_converged_text(int level, int instant, const AdvanceReport& report) const {
+  [[nodiscard]] std::string not_converged_text(int level, int instant, const AdvanceReport& report,
+                                               const std::string& where) const {
     std::ostringstream text;
     text << "instant " << instant + 1 << " of " << count() << " (t = " << times_s_[instant] << " s, depth "
          << depth_m(times_s_[instant]) << " m) did not converge on level " << level + 1 << ": " << report.last.trouble
          << ", residual " << report.last.residual_rel
          << " of the acting forces (asked: " << ContactProblem<dim>::force_tolerance
-         << "), stuck at t = " << report.stuck_time_s << " s after " << report.halvings
-         << " halvings. Finished steps are kept. Try a smaller reference.element_size_m (now "
+         << "), stuck at t = " << report.stuck_time_s << " s after " << report.halvings << " halvings, " << where
+         << ". Finished steps are kept. Try a smaller reference.element_size_m (now "
          << element_size_m(scene_, choice_, 0) << " m on the coarsest level), more instants, or less depth.";
     return text.str();
   }
@@ -624,6 +630,7 @@ scene::Plan plan(const Scene& scene) {
 Result solve(const Scene& scene, const Eigen::Matrix3Xd& rest_points_m, const Options& options) {
   if (std::vector<scene::Fault> faults = unsupported(scene); !faults.empty())
     throw scene::InputError(std::move(faults));
+  scene::require_writable(options.store / content_key(scene), "--store");
   const ModelChoice choice = choose_model(scene);
   if (choice.dim == 2) return Run<2>(scene, choice, rest_points_m, options).answer();
   return Run<3>(scene, choice, rest_points_m, options).answer();

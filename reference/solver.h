@@ -62,7 +62,8 @@ struct Result {
   bool from_store = false;  ///< nothing had to be solved
 };
 
-/// A load step that could not converge even after cutting; names the instant, the residual, what to try.
+/// A load step that could not converge even after cutting; names the instant, the contact region and
+/// place, the residual, what to try.
 class NotConverged : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

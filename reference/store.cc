@@ -2,52 +2,18 @@
 
 #include "scene/hash.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <chrono>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
-#include <system_error>
-#include <thread>
 
 namespace touchstone::reference {
 namespace {
 
-// "what it is, hash of the rest, line feed, the rest"
-constexpr std::string_view magic = "touchstone reference step\n";
-constexpr std::size_t hash_size = 32;
+/// Raised when the files change, so that older ones are not found; what is in a record, method_version answers for.
+constexpr std::string_view format_version = "touchstone store 2\n";
 
-[[noreturn]] void fail(const std::string& what, const std::filesystem::path& path) {
-  throw std::filesystem::filesystem_error(what, path, std::error_code(errno, std::generic_category()));
-}
-
-/// Makes a file or a folder's list of names survive a power cut.
-void sync(const std::filesystem::path& path, int flags) {
-  const int file = ::open(path.c_str(), flags | O_CLOEXEC);
-  if (file < 0) fail("cannot open", path);
-  const int result = ::fsync(file);
-  ::close(file);
-  if (result != 0) fail("cannot write to disk", path);
-}
-
-void write_whole(const std::filesystem::path& path, std::string_view content) {
-  std::filesystem::path temporary = path;
-  temporary += ".part";
-  {
-    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-    file.write(content.data(), static_cast<std::streamsize>(content.size()));
-    file.close();
-    if (!file) fail("cannot write", temporary);
-  }
-  sync(temporary, O_RDWR);
-  std::filesystem::rename(temporary, path);
-  sync(path.parent_path(), O_RDONLY | O_DIRECTORY);
-}
+// A step's file: "what it is, checksum, line feed, the record".
+constexpr std::string_view magic = "touchstone reference step 2\n";
+constexpr std::size_t checksum_size = 32;
 
 }  // namespace
 
@@ -84,51 +50,56 @@ std::string Record::take_text() {
   return text;
 }
 
-Store::Store(const std::filesystem::path& root, const std::string& identity) : folder_(root / key(identity)) {
-  std::filesystem::create_directories(folder_);
-  const std::filesystem::path lock_file = folder_ / "lock";
-  lock_ = ::open(lock_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (lock_ < 0) fail("cannot open", lock_file);
+Store::Store(const std::filesystem::path& root, const std::string& identity, const std::function<void()>& waiting)
+    : folder_(root / key(identity)) {
+  scene::require_writable(folder_, "--store");
+  lock_.emplace(folder_);
+  lock_->take(waiting);
+  scene::remove_unfinished(folder_);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    if (entry.is_directory()) scene::remove_unfinished(entry);
+  }
   // For the reader of the folder; the name is the hash of this text.
-  if (!std::filesystem::exists(folder_ / "identity.txt")) write_whole(folder_ / "identity.txt", identity);
+  if (!std::filesystem::exists(folder_ / "identity.txt")) scene::write_file(folder_ / "identity.txt", identity);
 }
 
-Store::~Store() {
-  if (lock_ >= 0) ::close(lock_);  // which gives the lock back
-}
-
-bool Store::try_lock() {
-  if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) return true;
-  if (errno != EWOULDBLOCK && errno != EINTR) fail("cannot lock", folder_ / "lock");
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  return false;
-}
-
-std::string Store::key(const std::string& identity) { return scene::hash_text(identity); }
+std::string Store::key(const std::string& identity) { return scene::hash_text(std::string(format_version) + identity); }
 
 std::filesystem::path Store::step_file(int level, int instant) const {
   return folder_ / ("level-" + std::to_string(level + 1)) / ("instant-" + std::to_string(instant + 1) + ".step");
 }
 
+std::string Store::checksum(int level, int instant, std::string_view bytes) const {
+  std::string text = folder_.filename().string() + ' ' + std::to_string(level) + ' ' + std::to_string(instant) + '\n';
+  return scene::hash_text(text += bytes);
+}
+
 void Store::write(int level, int instant, const Record& record) const {
   const std::filesystem::path file = step_file(level, instant);
-  std::filesystem::create_directories(file.parent_path());
   std::string content(magic);
-  content += scene::hash_text(record.bytes());
+  content += checksum(level, instant, record.bytes());
   content += '\n';
   content += record.bytes();
-  write_whole(file, content);
+  try {
+    std::filesystem::create_directories(file.parent_path());
+    scene::write_file(file, content);
+  } catch (const std::filesystem::filesystem_error& error) {
+    throw std::filesystem::filesystem_error(
+        "cannot keep this load step; those before it are kept, and the next run goes on from there", file,
+        error.code());
+  }
 }
 
 std::optional<Record> Store::read(int level, int instant) const {
   const std::filesystem::path path = step_file(level, instant);
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
-  std::string content{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  const std::size_t head = magic.size() + hash_size + 1;
-  if (content.size() >= head && content.starts_with(magic)) {
-    std::string bytes = content.substr(head);
-    if (content.compare(magic.size(), hash_size, scene::hash_text(bytes)) == 0) return Record(std::move(bytes));
+  const std::optional<std::string> content = scene::read_file(path);
+  if (!content) return std::nullopt;
+  const std::size_t head = magic.size() + checksum_size + 1;
+  if (content->size() >= head && content->starts_with(magic)) {
+    std::string bytes = content->substr(head);
+    if (content->compare(magic.size(), checksum_size, checksum(level, instant, bytes)) == 0) {
+      return Record(std::move(bytes));
+    }
   }
   std::filesystem::remove(path);
   return std::nullopt;

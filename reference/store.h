@@ -1,7 +1,10 @@
 // Results on disk, addressed by content: one folder per scene answer, one checked file per finished load step.
 #pragma once
 
+#include "scene/files.h"
+
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -43,37 +46,32 @@ class Record {
 };
 
 /// The folder of one answer. Holding an object of this class holds the folder's lock: a second process waits.
+///
+/// Whatever stops a process at whatever instant, the next one goes on: a step is on disk whole or not at all, what was
+/// half-written is removed, and a step's file is believed only when its checksum, which covers the answer, level and
+/// instant it belongs to, is right. On a file system without locks two processes do the same work twice.
 class Store {
  public:
   /// @param identity  everything that changes the answer, as text; the folder is named by its hash
   /// @param waiting   called about five times a second while another process holds the lock; may throw to give up
-  /// @throws std::filesystem::filesystem_error
-  template <class Waiting>
-  Store(const std::filesystem::path& root, const std::string& identity, const Waiting& waiting)
-      : Store(root, identity) {
-    while (!try_lock()) waiting();
-  }
-  ~Store();
-  Store(const Store&) = delete;
-  Store& operator=(const Store&) = delete;
+  /// @throws scene::InputError when the folder cannot be written to, std::filesystem::filesystem_error
+  Store(const std::filesystem::path& root, const std::string& identity, const std::function<void()>& waiting);
 
-  /// Folder name for an identity: XXH3, 128 bits, hexadecimal.
+  /// Folder name for an identity: XXH3, 128 bits, hexadecimal, of it and the version of the files.
   [[nodiscard]] static std::string key(const std::string& identity);
 
-  /// Writes a finished step so that it is either whole or absent, whatever happens: to a temporary file, to the disk,
-  /// then under its name. @throws std::filesystem::filesystem_error
+  /// Keeps a finished step. @throws std::filesystem::filesystem_error; the step is then absent
   void write(int level, int instant, const Record& record) const;
 
-  /// The step, or nothing when it is missing, torn or altered; a damaged file is removed.
+  /// The step, or nothing when it is missing, torn, altered or another step's; such a file is removed.
   [[nodiscard]] std::optional<Record> read(int level, int instant) const;
 
   [[nodiscard]] std::filesystem::path step_file(int level, int instant) const;
 
  private:
-  Store(const std::filesystem::path& root, const std::string& identity);
-  [[nodiscard]] bool try_lock();
+  [[nodiscard]] std::string checksum(int level, int instant, std::string_view bytes) const;
   std::filesystem::path folder_;
-  int lock_ = -1;
+  std::optional<scene::FolderLock> lock_;
 };
 
 }  // namespace touchstone::reference

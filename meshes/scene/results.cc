@@ -1,7 +1,6 @@
 #include "scene/results.h"
 
 #include "scene/build_info.h"
-#include "scene/error.h"
 #include "scene/scene_io.h"
 
 #include <nlohmann/json.hpp>
@@ -112,19 +111,6 @@ std::vector<Column> record_columns(const std::vector<InstantRecord>& records, co
   return columns;
 }
 
-void write_file(const std::filesystem::path& path, const std::string& content) {
-  const std::filesystem::path temporary = path.string() + ".part";
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    out << content;
-    out.flush();
-    if (!out) {
-      throw std::filesystem::filesystem_error("cannot write", path, std::make_error_code(std::errc::io_error));
-    }
-  }
-  std::filesystem::rename(temporary, path);
-}
-
 void write_csv(const std::filesystem::path& path, const std::vector<Column>& columns) {
   std::string text;
   for (const Column& c : columns) text += (text.empty() ? "" : ",") + c.name;
@@ -188,22 +174,8 @@ void write_manifest(const std::filesystem::path& path, const Manifest& manifest)
 }
 
 void prepare_result_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw InputError("--out " + folder.string() + ": cannot make the folder (" + error.message() +
-                     "); expected a folder that can be written to");
-  }
-  // Being root or on a read-only disk makes permissions a poor witness: try it.
-  const std::filesystem::path probe = folder / ".touchstone-probe";
-  std::ofstream out(probe);
-  out << "probe";
-  out.flush();
-  const bool good = static_cast<bool>(out);
-  out.close();
-  std::filesystem::remove(probe, error);
-  if (!good)
-    throw InputError("--out " + folder.string() + ": cannot write there; expected a folder that can be written to");
+  require_writable(folder, "--out");
+  remove_unfinished(folder);
 }
 
 }  // namespace touchstone::scene

@@ -1,6 +1,7 @@
 // The result folder: what every verb leaves behind, for people, ParaView, pandas and CI.
 #pragma once
 
+#include "scene/files.h"
 #include "scene/record.h"
 #include "scene/scene.h"
 
@@ -25,10 +26,6 @@ struct Column {
 
 /// time_s and the tool's pose, which both sides share.
 [[nodiscard]] std::vector<Column> track_columns(const std::vector<InstantRecord>& records);
-
-/// Writes to a temporary name and renames, so that a reader never sees half a file.
-/// @throws std::filesystem::filesystem_error
-void write_file(const std::filesystem::path& path, const std::string& content);
 
 /// Comma-separated, one header line, numbers as short as they read back exactly.
 void write_csv(const std::filesystem::path& path, const std::vector<Column>& columns);
@@ -67,7 +64,8 @@ struct Manifest {
 
 void write_manifest(const std::filesystem::path& path, const Manifest& manifest);
 
-/// Makes the folder, or says in one InputError why it cannot be written to.
+/// Makes the folder and clears it of what killed runs left half-written, or says in one InputError why it cannot be
+/// written to.
 void prepare_result_folder(const std::filesystem::path& folder);
 
 }  // namespace touchstone::scene

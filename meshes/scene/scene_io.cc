@@ -2,6 +2,7 @@
 
 #include "scene/fields.h"
 #include "scene/hash.h"
+#include "scene/nearest_name.h"
 #include "scene/rules.h"
 #include "scene/track_csv.h"
 
@@ -20,28 +21,6 @@ namespace {
 constexpr std::string_view track_file_key = "file";
 constexpr std::string_view inclusion_key = "body.inclusion";
 constexpr std::string_view override_mark = "--set ";
-
-/// Edit distance with transpositions, to suggest the key that was meant.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-    }
-  }
-  return d[a.size()][b.size()];
-}
-
-std::string nearest(std::string_view key, const std::vector<std::string>& known) {
-  const auto best = std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
-    return edit_distance(key, a) < edit_distance(key, b);
-  });
-  return *best;
-}
 
 /// What stands in the file, for an error message.
 std::string written(const toml::node& node) {
@@ -157,7 +136,8 @@ class Reader {
       for (std::size_t dot = key.find('.'); dot != std::string::npos; dot = key.find('.', dot + 1))
         names.insert(key.substr(0, dot));
     }
-    return "unknown key \"" + row + path + "\"; did you mean \"" + nearest(path, {names.begin(), names.end()}) + "\"?";
+    return "unknown key \"" + row + path + "\"; did you mean \"" + nearest_name(path, {names.begin(), names.end()}) +
+           "\"?";
   }
 
   /// Every field of a document or row. @param row its name with a dot, for messages; empty for the document
@@ -407,21 +387,51 @@ void merge(toml::table&& from, toml::table& into) {
   }
 }
 
+/// @param before  what stands before the value: its key and " = "
+toml::table parse_value(const std::string& value, const std::string& before, const std::string& place) {
+  try {
+    return toml::parse(before + value, place);
+  } catch (const toml::parse_error&) {
+    // A shell user should not have to quote words twice.
+    try {
+      return toml::parse(before + "'" + value + "'", place);
+    } catch (const toml::parse_error& error) {
+      rethrow(error, place);
+    }
+  }
+}
+
+/// Sets what a path with numbers leads to, such as track[1].position_m[2]; rows and elements count from zero and are
+/// there already.
+void set_element(const std::string& path, toml::table&& parsed, const std::string& place, toml::table& document) {
+  toml::node& value = *parsed.get("value");
+  const std::size_t end = path.find_last_of(".[");
+  toml::node* above = document.at_path(path.substr(0, end)).node();
+  if (path[end] == '.' && above != nullptr && above->is_table()) {
+    value.visit([&](auto& v) { above->as_table()->insert_or_assign(path.substr(end + 1), std::move(v)); });
+    return;
+  }
+  toml::array* array = above != nullptr ? above->as_array() : nullptr;
+  const toml::node* old = document.at_path(path).node();
+  if (array == nullptr || old == nullptr) {
+    throw InputError({{place, 0, 0,
+                       path + " is not in the scene; expected a place it has, counted from 0, such as "
+                              "track[1].position_m[2] of a track in rows"}});
+  }
+  const auto at = std::find_if(array->cbegin(), array->cend(), [&](const toml::node& node) { return &node == old; });
+  value.visit([&](auto& v) { array->replace(at, std::move(v)); });
+}
+
 void apply_override(const std::string& setting, toml::table& document) {
   const std::string place = std::string(override_mark) + setting;
   const std::size_t equals = setting.find('=');
   if (equals == std::string::npos || equals == 0)
     throw InputError(place + ": expected key=value, such as fast.C_n=0.1");
   const std::string key = setting.substr(0, equals), value = setting.substr(equals + 1);
-  try {
-    merge(toml::parse(key + " = " + value, place), document);
-  } catch (const toml::parse_error&) {
-    // A shell user should not have to quote words twice.
-    try {
-      merge(toml::parse(key + " = '" + value + "'", place), document);
-    } catch (const toml::parse_error& error) {
-      rethrow(error, place);
-    }
+  if (key.find('[') != std::string::npos) {
+    set_element(key, parse_value(value, "value = ", place), place, document);
+  } else {
+    merge(parse_value(value, key + " = ", place), document);
   }
 }
 

@@ -151,4 +151,69 @@ TEST(FastVerb, LeavesTheResultFolderOfTheContract) {
   }
 }
 
+/// The executable that solves references, or nothing in a build without.
+std::string full_program() {
+  for (const std::string& verb : verbs()) {
+    if (verb.ends_with(" compare")) return verb.substr(0, verb.rfind(' '));
+  }
+  return "";
+}
+
+TEST(ReferenceVerb, AStoreThatCannotBeIsRefusedInOneLine) {
+  if (full_program().empty()) GTEST_SKIP() << "a build without the reference";
+  const std::filesystem::path dir = std::filesystem::path(testing::TempDir()) / "no-store";
+  std::filesystem::create_directories(dir);
+  std::ofstream(dir / "file") << "x";
+  for (const std::string verb : {"reference", "compare"}) {
+    const Answer answer = run(full_program() + " " + verb + " " + scene + " --out " + (dir / "out").string() +
+                              " --store " + (dir / "file" / "store").string());
+    EXPECT_EQ(answer.exit_code, 2) << answer.output;
+    EXPECT_THAT(answer.output, HasSubstr("--store " + (dir / "file" / "store").string()));
+    EXPECT_THAT(answer.output, HasSubstr("expected a folder that can be written to"));
+    EXPECT_EQ(std::count(answer.output.begin(), answer.output.end(), '\n'), 1) << answer.output;
+  }
+  std::filesystem::remove_all(dir);
+}
+
+TEST(StudyVerb, TwoWorkersOverTheSameIndicesLeaveOneTable) {
+  if (full_program().empty()) GTEST_SKIP() << "a build without the reference";
+  const std::string study = full_program() + " study ";
+  const std::filesystem::path dir = std::filesystem::path(testing::TempDir()) / "study-verb";
+  std::filesystem::remove_all(dir);
+  std::filesystem::create_directories(dir);
+  std::ofstream(dir / "study.toml") << "scene = \"" << scene << "\"\nrun = \"fast\"\n[set]\nfast.triangles = 500\n"
+                                    << "[[axis]]\nkey = \"fast.C_n\"\nvalues = [0.0, 0.1, 0.2]\n";
+  const std::string folder = (dir / "out").string();
+
+  const Answer expanded = run(study + "expand " + (dir / "study.toml").string() + " --out " + folder);
+  EXPECT_EQ(expanded.exit_code, 0) << expanded.output;
+  EXPECT_THAT(expanded.output, HasSubstr("3 cases in " + folder + "/manifest.json"));
+  EXPECT_THAT(expanded.output, HasSubstr("seq 3 | "));
+  const Answer missing = run(study + "collect " + folder);
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.output, HasSubstr("To run again: 1-3"));
+
+  const std::string worker =
+      "for i in 1 2 3; do " + study + "run " + folder + " --quiet --index $i || echo worker failed; done";
+  const Answer raced = run("( " + worker + " ) & ( " + worker + " ); wait");
+  EXPECT_EQ(raced.exit_code, 0);
+  EXPECT_THAT(raced.output, testing::Not(HasSubstr("failed"))) << raced.output;
+  for (const char* ended : {"case 1 of 3 (fast.C_n = 0.0) done", "case 2 of 3 (fast.C_n = 0.1) done",
+                            "case 3 of 3 (fast.C_n = 0.2) done"}) {
+    const std::size_t first = raced.output.find(ended);
+    EXPECT_NE(first, std::string::npos) << raced.output;
+    EXPECT_EQ(raced.output.find(ended, first + 1), std::string::npos) << "run twice:\n" << raced.output;
+  }
+  const Answer collected = run(study + "collect " + folder);
+  EXPECT_EQ(collected.exit_code, 0) << collected.output;
+  EXPECT_THAT(collected.output, HasSubstr("3 of 3 cases are done"));
+  const Answer rerun = run(study + "run " + folder);
+  EXPECT_EQ(rerun.exit_code, 0);
+  EXPECT_EQ(rerun.output, "");
+  const Answer outside = run(study + "run " + folder + " --index 4");
+  EXPECT_EQ(outside.exit_code, 2);
+  EXPECT_THAT(outside.output, HasSubstr("--index 4: expected a whole number in [1, 3]"));
+  std::filesystem::remove_all(dir);
+}
+
 }  // namespace

@@ -152,7 +152,7 @@ TEST_F(SolverTest, KeyFollowsTheAnswerOnly) {
   EXPECT_NE(content_key(other), capsule);
 }
 
-TEST_F(SolverTest, FailureNamesTheInstant) {
+TEST_F(SolverTest, FailureNamesInstantAndContact) {
   // A soft ball flattened to a tenth of its height by a much larger one.
   scene_.tool.radius_m = 0.3;
   scene_.track = {{0.0, {{0.0, 0.0, 0.361}, Eigen::Quaterniond::Identity()}},
@@ -167,6 +167,8 @@ TEST_F(SolverTest, FailureNamesTheInstant) {
     EXPECT_TRUE(text.starts_with("instant 2 of 3 (t = 0.5 s") || text.starts_with("instant 3 of 3 (t = 1 s")) << text;
     EXPECT_NE(text.find("depth "), std::string::npos) << text;
     EXPECT_NE(text.find("Try "), std::string::npos) << text;
+    EXPECT_NE(text.find("contact region 1 of 1, around (0, 0, 0.0"), std::string::npos) << text;
+    EXPECT_NE(text.find("largest out-of-balance force at ("), std::string::npos) << text;
   }
 }
 

@@ -1,5 +1,8 @@
 #include "reference/store.h"
 
+#include "scene/error.h"
+#include "scene/hash.h"
+
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -54,6 +57,49 @@ TEST_F(StoreTest, TornOrAlteredFileIsNotRead) {
     EXPECT_FALSE(store.read(1, 1));
     EXPECT_FALSE(std::filesystem::exists(file));
   }
+}
+
+TEST_F(StoreTest, AnotherStepsFileIsNotRead) {
+  Store store(root_, "a scene", never);
+  Store other(root_, "another scene", never);
+  store.write(0, 0, sample());
+  const auto copy = [&](const std::filesystem::path& to) {
+    std::filesystem::create_directories(to.parent_path());
+    std::filesystem::copy_file(store.step_file(0, 0), to);
+  };
+  copy(store.step_file(0, 1));
+  copy(store.step_file(1, 0));
+  copy(other.step_file(0, 0));
+  EXPECT_FALSE(store.read(0, 1));
+  EXPECT_FALSE(store.read(1, 0));
+  EXPECT_FALSE(other.read(0, 0));
+  EXPECT_TRUE(store.read(0, 0));
+}
+
+TEST_F(StoreTest, AFileOfTheFormerFormatIsNotRead) {
+  Store store(root_, "a scene", never);
+  std::filesystem::create_directories(store.step_file(0, 0).parent_path());
+  const std::string bytes = sample().bytes();
+  std::ofstream(store.step_file(0, 0), std::ios::binary) << "touchstone reference step\n"
+                                                         << scene::hash_text(bytes) << '\n'
+                                                         << bytes;
+  EXPECT_FALSE(store.read(0, 0));
+  EXPECT_NE(Store::key("a scene"), scene::hash_text("a scene"));
+}
+
+TEST_F(StoreTest, WhatKilledRunsLeftIsRemoved) {
+  const auto step = [&] { return Store(root_, "a scene", never).step_file(0, 0); }();
+  std::filesystem::create_directories(step.parent_path());
+  const std::filesystem::path leftovers[] = {step.string() + ".part-123-0",
+                                             step.parent_path().parent_path() / "identity.txt.part-9-0"};
+  for (const auto& leftover : leftovers) std::ofstream(leftover) << "half";
+  const Store store(root_, "a scene", never);
+  for (const auto& leftover : leftovers) EXPECT_FALSE(std::filesystem::exists(leftover)) << leftover;
+}
+
+TEST_F(StoreTest, AFolderThatCannotBeIsRefused) {
+  std::ofstream(root_) << "a file";
+  EXPECT_THROW(Store(root_, "a scene", never), scene::InputError);
 }
 
 TEST_F(StoreTest, SecondHolderWaits) {

@@ -1,0 +1,189 @@
+#include "compare/study_table.h"
+
+#include "compare/text.h"
+#include "scene/files.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace touchstone::compare {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What the short table shows, of the figures that are there.
+constexpr std::array short_figures = {"force.nrmse",
+                                      "force.peak_rel",
+                                      "shape.rel_l2",
+                                      "contact.area_iou",
+                                      "reference.force_uncertainty_rel",
+                                      "reference.shape_uncertainty_rel",
+                                      "reference.wall_s",
+                                      "fast.step_us.p50"};
+
+struct Row {
+  const ManifestCase* one = nullptr;
+  CaseStatus status;
+  Json figures = Json::object();
+};
+
+/// RFC 4180.
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + "\"";
+}
+
+std::string plain_text(const Json& value) {
+  if (value.is_null()) return "";
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::string markdown_cell(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '|' ? "\\|" : c == '\n' ? " " : std::string(1, c);
+  return out;
+}
+
+std::string label_at(const ManifestCase& one, const std::string& axis) {
+  for (const auto& [name, label] : one.along) {
+    if (name == axis) return label;
+  }
+  return "";
+}
+
+std::string csv(const StudyManifest& manifest, const std::vector<Row>& rows, const std::vector<std::string>& keys) {
+  std::string text = "index,id,name,state,why,version,wall_s";
+  for (const std::string& axis : manifest.axes) text += "," + csv_cell(axis);
+  for (const std::string& key : keys) text += "," + csv_cell(key);
+  text += '\n';
+  for (const Row& row : rows) {
+    const bool done = row.status.state == CaseState::done;
+    text += fmt::format("{},{},{},{},{},{},{}", row.one->index, row.one->id, csv_cell(row.one->name),
+                        state_name(row.status.state), csv_cell(row.status.why), csv_cell(row.status.version),
+                        done ? fmt::format("{}", row.status.wall_s) : "");
+    for (const std::string& axis : manifest.axes) text += "," + csv_cell(label_at(*row.one, axis));
+    for (const std::string& key : keys) {
+      text += "," + csv_cell(row.figures.contains(key) ? plain_text(row.figures[key]) : "");
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+Json json(const StudyManifest& manifest, const std::vector<Row>& rows, const Json& units) {
+  Json out = {{"name", manifest.name}, {"title", manifest.title}, {"run", manifest.run}, {"axes", manifest.axes}};
+  out["cases"] = Json::array();
+  for (const Row& row : rows) {
+    Json one = {{"index", row.one->index}, {"id", row.one->id}, {"name", row.one->name}};
+    one["along"] = Json::object();
+    for (const auto& [axis, label] : row.one->along) one["along"][axis] = label;
+    one["set"] = Json::object();
+    for (const auto& [key, value] : row.one->settings) one["set"][key] = value;
+    one["state"] = state_name(row.status.state);
+    if (!row.status.why.empty()) one["why"] = row.status.why;
+    if (row.status.state == CaseState::done) {
+      one["version"] = row.status.version;
+      one["wall_s"] = row.status.wall_s;
+      one["figures"] = row.figures;
+    }
+    out["cases"].push_back(std::move(one));
+  }
+  out["units"] = units;
+  return out;
+}
+
+std::string markdown(const StudyManifest& manifest, const std::vector<Row>& rows, const Json& units,
+                     const std::string& missing) {
+  std::vector<std::string> keys;
+  for (const char* key : short_figures) {
+    if (std::any_of(rows.begin(), rows.end(), [&](const Row& row) { return row.figures.contains(key); })) {
+      keys.emplace_back(key);
+    }
+  }
+  const bool beside = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.one->along.empty(); });
+  std::string head = "| case |", rule = "|---|";
+  const auto column = [&](const std::string& name, bool number) {
+    head += " " + markdown_cell(name) + " |";
+    rule += number ? "---:|" : "---|";
+  };
+  for (const std::string& axis : manifest.axes) column(axis, false);
+  if (beside) column("name", false);
+  column("state", false);
+  for (const std::string& key : keys) column(key, true);
+  std::string text =
+      "# " + (manifest.title.empty() ? manifest.name : manifest.title) + "\n\n" + head + "\n" + rule + "\n";
+  for (const Row& row : rows) {
+    text += fmt::format("| {} |", row.one->index);
+    for (const std::string& axis : manifest.axes) text += " " + markdown_cell(label_at(*row.one, axis)) + " |";
+    if (beside) text += " " + (row.one->along.empty() ? markdown_cell(row.one->name) : "") + " |";
+    text += fmt::format(" {} |", state_name(row.status.state));
+    for (const std::string& key : keys) {
+      const bool number = row.figures.contains(key) && row.figures[key].is_number();
+      text += " " + (number ? quantity_text(row.figures[key].get<double>(), units.value(key, "")) : "") + " |";
+    }
+    text += '\n';
+  }
+  return text + (missing.empty() ? "" : "\n```\n" + missing + "```\n");
+}
+
+}  // namespace
+
+std::string ranges_text(const std::vector<int>& ascending) {
+  std::string text;
+  for (std::size_t i = 0; i < ascending.size();) {
+    std::size_t end = i;
+    while (end + 1 < ascending.size() && ascending[end + 1] == ascending[end] + 1) ++end;
+    text += (text.empty() ? "" : ",") + std::to_string(ascending[i]);
+    if (end > i) text += "-" + std::to_string(ascending[end]);
+    i = end + 1;
+  }
+  return text;
+}
+
+StudyTable collect(const StudyManifest& manifest) {
+  std::vector<Row> rows;
+  std::vector<std::string> keys;
+  std::set<std::string> known, versions;
+  Json units = Json::object();
+  StudyTable table{static_cast<int>(manifest.cases.size()), 0, ""};
+  std::vector<int> again;
+  for (const ManifestCase& one : manifest.cases) {
+    Row row{&one, case_status(manifest, one), Json::object()};
+    if (row.status.state == CaseState::done) {
+      ++table.done;
+      versions.insert(row.status.version);
+      const Json summary = Json::parse(*scene::read_file(manifest.result_folder(one) / "summary.json"));
+      for (const auto& [key, value] : summary.items()) {
+        if (key == "units") continue;
+        row.figures[key] = value;
+        units[key] = summary.at("units").value(key, "");
+        if (known.insert(key).second) keys.push_back(key);
+      }
+    } else {
+      table.text += fmt::format("case {} ({}): {}{}\n", one.index, one.name, state_name(row.status.state),
+                                row.status.why.empty() ? "" : ": " + row.status.why);
+      if (row.status.state != CaseState::running) again.push_back(one.index);
+    }
+    rows.push_back(std::move(row));
+  }
+  if (!again.empty()) table.text += "To run again: " + ranges_text(again) + '\n';
+  if (versions.size() > 1) {
+    table.text += "The cases are of different versions of the program:";
+    for (const std::string& version : versions) table.text += " " + version + ";";
+    table.text.back() = '\n';
+  }
+  scene::write_file(manifest.folder / "summary.csv", csv(manifest, rows, keys));
+  scene::write_file(manifest.folder / "summary.json", json(manifest, rows, units).dump(2) + "\n");
+  scene::write_file(manifest.folder / "summary.md", markdown(manifest, rows, units, table.text));
+  return table;
+}
+
+}  // namespace touchstone::compare

@@ -1,0 +1,159 @@
+#include "scene/files.h"
+
+#include "scene/error.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+namespace touchstone::scene {
+namespace {
+
+constexpr std::string_view unfinished_mark = ".part-";
+
+[[noreturn]] void fail(const std::string& what, const std::filesystem::path& path, int error) {
+  throw std::filesystem::filesystem_error(what, path, std::error_code(error, std::generic_category()));
+}
+
+/// An open file that is closed when the object ends.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int number() const noexcept { return number_; }
+  [[nodiscard]] int release() noexcept { return std::exchange(number_, -1); }
+
+ private:
+  int number_;
+};
+
+/// A new file that no other process writes to; `temporary` becomes its name. Its number is -1 with errno set on
+/// failure.
+int open_temporary(const std::filesystem::path& path, std::filesystem::path& temporary) {
+  for (int number = 0;; ++number) {
+    temporary = path;
+    temporary += std::string(unfinished_mark) + std::to_string(::getpid()) + "-" + std::to_string(number);
+    const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file >= 0 || errno != EEXIST) return file;
+  }
+}
+
+/// @returns 0 or the error number
+int write_all(int file, std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(file, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+/// Brings a file, or a folder's list of names, to the disk. @returns 0 or the error number
+int sync(int file) {
+  // EINVAL: a file system that has no disk behind it.
+  return ::fsync(file) == 0 || errno == EINVAL ? 0 : errno;
+}
+
+/// @returns false when another run took the temporary file for a dead run's
+bool try_write(const std::filesystem::path& path, std::string_view content) {
+  std::filesystem::path temporary;
+  Descriptor file(open_temporary(path, temporary));
+  if (file.number() < 0) fail("cannot write", path, errno);
+  int error = write_all(file.number(), content);
+  if (error == 0) error = sync(file.number());
+  // A network file system may report a full disk only here.
+  if (::close(file.release()) != 0 && error == 0) error = errno;
+  if (error == 0 && ::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
+  if (error == ENOENT) return false;
+  if (error != 0) {
+    ::unlink(temporary.c_str());
+    fail("cannot write", path, error);
+  }
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const Descriptor names(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (names.number() < 0) fail("cannot open", folder, errno);
+  if ((error = sync(names.number())) != 0) fail("cannot write", folder, error);
+  return true;
+}
+
+}  // namespace
+
+void write_file(const std::filesystem::path& path, std::string_view content) {
+  constexpr int attempts = 3;
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    if (try_write(path, content)) return;
+  }
+  fail("cannot write", path, ENOENT);
+}
+
+std::optional<std::string> read_file(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string content{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (!in.is_open() || in.bad() || std::filesystem::is_directory(path)) return std::nullopt;
+  return content;
+}
+
+void remove_unfinished(const std::filesystem::path& folder) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().filename().string().find(unfinished_mark) != std::string::npos) {
+      std::filesystem::remove(entry.path());
+    }
+  }
+}
+
+void require_writable(const std::filesystem::path& folder, const std::string& option) {
+  const auto refuse = [&](const std::string& what, const std::error_code& error) {
+    throw InputError(option + " " + folder.string() + ": " + what + " (" + error.message() +
+                     "); expected a folder that can be written to");
+  };
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) refuse("cannot make the folder", error);
+  // Being root or on a read-only disk makes permissions a poor witness: try it.
+  std::filesystem::path probe;
+  const Descriptor file(open_temporary(folder / "probe", probe));
+  int number = file.number() < 0 ? errno : write_all(file.number(), "probe");
+  ::unlink(probe.c_str());
+  if (number != 0) refuse("cannot write there", std::error_code(number, std::generic_category()));
+}
+
+FolderLock::FolderLock(const std::filesystem::path& folder) : file_(folder / "lock") {
+  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail("cannot open", file_, errno);
+}
+
+FolderLock::~FolderLock() { ::close(descriptor_); }  // which gives the lock back
+
+bool FolderLock::try_take() {
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return true;
+  if (errno == EWOULDBLOCK || errno == EINTR) return false;
+  if (errno == ENOSYS || errno == EOPNOTSUPP || errno == ENOLCK) return true;
+  fail("cannot lock", file_, errno);
+}
+
+void FolderLock::take(const std::function<void()>& waiting) {
+  while (!try_take()) {
+    waiting();
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+}
+
+bool FolderLock::held(const std::filesystem::path& folder) {
+  const Descriptor file(::open((folder / "lock").c_str(), O_RDWR | O_CLOEXEC));
+  return file.number() >= 0 && ::flock(file.number(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+}
+
+}  // namespace touchstone::scene

@@ -1,0 +1,392 @@
+#include "scene/study.h"
+
+#include "scene/fields.h"
+#include "scene/files.h"
+#include "scene/nearest_name.h"
+#include "scene/scene_io.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+namespace touchstone::scene {
+namespace {
+
+/// A value as TOML that reads back the same.
+std::string value_text(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) return number_text(number->get());
+  if (const auto* number = node.as_integer()) return std::to_string(number->get());
+  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
+  std::string text;
+  if (const auto* array = node.as_array()) {
+    for (const toml::node& element : *array) text += (text.empty() ? "" : ", ") + value_text(element);
+    return "[" + text + "]";
+  }
+  if (const auto* table = node.as_table()) {
+    for (const auto& [key, element] : *table) {
+      text += (text.empty() ? "" : ", ") + std::string(key.str()) + " = " + value_text(element);
+    }
+    return "{" + text + "}";
+  }
+  for (const char c : node.value_or(std::string_view())) {
+    if (c == '"' || c == '\\') text += '\\';
+    text += c;
+  }
+  return "\"" + text + "\"";
+}
+
+/// The value as people write it in a table.
+std::string label_text(const toml::node& node) {
+  return node.is_string() ? node.value_or(std::string()) : value_text(node);
+}
+
+/// An axis: at each of its places a label and the settings there.
+struct Axis {
+  std::string name;
+  std::vector<std::string> labels;
+  std::vector<std::vector<StudySetting>> settings;
+};
+
+class Reader {
+ public:
+  Reader(const toml::table& document, const std::filesystem::path& file) : document_(document), file_(file) {}
+
+  Study read() {
+    Study study;
+    study.name = file_.stem().string();
+    known_keys(document_, "", {"kind", "title", "scene", "run", "set", "axis", "case"});
+    word(document_, "kind", {"sweep"}, "sweep");
+    study.title = text(document_, "title").value_or("");
+    study.run = word(document_, "run", {"fast", "reference", "compare"});
+    if (const auto scene = text(document_, "scene")) {
+      study.scene_file = (file_.parent_path() / *scene).lexically_normal();
+    } else if (document_.get("scene") == nullptr) {
+      add(document_, "scene: missing; expected the path of a scene file, from the study file");
+    }
+    const std::vector<StudySetting> always = settings(document_, "set");
+    std::vector<Axis> axes;
+    for (const toml::table* table : rows("axis")) axes.push_back(axis(*table));
+    if (faults_.empty()) cross(axes, always, study);
+    for (const toml::table* table : rows("case")) study.cases.push_back(single_case(*table, always));
+    if (faults_.empty() && study.cases.empty()) add(document_, "no case; expected [[axis]] or [[case]] rows");
+    for (const Axis& each : axes) study.axes.push_back(each.name);
+    unique_names(study);
+    if (!faults_.empty()) throw InputError(std::move(faults_));
+    return study;
+  }
+
+ private:
+  [[nodiscard]] Fault place(const toml::source_region& source) const {
+    return {file_.string(), static_cast<int>(source.begin.line), static_cast<int>(source.begin.column), ""};
+  }
+  void add(const toml::source_region& source, const std::string& message) {
+    Fault fault = place(source);
+    fault.message = message;
+    faults_.push_back(std::move(fault));
+  }
+  void add(const toml::node& node, const std::string& message) { add(node.source(), message); }
+
+  void known_keys(const toml::table& table, const std::string& row, const std::vector<std::string>& known) {
+    for (const auto& [key, node] : table) {
+      const std::string name(key.str());
+      if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+      add(key.source(),
+          "unknown key \"" + row + name + "\"; did you mean \"" + row + nearest_name(name, known) + "\"?");
+    }
+  }
+
+  std::optional<std::string> text(const toml::table& table, const std::string& key) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return std::nullopt;
+    if (node->is_string()) return node->value<std::string>();
+    add(*node, key + " = " + value_text(*node) + "; expected a text");
+    return std::nullopt;
+  }
+
+  std::string word(const toml::table& table, const std::string& key, const std::vector<std::string>& words,
+                   const std::optional<std::string>& otherwise = std::nullopt) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr && otherwise) return *otherwise;
+    std::string expected;
+    for (const std::string& each : words) expected += (expected.empty() ? "\"" : " or \"") + each + "\"";
+    if (node == nullptr) {
+      add(table, key + ": missing; expected " + expected);
+    } else if (!node->is_string() ||
+               std::find(words.begin(), words.end(), node->value_or(std::string())) == words.end()) {
+      add(*node, key + " = " + value_text(*node) + "; expected " + expected);
+    } else {
+      return node->value_or(std::string());
+    }
+    return "";
+  }
+
+  std::vector<const toml::table*> rows(const std::string& key) {
+    std::vector<const toml::table*> list;
+    const toml::node* node = document_.get(key);
+    if (node == nullptr) return list;
+    const toml::array* array = node->as_array();
+    if (array == nullptr || !array->is_array_of_tables()) {
+      add(*node, key + ": expected [[" + key + "]] rows");
+      return list;
+    }
+    for (const toml::node& row : *array) list.push_back(row.as_table());
+    return list;
+  }
+
+  /// A table of settings, its tables within tables spelt as dotted keys.
+  std::vector<StudySetting> settings(const toml::table& table, const std::string& key) {
+    std::vector<StudySetting> list;
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return list;
+    if (node->is_table()) {
+      flatten(*node->as_table(), "", list);
+    } else {
+      add(*node, key + ": expected a table of keys as for --set");
+    }
+    return list;
+  }
+  void flatten(const toml::table& table, const std::string& above, std::vector<StudySetting>& list) const {
+    for (const auto& [key, node] : table) {
+      const std::string name = above + std::string(key.str());
+      if (node.is_table()) {
+        flatten(*node.as_table(), name + ".", list);
+      } else {
+        list.push_back({name, value_text(node), place(node.source())});
+      }
+    }
+  }
+
+  Axis axis(const toml::table& table) {
+    known_keys(table, "axis.", {"name", "key", "values", "range", "zip", "labels"});
+    Axis axis;
+    const std::optional<std::string> name = text(table, "name"), key = text(table, "key");
+    axis.name = name.value_or(key.value_or(""));
+    const toml::node *values = table.get("values"), *range = table.get("range"), *zip = table.get("zip");
+    if (const int ways = (values != nullptr) + (range != nullptr) + (zip != nullptr); ways != 1) {
+      add(table, ways == 0 ? "axis: no values; expected one of axis.values, axis.range and axis.zip"
+                           : "axis: expected only one of axis.values, axis.range and axis.zip");
+      return axis;
+    }
+    if (zip != nullptr && (!name || key)) {
+      add(*zip, "axis.zip: expected axis.name, for what its keys say together, and no axis.key");
+      return axis;
+    }
+    if (zip == nullptr && !key) {
+      add(table, "axis.key: missing; expected a key as for --set, such as \"fast.C_n\"");
+      return axis;
+    }
+    if (values != nullptr) {
+      along(axis, *key, *values, "axis.values");
+    } else if (range != nullptr) {
+      along_range(axis, *key, *range);
+    } else {
+      along_zip(axis, *zip);
+    }
+    relabel(axis, table);
+    return axis;
+  }
+
+  /// Lays a list of values along the axis. @param where  its key in the study file
+  void along(Axis& axis, const std::string& key, const toml::node& node, const std::string& where) {
+    const toml::array* array = node.as_array();
+    if (array == nullptr || array->empty()) {
+      add(node, where + ": expected a list of values for " + key);
+      return;
+    }
+    if (axis.settings.empty()) axis.settings.resize(array->size());
+    if (axis.settings.size() != array->size()) {
+      add(node, where + ": " + std::to_string(array->size()) + " values; expected " +
+                    std::to_string(axis.settings.size()) + " like the other keys of its axis");
+      return;
+    }
+    const bool first = axis.labels.empty();
+    for (std::size_t i = 0; i < array->size(); ++i) {
+      const toml::node& value = *array->get(i);
+      axis.settings[i].push_back({key, value_text(value), place(value.source())});
+      if (first) {
+        axis.labels.push_back(label_text(value));
+      } else {
+        axis.labels[i] += ", " + label_text(value);
+      }
+    }
+  }
+
+  void along_range(Axis& axis, const std::string& key, const toml::node& node) {
+    const toml::table* table = node.as_table();
+    if (table == nullptr) {
+      add(node, "axis.range: expected { from, to, count, spacing }");
+      return;
+    }
+    known_keys(*table, "axis.range.", {"from", "to", "count", "spacing"});
+    const bool log = word(*table, "spacing", {"linear", "log"}, "linear") == "log";
+    const auto number = [&](const char* name) -> std::optional<double> {
+      const toml::node* end = table->get(name);
+      const double value = end != nullptr && end->is_number() ? *end->value<double>() : NAN;
+      if (std::isfinite(value) && (!log || value > 0.0)) return value;
+      add(end != nullptr ? *end : node, std::string("axis.range.") + name + ": expected a number" +
+                                            (log ? " above 0, because the spacing is \"log\"" : ""));
+      return std::nullopt;
+    };
+    const std::optional<double> from = number("from"), to = number("to");
+    const toml::node* count_node = table->get("count");
+    const auto count = count_node != nullptr && count_node->is_integer() ? *count_node->value<std::int64_t>() : 0;
+    if (count < 2 || count > static_cast<std::int64_t>(study_cases_max)) {
+      add(count_node != nullptr ? *count_node : node,
+          "axis.range.count: expected a whole number in [2, " + std::to_string(study_cases_max) + "]");
+    }
+    if (!faults_.empty()) return;
+    const bool whole = table->get("from")->is_integer() && table->get("to")->is_integer() && !log &&
+                       static_cast<std::int64_t>(*to - *from) % (count - 1) == 0;
+    for (std::int64_t i = 0; i < count; ++i) {
+      // The ends exactly as they are written.
+      const double share = static_cast<double>(i) / static_cast<double>(count - 1);
+      const double value = i == 0           ? *from
+                           : i == count - 1 ? *to
+                           : log            ? *from * std::pow(*to / *from, share)
+                                            : *from + share * (*to - *from);
+      const std::string text = whole ? std::to_string(std::llround(value)) : number_text(value);
+      axis.settings.push_back({{key, text, place(node.source())}});
+      axis.labels.push_back(text);
+    }
+  }
+
+  void along_zip(Axis& axis, const toml::node& node) {
+    const toml::table* table = node.as_table();
+    if (table == nullptr || table->empty()) {
+      add(node, "axis.zip: expected a table of keys, each with its list of values");
+      return;
+    }
+    zip_tables(axis, *table, "");
+  }
+  void zip_tables(Axis& axis, const toml::table& table, const std::string& above) {
+    for (const auto& [key, node] : table) {
+      const std::string name = above + std::string(key.str());
+      if (node.is_table()) {
+        zip_tables(axis, *node.as_table(), name + ".");
+      } else {
+        along(axis, name, node, "axis.zip." + name);
+      }
+    }
+  }
+
+  void relabel(Axis& axis, const toml::table& table) {
+    const toml::node* node = table.get("labels");
+    if (node == nullptr) return;
+    const toml::array* array = node->as_array();
+    if (array == nullptr || array->size() != axis.settings.size() || !array->is_homogeneous<std::string>()) {
+      add(*node, "axis.labels: expected " + std::to_string(axis.settings.size()) + " texts, one for every value");
+      return;
+    }
+    for (std::size_t i = 0; i < array->size(); ++i) axis.labels[i] = array->get(i)->value_or(std::string());
+  }
+
+  /// Every value of every axis with every one of the others.
+  void cross(const std::vector<Axis>& axes, const std::vector<StudySetting>& always, Study& study) {
+    if (axes.empty()) return;
+    std::set<std::string> names;
+    std::size_t count = 1;
+    for (const Axis& axis : axes) {
+      if (!names.insert(axis.name).second) {
+        add(document_, "axis.name: two axes are called \"" + axis.name + "\"; expected different names");
+        return;
+      }
+      if ((count *= axis.settings.size()) > study_cases_max) {
+        add(document_, "axis: more than " + std::to_string(study_cases_max) + " cases; expected fewer values");
+        return;
+      }
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      StudyCase one{"", {}, always};
+      std::size_t stride = count, rest = k;
+      for (const Axis& axis : axes) {
+        stride /= axis.settings.size();
+        const std::size_t at = rest / stride;
+        rest %= stride;
+        one.settings.insert(one.settings.end(), axis.settings[at].begin(), axis.settings[at].end());
+        one.along.emplace_back(axis.name, axis.labels[at]);
+        one.name += (one.name.empty() ? "" : ", ") + axis.name + " = " + axis.labels[at];
+      }
+      study.cases.push_back(std::move(one));
+    }
+  }
+
+  StudyCase single_case(const toml::table& table, const std::vector<StudySetting>& always) {
+    known_keys(table, "case.", {"name", "set"});
+    StudyCase one{text(table, "name").value_or(""), {}, always};
+    if (one.name.empty()) add(table, "case.name: missing; expected a name");
+    for (StudySetting& setting : settings(table, "set")) one.settings.push_back(std::move(setting));
+    return one;
+  }
+
+  void unique_names(const Study& study) {
+    std::set<std::string> names;
+    for (const StudyCase& one : study.cases) {
+      if (!names.insert(one.name).second) {
+        add(document_, "two cases are called \"" + one.name + "\"; expected different names or axis.labels");
+        return;
+      }
+    }
+  }
+
+  const toml::table& document_;
+  const std::filesystem::path& file_;
+  std::vector<Fault> faults_;
+};
+
+/// A fault of a case, told where the study gives the value.
+Fault in_study(const Fault& fault, const StudyCase& one) {
+  for (const StudySetting& setting : one.settings) {
+    if (fault.file != "--set " + setting.key + "=" + setting.value) continue;
+    Fault moved = setting.place;
+    moved.message = fault.message;
+    return moved;
+  }
+  return fault;
+}
+
+}  // namespace
+
+Study load_study(const std::filesystem::path& file) {
+  const std::optional<std::string> text = read_file(file);
+  if (!text) {
+    throw InputError({{file.string(), 0, 0, "cannot read the study; expected a readable TOML file"}});
+  }
+  try {
+    const toml::table document = toml::parse(*text, file.string());
+    return Reader(document, file).read();
+  } catch (const toml::parse_error& error) {
+    const toml::source_position where = error.source().begin;
+    throw InputError({{file.string(), static_cast<int>(where.line), static_cast<int>(where.column),
+                       "not valid TOML: " + std::string(error.description())}});
+  }
+}
+
+std::vector<Scene> load_cases(const Study& study, const std::function<std::vector<Fault>(const Scene&)>& check) {
+  std::vector<Scene> scenes;
+  std::vector<Fault> faults;
+  std::set<std::string> told;
+  for (const StudyCase& one : study.cases) {
+    std::vector<Fault> found;
+    try {
+      std::vector<std::string> overrides;
+      for (const StudySetting& setting : one.settings) overrides.push_back(setting.key + "=" + setting.value);
+      scenes.push_back(load_scene(study.scene_file, overrides));
+      if (check) found = check(scenes.back());
+    } catch (const InputError& error) {
+      found = error.faults();
+    }
+    for (const Fault& fault : found) {
+      Fault moved = in_study(fault, one);
+      if (!told.insert(moved.text()).second) continue;
+      moved.message += " (case \"" + one.name + "\")";
+      faults.push_back(std::move(moved));
+    }
+  }
+  if (!faults.empty()) throw InputError(std::move(faults));
+  return scenes;
+}
+
+}  // namespace touchstone::scene

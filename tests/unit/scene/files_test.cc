@@ -1,0 +1,176 @@
+// Files that are whole or absent, folders that one process works in: against limits, kills and other processes.
+#include "scene/files.h"
+
+#include "scene/error.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <sstream>
+
+namespace touchstone::scene {
+namespace {
+
+using testing::HasSubstr;
+
+class FilesTest : public testing::Test {
+ protected:
+  FilesTest() : root_(std::filesystem::temp_directory_path() / ("touchstone-files-" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(root_);
+  }
+  ~FilesTest() override { std::filesystem::remove_all(root_); }
+
+  static std::string content(const std::filesystem::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> list;
+    for (const auto& entry : std::filesystem::directory_iterator(root_)) list.push_back(entry.path().filename());
+    return list;
+  }
+  std::filesystem::path root_;
+};
+
+/// A process of its own that holds a folder's lock until it is killed.
+class Holder {
+ public:
+  explicit Holder(const std::filesystem::path& folder) {
+    int ready[2];
+    if (::pipe(ready) != 0) throw std::runtime_error("no pipe");
+    process_ = ::fork();
+    if (process_ == 0) {
+      FolderLock lock(folder);
+      const char taken = lock.try_take() ? 'y' : 'n';
+      if (::write(ready[1], &taken, 1) != 1) ::_exit(1);
+      for (;;) ::pause();
+    }
+    char taken = 'n';
+    if (::read(ready[0], &taken, 1) != 1 || taken != 'y') throw std::runtime_error("the child has no lock");
+    ::close(ready[0]);
+    ::close(ready[1]);
+  }
+  ~Holder() { kill(); }
+  void kill() {
+    if (process_ <= 0) return;
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+    process_ = 0;
+  }
+
+ private:
+  pid_t process_;
+};
+
+TEST_F(FilesTest, WritesAndReplacesAndLeavesNothingElse) {
+  write_file(root_ / "file", "first");
+  write_file(root_ / "file", std::string("a\0b", 3));
+  EXPECT_EQ(content(root_ / "file"), std::string("a\0b", 3));
+  EXPECT_THAT(names(), testing::ElementsAre("file"));
+}
+
+TEST_F(FilesTest, AFileThatDoesNotFitLeavesTheOldOneAndNothingElse) {
+  write_file(root_ / "file", "old");
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto old_action = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{1000, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  std::error_code why;
+  try {
+    write_file(root_ / "file", std::string(1001, 'x'));
+  } catch (const std::filesystem::filesystem_error& error) {
+    why = error.code();
+    EXPECT_THAT(error.what(), HasSubstr((root_ / "file").string()));
+  }
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, old_action);
+  EXPECT_EQ(why, std::errc::file_too_large);
+  EXPECT_EQ(content(root_ / "file"), "old");
+  EXPECT_THAT(names(), testing::ElementsAre("file"));
+}
+
+TEST_F(FilesTest, AWriterAndAJanitorMayMeet) {
+  const pid_t janitor = ::fork();
+  if (janitor == 0) {
+    for (;;) remove_unfinished(root_);
+  }
+  // A write is given up only when its temporary file was taken several times over.
+  int given_up = 0;
+  for (int i = 0; i < 200; ++i) {
+    const std::string text = std::to_string(i) + std::string(3000, 'x');
+    try {
+      write_file(root_ / "file", text);
+      EXPECT_EQ(content(root_ / "file"), text);
+    } catch (const std::filesystem::filesystem_error& error) {
+      EXPECT_EQ(error.code(), std::errc::no_such_file_or_directory);
+      ++given_up;
+    }
+  }
+  ::kill(janitor, SIGKILL);
+  ::waitpid(janitor, nullptr, 0);
+  EXPECT_LT(given_up, 200);
+  remove_unfinished(root_);
+  EXPECT_THAT(names(), testing::ElementsAre("file"));
+}
+
+TEST_F(FilesTest, OnlyWhatIsUnfinishedIsRemoved) {
+  for (const char* name : {"file", "file.part-12-0", "curve.csv.part-99-3", "counter.part"}) {
+    std::ofstream(root_ / name) << "x";
+  }
+  remove_unfinished(root_);
+  EXPECT_THAT(names(), testing::UnorderedElementsAre("file", "counter.part"));
+}
+
+TEST_F(FilesTest, AFolderThatCannotBeIsRefusedInOneLine) {
+  std::ofstream(root_ / "file") << "x";
+  try {
+    require_writable(root_ / "file" / "folder", "--store");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_THAT(text, testing::StartsWith("--store "));
+    EXPECT_THAT(text, HasSubstr("Not a directory); expected a folder that can be written to"));
+    EXPECT_EQ(text.find('\n'), std::string::npos);
+  }
+  require_writable(root_ / "a" / "b", "--out");
+  EXPECT_TRUE(std::filesystem::is_empty(root_ / "a" / "b"));
+}
+
+TEST_F(FilesTest, AFolderOnAFullDiskIsRefused) {
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto old_action = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit none{0, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &none), 0);
+  EXPECT_THROW(require_writable(root_, "--out"), InputError);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, old_action);
+  EXPECT_TRUE(names().empty());
+}
+
+TEST_F(FilesTest, ALockIsOfOneProcessAndDiesWithIt) {
+  EXPECT_FALSE(FolderLock::held(root_));
+  Holder holder(root_);
+  FolderLock lock(root_);
+  EXPECT_TRUE(FolderLock::held(root_));
+  EXPECT_FALSE(lock.try_take());
+  int waited = 0;
+  lock.take([&] {
+    if (++waited == 2) holder.kill();
+  });
+  EXPECT_EQ(waited, 2);
+  EXPECT_TRUE(FolderLock::held(root_));
+  struct GivenUp {};
+  EXPECT_THROW(FolderLock(root_).take([] { throw GivenUp(); }), GivenUp);
+}
+
+}  // namespace
+}  // namespace touchstone::scene
