@@ -37,6 +37,12 @@ struct State {
   std::vector<char> touching;                           ///< per node
 };
 
+/// Choices of the method that should not matter, as factors on the usual ones.
+struct Numerics {
+  double contact_parameter = 1.0;  ///< c of the active set
+  double numerical_bulk = 1.0;     ///< bulk modulus that an incompressible material has in the tangent
+};
+
 /// How a Newton solve went.
 struct NewtonReport {
   bool converged = false;
@@ -69,7 +75,7 @@ class ContactProblem {
 
   /// @param mirror_x, mirror_y  dim = 3: the mesh is one half of the body on that side
   ContactProblem(Mesh<dim> mesh, const scene::Material& material, scene::Kinematics kinematics, bool mirror_x,
-                 bool mirror_y, int threads = threads_to_use());
+                 bool mirror_y, int threads = threads_to_use(), const Numerics& numerics = {});
 
   /// Prescribes one displacement component from the next solve on; the support and symmetry planes are there already.
   /// New places are fixed only before the first solve.
@@ -147,6 +153,7 @@ class ContactProblem {
   scene::Kinematics kinematics_;
   bool mirror_x_, mirror_y_;
   int threads_;
+  Numerics numerics_;
   Element<dim> element_;
   std::optional<RigidTool<dim>> tool_;
 

@@ -111,7 +111,18 @@ std::filesystem::path Store::step_file(int level, int instant) const {
 }
 
 void Store::write(int level, int instant, const Record& record) const {
-  const std::filesystem::path file = step_file(level, instant);
+  write_checked(step_file(level, instant), record);
+}
+
+void Store::write(const std::string& name, const Record& record) const {
+  write_checked(folder_ / (name + ".step"), record);
+}
+
+std::optional<Record> Store::read(int level, int instant) const { return read_checked(step_file(level, instant)); }
+
+std::optional<Record> Store::read(const std::string& name) const { return read_checked(folder_ / (name + ".step")); }
+
+void Store::write_checked(const std::filesystem::path& file, const Record& record) {
   std::filesystem::create_directories(file.parent_path());
   std::string content(magic);
   content += scene::hash_text(record.bytes());
@@ -120,8 +131,7 @@ void Store::write(int level, int instant, const Record& record) const {
   write_whole(file, content);
 }
 
-std::optional<Record> Store::read(int level, int instant) const {
-  const std::filesystem::path path = step_file(level, instant);
+std::optional<Record> Store::read_checked(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return std::nullopt;
   std::string content{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

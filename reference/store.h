@@ -64,6 +64,10 @@ class Store {
   /// then under its name. @throws std::filesystem::filesystem_error
   void write(int level, int instant, const Record& record) const;
 
+  /// The same for a solution that is no step of a level, by name.
+  void write(const std::string& name, const Record& record) const;
+  [[nodiscard]] std::optional<Record> read(const std::string& name) const;
+
   /// The step, or nothing when it is missing, torn or altered; a damaged file is removed.
   [[nodiscard]] std::optional<Record> read(int level, int instant) const;
 
@@ -71,6 +75,8 @@ class Store {
 
  private:
   Store(const std::filesystem::path& root, const std::string& identity);
+  static void write_checked(const std::filesystem::path& file, const Record& record);
+  [[nodiscard]] static std::optional<Record> read_checked(const std::filesystem::path& file);
   [[nodiscard]] bool try_lock();
   std::filesystem::path folder_;
   int lock_ = -1;
