@@ -35,7 +35,8 @@ constexpr Meaning meanings[] = {
     {"contact.area_iou",
      "Area that is at or inside the tool on both sides, over that on either, summed over the track; 100 % is equal."},
     {"reference.force_uncertainty_rel", "Largest half width of the reference's force band, relative to its force."},
-    {"reference.shape_uncertainty_rel", "The reference's own shape uncertainty in the norm of shape.rel_l2."},
+    {"reference.shape_uncertainty_rel",
+     "The reference's own shape uncertainty, relative to its displacement, in the norm of shape.rel_l2."},
     {"reference.residual_penetration_rel", "How far contact nodes still reach into the tool, relative to the depth."},
     {"reference.penetration_between_nodes_rel", "The same between the nodes, where contact is not enforced."},
     {"reference.equilibrium_rel", "Contact force and support reaction should cancel: what is left, relative."},
@@ -43,7 +44,30 @@ constexpr Meaning meanings[] = {
     {"reference.surface_volume_change_rel",
      "The same on the fast model's triangles: the share of shape.volume_change_rel that is due to flat triangles."},
     {"reference.dofs", "Displacement unknowns of the finest level.", true},
+    {"reference.levels", "Meshes from coarse to fine, whose differences give the uncertainties.", true},
+    {"reference.newton_iterations", "Newton iterations of all levels.", true},
     {"reference.wall_s", "Time the reference took, all levels."},
+    {"reference.cpu_s", "Processor time of that, all threads."},
+    {"reference.error_asked", "Uncertainty of force and shape at which the refinement may end."},
+    {"reference.refinement", "Why the refinement ended."},
+    {"reference.sensitivity.load_step_force_rel",
+     "Change of the force at the deepest instant, coarsest level, with load steps half as long."},
+    {"reference.sensitivity.load_step_shape_rel", "The same of the shape."},
+    {"reference.sensitivity.contact_parameter_force_rel",
+     "The same of the force with the active set's parameter ten times as large."},
+    {"reference.sensitivity.contact_parameter_shape_rel", "The same of the shape."},
+    {"reference.sensitivity.numerical_bulk_force_rel",
+     "The same of the force with ten times the bulk modulus that only Newton's tangent sees."},
+    {"reference.sensitivity.numerical_bulk_shape_rel", "The same of the shape."},
+    {"reference.sensitivity.tool_grid_force_rel",
+     "The same of the force with the grid of the mesh tool's distance half as wide."},
+    {"reference.sensitivity.tool_grid_shape_rel", "The same of the shape."},
+    {"reference.sensitivity.inclusion_cells_force_rel",
+     "The same of the force with cells at the inclusions' surfaces half as large."},
+    {"reference.sensitivity.inclusion_cells_shape_rel", "The same of the shape."},
+    {"reference.sensitivity.far_field_force_rel",
+     "The same of the force with cells far from the contact half as large."},
+    {"reference.sensitivity.far_field_shape_rel", "The same of the shape."},
     {"reference.model", "What the reference solved."},
     {"fast.step_us.p50", "One whole step of the fast model, median."},
     {"fast.step_us.p99", "99 % of the steps are shorter."},
@@ -125,11 +149,7 @@ scene::Figures make_figures(const Errors& errors, const fast::Run& run, const re
   out.number_or_absent("contact.penetration_rel", errors.penetration_fast_rel);
   out.number_or_why("contact.area_iou", errors.contact_area_iou, "undefined: neither side is ever in contact");
 
-  for (scene::Figure& figure : reference_figures(result, errors.reference)) {
-    const bool is_force = figure.key == "reference.force_uncertainty_rel";
-    out.add(std::move(figure));
-    if (is_force) out.number_or_why("reference.shape_uncertainty_rel", errors.shape_rel_l2.uncertainty, "unknown");
-  }
+  for (scene::Figure& figure : reference_figures(result, errors.reference)) out.add(std::move(figure));
   out.number("reference.surface_volume_change_rel", errors.volume_change_reference_surface_rel);
   for (scene::Figure& figure : fast::figures(run)) out.add(std::move(figure));
   return out.take();

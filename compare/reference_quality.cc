@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 
 namespace touchstone::compare {
@@ -21,27 +20,17 @@ scene::Figure ratio_or_why(const std::string& key, const std::optional<double>& 
 
 }  // namespace
 
-std::vector<bool> deep_instants(const std::vector<scene::InstantRecord>& instants) {
-  double deepest_m = 0.0;
-  for (const scene::InstantRecord& instant : instants) deepest_m = std::max(deepest_m, instant.depth_m);
-  std::vector<bool> deep;
-  for (const scene::InstantRecord& instant : instants) {
-    deep.push_back(instant.depth_m > grazing_depth_m && instant.depth_m > deep_share * deepest_m);
-  }
-  return deep;
-}
-
 ReferenceQuality reference_quality(const reference::Result& result) {
   ReferenceQuality quality;
   const std::vector<bool> deep = deep_instants(result.instants);
+  quality.force_uncertainty_rel = reference::force_uncertainty_rel(result.instants, result.force_uncertainty_n);
   for (std::size_t t = 0; t < result.instants.size(); ++t) {
     const double volume_change_rel = result.volume_change_rel[t];
     if (std::isnan(volume_change_rel) || std::abs(volume_change_rel) > std::abs(quality.volume_change_rel)) {
       quality.volume_change_rel = volume_change_rel;
     }
     if (!deep[t]) continue;
-    const double depth_m = result.instants[t].depth_m, force_n = result.instants[t].force_n().norm();
-    if (force_n > 0.0) keep_larger(quality.force_uncertainty_rel, result.force_uncertainty_n[t] / force_n);
+    const double depth_m = result.instants[t].depth_m;
     keep_larger(quality.residual_penetration_rel, result.residual_penetration_m[t] / depth_m);
     keep_larger(quality.between_nodes_rel, result.between_nodes_penetration_m[t] / depth_m);
     keep_larger(quality.equilibrium_rel, result.equilibrium_rel[t]);
@@ -50,28 +39,50 @@ ReferenceQuality reference_quality(const reference::Result& result) {
 }
 
 scene::Figures reference_figures(const reference::Result& result, const ReferenceQuality& quality) {
-  const double wall_s = std::accumulate(result.levels.begin(), result.levels.end(), 0.0,
-                                        [](double sum, const auto& level) { return sum + level.wall_s; });
-  return {
+  double wall_s = 0.0, cpu_s = 0.0, newton_iterations = 0.0;
+  for (const reference::LevelRecord& level : result.levels) {
+    wall_s += level.wall_s;
+    cpu_s += level.cpu_s;
+    newton_iterations += level.newton_iterations;
+  }
+  scene::Figures figures{
       ratio_or_why("reference.force_uncertainty_rel", quality.force_uncertainty_rel),
+      ratio_or_why("reference.shape_uncertainty_rel", result.shape_uncertainty_rel),
       ratio_or_why("reference.residual_penetration_rel", quality.residual_penetration_rel),
       ratio_or_why("reference.penetration_between_nodes_rel", quality.between_nodes_rel),
       ratio_or_why("reference.equilibrium_rel", quality.equilibrium_rel),
       {"reference.volume_change_rel", quality.volume_change_rel, "", ""},
       {"reference.dofs", result.levels.empty() ? 0.0 : result.levels.back().unknowns, "", ""},
+      {"reference.levels", static_cast<double>(result.levels.size()), "", ""},
+      {"reference.newton_iterations", newton_iterations, "", ""},
       {"reference.wall_s", wall_s, "", "s"},
+      {"reference.cpu_s", cpu_s, "", "s"},
       {"reference.model", 0.0, result.model, ""},
   };
+  if (result.refinement.error_asked > 0.0) {
+    figures.push_back({"reference.error_asked", result.refinement.error_asked, "", ""});
+    figures.push_back({"reference.refinement", 0.0, result.refinement.why_ended, ""});
+  }
+  for (const reference::Sensitivity& one : result.sensitivities) {
+    const std::string key = "reference.sensitivity." + one.part;
+    figures.push_back({key + "_force_rel", one.force_rel, "", ""});
+    figures.push_back({key + "_shape_rel", one.shape_rel, "", ""});
+  }
+  return figures;
 }
 
 std::vector<scene::Column> reference_quality_columns(const reference::Result& result, const std::string& prefix) {
-  return {
+  std::vector<scene::Column> columns{
       {prefix + "force_uncertainty_n", result.force_uncertainty_n},
       {prefix + "residual_penetration_m", result.residual_penetration_m},
       {prefix + "between_nodes_penetration_m", result.between_nodes_penetration_m},
       {prefix + "equilibrium_rel", result.equilibrium_rel},
       {prefix + "volume_change_rel", result.volume_change_rel},
   };
+  for (std::size_t level = 0; level < result.levels.size(); ++level) {
+    columns.push_back({prefix + "force_level" + std::to_string(level + 1) + "_n", result.levels[level].force_n});
+  }
+  return columns;
 }
 
 }  // namespace touchstone::compare

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "reference/solver.h"
+#include "reference/uncertainty.h"
 #include "scene/results.h"
 
 #include <optional>
@@ -10,14 +11,9 @@
 
 namespace touchstone::compare {
 
-/// Figures "where the contact is deep" use the instants whose depth exceeds this share of the largest depth.
-inline constexpr double deep_share = 0.1;
-
-/// Below this depth a tool only grazes: round-off of the track decides whether it touches at all.
-inline constexpr double grazing_depth_m = 1e-9;
-
-/// Per instant: in contact, and deeper than deep_share of the deepest.
-[[nodiscard]] std::vector<bool> deep_instants(const std::vector<scene::InstantRecord>& instants);
+using reference::deep_instants;
+using reference::deep_share;
+using reference::grazing_depth_m;
 
 /// The largest over the deep instants, absent where there is none.
 struct ReferenceQuality {
@@ -32,7 +28,7 @@ struct ReferenceQuality {
 /// The reference.* keys of summary.json that need no other side.
 [[nodiscard]] scene::Figures reference_figures(const reference::Result& result, const ReferenceQuality& quality);
 
-/// The same per instant, as columns of curve.csv: uncertainty, penetration, equilibrium, volume.
+/// The same per instant, as columns of curve.csv: uncertainty, penetration, equilibrium, volume, the force on every level.
 [[nodiscard]] std::vector<scene::Column> reference_quality_columns(const reference::Result& result,
                                                                    const std::string& prefix);
 

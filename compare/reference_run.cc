@@ -40,14 +40,15 @@ class StopOnSignal {
 
 std::string time_left_text(double seconds) {
   if (seconds < 0.0) return "";
-  if (seconds < 90.0) return fmt::format(", {:.0f} s left", seconds);
-  return fmt::format(", {:.0f} min left", seconds / 60.0);
+  if (seconds < 90.0) return fmt::format(", {:.0f} s left on it", seconds);
+  return fmt::format(", {:.0f} min left on it", seconds / 60.0);
 }
 
 std::string progress_text(const reference::Progress& p) {
   if (p.newton == 0 && !p.note.empty()) return "reference: " + p.note;
-  std::string text = fmt::format("reference: mesh {}/{} ({} unknowns), load step {}/{} at {:.2f} mm", p.level, p.levels,
-                                 p.unknowns, p.instant, p.instants, 1e3 * p.depth_m);
+  const std::string mesh = p.levels > 0 ? fmt::format("{}/{}", p.level, p.levels) : std::to_string(p.level);
+  std::string text = fmt::format("reference: mesh {} ({} unknowns), load step {}/{} at {:.2f} mm", mesh, p.unknowns,
+                                 p.instant, p.instants, 1e3 * p.depth_m);
   if (p.newton > 0) text += fmt::format(", Newton {} residual {:.1e}", p.newton, p.residual_rel);
   text += time_left_text(p.seconds_left);
   if (!p.note.empty()) text += " - " + p.note;
@@ -56,17 +57,30 @@ std::string progress_text(const reference::Progress& p) {
 
 }  // namespace
 
-reference::Result solve_with_progress(const scene::Scene& scene, const Eigen::Matrix3Xd& rest_points_m,
-                                      const std::filesystem::path& store, bool quiet) {
+scene::Scene asked(scene::Scene scene, const ReferenceOptions& options) {
+  if (options.levels) scene.reference.levels = options.levels;
+  if (options.error) {
+    scene.reference.error = *options.error;
+    scene.reference.levels.reset();
+  }
+  return scene;
+}
+
+reference::Result solve_with_progress(const scene::Scene& scene, const scene::Surface& surface,
+                                      const ReferenceOptions& options, bool quiet) {
+  constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0;
   const StopOnSignal stop;
   fast::ProgressLine line(quiet);
-  reference::Options options;
-  options.store = store;
-  options.stop = &stop_requested;
-  options.progress = [&](const reference::Progress& p) {
+  reference::Options solve_options;
+  solve_options.store = options.store;
+  solve_options.stop = &stop_requested;
+  solve_options.rest_area_m2 = surface.vertex_area_m2;
+  if (options.memory_gib) solve_options.memory_limit_bytes = *options.memory_gib * gibibyte;
+  if (options.minutes) solve_options.seconds_limit = 60.0 * *options.minutes;
+  solve_options.progress = [&](const reference::Progress& p) {
     line.show(progress_text(p), p.step_finished || !p.note.empty());
   };
-  return reference::solve(scene, rest_points_m, options);
+  return reference::solve(scene, surface.points_m, solve_options);
 }
 
 void write_reference(const std::filesystem::path& folder, const reference::Result& result,
@@ -83,10 +97,24 @@ std::string reference_text(const reference::Result& result) {
   const auto deepest = std::max_element(result.instants.begin(), result.instants.end(),
                                         [](const auto& a, const auto& b) { return a.depth_m < b.depth_m; });
   const auto at = static_cast<std::size_t>(deepest - result.instants.begin());
-  return fmt::format(
+  std::string text = fmt::format(
       "Force at the deepest instant ({:.3g} mm): {:.4g} N +- {:.2g} N\nModel: {}, {} unknowns on the finest mesh\n",
       1e3 * deepest->depth_m, deepest->force_n().norm(), result.force_uncertainty_n[at], result.model,
       result.levels.back().unknowns);
+  for (std::size_t level = 0; level < result.levels.size(); ++level) {
+    const reference::LevelRecord& mesh = result.levels[level];
+    text += fmt::format("  mesh {}: {:.3g} mm, {} unknowns, {} Newton iterations, {:.3g} s, {:.6g} N\n", level + 1,
+                        1e3 * mesh.element_size_m, mesh.unknowns, mesh.newton_iterations, mesh.wall_s,
+                        mesh.force_n[at]);
+  }
+  if (result.force_uncertainty_rel && result.shape_uncertainty_rel) {
+    text += fmt::format("Uncertainty: {:.2g} of the force, {:.2g} of the displacement, from {} meshes\n",
+                        *result.force_uncertainty_rel, *result.shape_uncertainty_rel, result.levels.size());
+  }
+  if (result.refinement.error_asked > 0.0) {
+    text += fmt::format("Asked: {:.2g}; {}\n", result.refinement.error_asked, result.refinement.why_ended);
+  }
+  return text;
 }
 
 }  // namespace touchstone::compare

@@ -3,15 +3,28 @@
 
 #include "reference/solver.h"
 #include "scene/results.h"
+#include "scene/surface.h"
 
 #include <filesystem>
+#include <optional>
 
 namespace touchstone::compare {
 
+/// What the command line says about a solve.
+struct ReferenceOptions {
+  std::filesystem::path store = "out/reference-store";  ///< content-addressed results, shared by all runs
+  std::optional<int> levels;                            ///< in place of the scene's levels or error
+  std::optional<double> error;                          ///< in place of the scene's levels or error
+  std::optional<double> memory_gib, minutes;            ///< limits of a refinement towards an error
+};
+
+/// The scene with the levels or the error that the command line asks for.
+[[nodiscard]] scene::Scene asked(scene::Scene scene, const ReferenceOptions& options);
+
 /// Solves, resumes or reads back, showing every load step and Newton residual. Ctrl-C ends it after the current
 /// Newton iteration with reference::Interrupted; a second Ctrl-C ends the process at once.
-[[nodiscard]] reference::Result solve_with_progress(const scene::Scene& scene, const Eigen::Matrix3Xd& rest_points_m,
-                                                    const std::filesystem::path& store, bool quiet);
+[[nodiscard]] reference::Result solve_with_progress(const scene::Scene& scene, const scene::Surface& surface,
+                                                    const ReferenceOptions& options, bool quiet);
 
 /// Writes curve.csv, summary.json and manifest.json of the reference alone.
 /// @throws std::filesystem::filesystem_error

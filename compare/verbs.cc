@@ -34,7 +34,7 @@ int with_reference_exits(Solve solve) {
 
 }  // namespace
 
-int plan(const fast::VerbOptions& options, const std::filesystem::path&) {
+int plan(const fast::VerbOptions& options, const ReferenceOptions&) {
   const scene::Scene scene = options.load();
   std::cout << scene::explained_toml(scene) << '\n'
             << fast::plan_text("The fast model computes", fast::plan(scene)) << '\n';
@@ -48,7 +48,7 @@ int plan(const fast::VerbOptions& options, const std::filesystem::path&) {
   return fast::done;
 }
 
-int run_fast(const fast::VerbOptions& options, const std::filesystem::path&) {
+int run_fast(const fast::VerbOptions& options, const ReferenceOptions&) {
   const scene::Scene scene = options.load();
   const std::filesystem::path folder = options.folder(scene, "fast");
   scene::prepare_result_folder(folder);
@@ -62,15 +62,15 @@ int run_fast(const fast::VerbOptions& options, const std::filesystem::path&) {
   return fast::done;
 }
 
-int run_reference(const fast::VerbOptions& options, const std::filesystem::path& store) {
-  const scene::Scene scene = options.load();
+int run_reference(const fast::VerbOptions& options, const ReferenceOptions& reference) {
+  const scene::Scene scene = asked(options.load(), reference);
   refuse(reference::unsupported(scene));
   const std::filesystem::path folder = options.folder(scene, "reference");
   scene::prepare_result_folder(folder);
   return with_reference_exits([&] {
     const scene::Stopwatch watch;
     const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
-    const reference::Result result = solve_with_progress(scene, surface.points_m, store, options.quiet);
+    const reference::Result result = solve_with_progress(scene, surface, reference, options.quiet);
     scene::Manifest manifest = scene::make_manifest(scene, "touchstone reference");
     manifest.times.push_back(watch.read("reference"));
     write_reference(folder, result, manifest);
@@ -80,8 +80,8 @@ int run_reference(const fast::VerbOptions& options, const std::filesystem::path&
   });
 }
 
-int run_compare(const fast::VerbOptions& options, const std::filesystem::path& store) {
-  const scene::Scene scene = options.load();
+int run_compare(const fast::VerbOptions& options, const ReferenceOptions& reference) {
+  const scene::Scene scene = asked(options.load(), reference);
   refuse(reference::unsupported(scene));
   const std::filesystem::path folder = options.folder(scene, "compare");
   scene::prepare_result_folder(folder);
@@ -91,7 +91,7 @@ int run_compare(const fast::VerbOptions& options, const std::filesystem::path& s
     const fast::Run run = fast::run(scene);
     manifest.times.push_back(fast_watch.read("fast"));
     const scene::Stopwatch reference_watch;
-    const reference::Result result = solve_with_progress(scene, run.surface.points_m, store, options.quiet);
+    const reference::Result result = solve_with_progress(scene, run.surface, reference, options.quiet);
     manifest.times.push_back(reference_watch.read("reference"));
     manifest.entries.emplace_back("linear_solver", result.linear_solver);
     manifest.entries.emplace_back("reference_key", result.key);

@@ -23,14 +23,16 @@ constexpr double simpson[3] = {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
 
 template <int dim>
 ContactProblem<dim>::ContactProblem(Mesh<dim> mesh, const scene::Material& material, scene::Kinematics kinematics,
-                                    bool mirror_x, bool mirror_y, int threads)
+                                    bool mirror_x, bool mirror_y, int threads, const Numerics& numerics)
     : mesh_(std::move(mesh)),
       material_(material),
       kinematics_(kinematics),
       mirror_x_(mirror_x),
       mirror_y_(mirror_y),
       threads_(threads),
-      element_(MixedMaterial(material, kinematics), mixed(mesh_.inclusion_materials, kinematics)),
+      numerics_(numerics),
+      element_(MixedMaterial(material, kinematics), mixed(mesh_.inclusion_materials, kinematics),
+               numerics.numerical_bulk),
       lead_(make_parts()),
       solver_(make_solver()) {
   const int n = mesh_.node_count();
@@ -161,7 +163,7 @@ double ContactProblem<dim>::update_touching(State<dim>& state, int iteration, bo
   changed = false;
   double open_m = 0.0;
   if (!tool_) return open_m;
-  const double c_pa_per_m = material_.youngs_modulus_pa / tool_->half_width_m();
+  const double c_pa_per_m = numerics_.contact_parameter * material_.youngs_modulus_pa / tool_->half_width_m();
   double largest_pa = 0.0;
   for (const int node : contact_nodes_) {
     if (area_m2_[node] > 0.0) largest_pa = std::max(largest_pa, lambda_n_[node] / area_m2_[node]);

@@ -65,6 +65,12 @@ struct NodeContact {
   int region = 0;
 };
 
+/// Choices of the method that should not matter, as factors on the usual ones.
+struct Numerics {
+  double contact_parameter = 1.0;  ///< c of the active set
+  double numerical_bulk = 1.0;     ///< bulk modulus that an incompressible material has in the tangent
+};
+
 /// How a Newton solve went.
 struct NewtonReport {
   bool converged = false;
@@ -100,7 +106,7 @@ class ContactProblem : public ranks::Part {
 
   /// @param mirror_x, mirror_y  dim = 3: the mesh is one half of the body on that side
   ContactProblem(Mesh<dim> mesh, const scene::Material& material, scene::Kinematics kinematics, bool mirror_x,
-                 bool mirror_y, int threads = ranks::threads());
+                 bool mirror_y, int threads = ranks::threads(), const Numerics& numerics = {});
   ~ContactProblem() override;
   ContactProblem(const ContactProblem&) = delete;
   ContactProblem& operator=(const ContactProblem&) = delete;
@@ -247,6 +253,7 @@ class ContactProblem : public ranks::Part {
   scene::Kinematics kinematics_;
   bool mirror_x_, mirror_y_;
   int threads_;
+  Numerics numerics_;
   Element<dim> element_;
   std::optional<RigidTool<dim>> tool_;
   std::optional<FrictionLaw> friction_;

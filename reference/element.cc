@@ -88,12 +88,13 @@ MixedMaterial::MixedMaterial(const scene::Material& material, scene::Kinematics 
       kinematics(kinematics_in) {}
 
 template <int dim>
-Element<dim>::Element(const MixedMaterial& body, const std::vector<MixedMaterial>& inclusions) : materials_{body} {
+Element<dim>::Element(const MixedMaterial& body, const std::vector<MixedMaterial>& inclusions, double bulk_factor)
+    : materials_{body} {
   materials_.insert(materials_.end(), inclusions.begin(), inclusions.end());
   // A soft incompressible inclusion is squeezed by the stiffer body around it: Newton needs a bulk modulus to match.
   for (MixedMaterial& material : materials_) {
-    material.inverse_kappa_tangent_per_pa =
-        std::max(material.inverse_kappa_per_pa, nearly_incompressible / std::max(material.mu_pa, body.mu_pa));
+    material.inverse_kappa_tangent_per_pa = std::max(
+        material.inverse_kappa_per_pa, nearly_incompressible / (bulk_factor * std::max(material.mu_pa, body.mu_pa)));
   }
   for (const auto& point : rule_.points) shapes_.emplace_back(point);
 }

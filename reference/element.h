@@ -75,7 +75,9 @@ class Element {
   /// Material of each Gauss point: 0 the body's, k the k-th inclusion's.
   using Materials = std::array<std::uint8_t, GaussRule<dim>::size>;
 
-  explicit Element(const MixedMaterial& body, const std::vector<MixedMaterial>& inclusions = {});
+  /// @param bulk_factor  on the numerical bulk modulus
+  explicit Element(const MixedMaterial& body, const std::vector<MixedMaterial>& inclusions = {},
+                   double bulk_factor = 1.0);
 
   /// @param X_m nodal rest places; @param u_m nodal displacements
   /// @param p_pa pressure coefficients of 1, (X - Xc) / h

@@ -14,7 +14,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <utility>
 
 namespace touchstone::reference {
 namespace {
@@ -113,21 +115,52 @@ void refine(dealii::Triangulation<dim>& grid, const Grading<dim>& grading, const
   }
 }
 
-/// Cells along an edge of the coarsest grid: the largest dyadic multiple of `size` that still resolves the body.
-std::vector<unsigned int> coarse_cells(const std::vector<double>& lengths, double size, double largest) {
-  double edge = size;
-  while (2.0 * edge <= largest) edge *= 2.0;
+/// Cells along each edge of a block's coarse grid. Without a number of cuts: edges of the largest dyadic multiple of
+/// the smallest size that still resolves the body.
+template <int dim>
+std::vector<unsigned int> coarse_cells(const std::vector<double>& lengths, const Grading<dim>& grading) {
   std::vector<unsigned int> cells;
+  if (grading.cuts > 0) {
+    const double shortest = *std::min_element(lengths.begin(), lengths.end());
+    for (const double length : lengths)
+      cells.push_back(static_cast<unsigned int>(grading.cuts * std::lround(length / shortest)));
+    return cells;
+  }
+  double edge = grading.largest_m;
+  for (const FineDisc<dim>& disc : grading.discs) edge = std::min(edge, disc.size_m);
+  while (2.0 * edge <= grading.largest_m) edge *= 2.0;
   for (const double length : lengths)
     cells.push_back(std::max(1u, static_cast<unsigned int>(std::ceil(length / edge - 1e-6))));
   return cells;
 }
 
+/// Every cell of a coarse grid in cuts^dim cells, their corners by multilinear interpolation.
 template <int dim>
-double smallest_size(const Grading<dim>& grading) {
-  double size = grading.largest_m;
-  for (const FineDisc<dim>& disc : grading.discs) size = std::min(size, disc.size_m);
-  return size;
+void cut_cells(int cuts, std::vector<dealii::Point<dim>>& vertices, std::vector<dealii::CellData<dim>>& cells) {
+  constexpr int corners = 1 << dim;
+  const std::vector<dealii::Point<dim>> old_vertices = std::exchange(vertices, {});
+  const std::vector<dealii::CellData<dim>> old_cells = std::exchange(cells, {});
+  const int children = dim == 3 ? cuts * cuts * cuts : cuts * cuts;
+  std::map<std::array<long, dim>, unsigned int> numbers;
+  for (const dealii::CellData<dim>& old : old_cells) {
+    for (int child = 0; child < children; ++child) {
+      dealii::CellData<dim>& cell = cells.emplace_back();
+      for (int corner = 0; corner < corners; ++corner) {
+        dealii::Point<dim> unit, place;
+        for (int d = 0, rest = child; d < dim; ++d, rest /= cuts) {
+          unit[d] = static_cast<double>(rest % cuts + (corner >> d & 1)) / cuts;
+        }
+        for (int v = 0; v < corners; ++v) {
+          place += dealii::GeometryInfo<dim>::d_linear_shape_function(unit, v) * old_vertices[old.vertices[v]];
+        }
+        std::array<long, dim> key;
+        for (int d = 0; d < dim; ++d) key[d] = std::lround(1e9 * place[d]);
+        const auto [entry, fresh] = numbers.try_emplace(key, static_cast<unsigned int>(vertices.size()));
+        if (fresh) vertices.push_back(place);
+        cell.vertices[corner] = entry->second;
+      }
+    }
+  }
 }
 
 /// Plain arrays from a finished grid: one quadratic scalar degree of freedom is one node.
@@ -190,9 +223,8 @@ Mesh<3> block_mesh(const BlockSpec& spec) {
   const Eigen::Vector3d size = spec.upper_m - spec.lower_m;
   const dealii::Point<3> lower(spec.lower_m.x(), spec.lower_m.y(), spec.lower_m.z());
   const dealii::Point<3> upper(spec.upper_m.x(), spec.upper_m.y(), spec.upper_m.z());
-  dealii::GridGenerator::subdivided_hyper_rectangle(
-      grid, coarse_cells({size.x(), size.y(), size.z()}, smallest_size(spec.grading), spec.grading.largest_m), lower,
-      upper, true);
+  dealii::GridGenerator::subdivided_hyper_rectangle(grid, coarse_cells({size.x(), size.y(), size.z()}, spec.grading),
+                                                    lower, upper, true);
   for (const auto& cell : grid.active_cell_iterators()) {
     for (const unsigned int f : cell->face_indices()) {
       if (!cell->face(f)->at_boundary()) continue;
@@ -209,9 +241,9 @@ Mesh<3> block_mesh(const BlockSpec& spec) {
 
 Mesh<2> cylinder_mesh(const CylinderSpec& spec) {
   dealii::Triangulation<2> grid;
-  dealii::GridGenerator::subdivided_hyper_rectangle(
-      grid, coarse_cells({spec.radius_m, spec.height_m}, smallest_size(spec.grading), spec.grading.largest_m),
-      dealii::Point<2>(0.0, 0.0), dealii::Point<2>(spec.radius_m, spec.height_m), true);
+  dealii::GridGenerator::subdivided_hyper_rectangle(grid, coarse_cells({spec.radius_m, spec.height_m}, spec.grading),
+                                                    dealii::Point<2>(0.0, 0.0),
+                                                    dealii::Point<2>(spec.radius_m, spec.height_m), true);
   for (const auto& cell : grid.active_cell_iterators()) {
     for (const unsigned int f : cell->face_indices()) {
       if (!cell->face(f)->at_boundary()) continue;
@@ -230,6 +262,7 @@ Mesh<dim> mapped_mesh(const MappedSpec<dim>& spec) {
   }
   std::vector<dealii::CellData<dim>> cells(spec.cells.size());
   for (std::size_t c = 0; c < cells.size(); ++c) cells[c].vertices.assign(spec.cells[c].begin(), spec.cells[c].end());
+  if (spec.grading.cuts > 1) cut_cells(spec.grading.cuts, vertices, cells);
   // Refinement in the plane relies on both cells at an edge running it the same way.
   if constexpr (dim == 2) dealii::GridTools::consistently_order_cells(cells);
   dealii::Triangulation<dim> grid;

@@ -53,9 +53,11 @@ void expect_contacts(const Scene& scene, ModelChoice& choice) {
 /// Small cells where the contacts, the tight bends of the tool and the inclusions' surfaces are, on the mesh's side of
 /// its mirror planes.
 template <int dim>
-Grading<dim> level_grading(const Scene& scene, const ModelChoice& choice, int level) {
+Grading<dim> level_grading(const Scene& scene, const ModelChoice& choice, int level, const MeshChange& change) {
   constexpr double coarsest_cells = dim == 2 ? 8.0 : 2.0;  // to the radius of an inclusion
+  const double finer = refinement(level);
   Grading<dim> grading;
+  grading.cuts = level % 2 == 0 ? 1 : 3;
   const double base_m = element_size_m(scene, choice, level);
   const auto add = [&](const Vec3& center_m, const Vec3& normal, double radius_m, double size_m) {
     if constexpr (dim == 3) {
@@ -72,7 +74,7 @@ Grading<dim> level_grading(const Scene& scene, const ModelChoice& choice, int le
     const double size_m = base_m * patch.half_width_m / choice.half_width_m;
     for (const ContactPatch::Disc& disc : patch.discs) add(disc.center_m, patch.normal, disc.radius_m, size_m);
     for (const ContactPatch::Rim& rim : patch.rims) {
-      const double rim_m = std::max(rim_share * rim.bend_radius_m / std::exp2(level), base_m / 16.0);
+      const double rim_m = std::max(rim_share * rim.bend_radius_m / finer, base_m / 16.0);
       if (rim_m >= size_m) continue;
       Vec3 place_m = rim.place_m;
       if (choice.dim == 2) place_m = {place_m.head<2>().norm(), 0.0, place_m.z()};
@@ -81,36 +83,38 @@ Grading<dim> level_grading(const Scene& scene, const ModelChoice& choice, int le
       add(place_m, patch.normal, 0.0, rim_m);
     }
   }
-  refine_at_inclusions(scene.body, coarsest_cells * std::exp2(level), grading);
+  refine_at_inclusions(scene.body, coarsest_cells * finer / change.inclusions, grading);
   return grading;
 }
 
-/// 2^(-level / 3): how the far field shrinks.
-double far_share(int level) { return std::exp2(-level / 3.0); }
+/// How the far field shrinks.
+double far_share(int level) { return 1.0 / std::cbrt(refinement(level)); }
 
-Mesh<3> box_mesh(const Scene& scene, const ModelChoice& choice, int level) {
+Mesh<3> box_mesh(const Scene& scene, const ModelChoice& choice, int level, const MeshChange& change) {
   const Vec3 size_m = scene.body.size_m;
   BlockSpec spec;
   spec.lower_m = {choice.mirror_x ? 0.0 : -0.5 * size_m.x(), choice.mirror_y ? 0.0 : -0.5 * size_m.y(), 0.0};
   spec.upper_m = {0.5 * size_m.x(), 0.5 * size_m.y(), size_m.z()};
   spec.symmetric_x = choice.mirror_x;
   spec.symmetric_y = choice.mirror_y;
-  spec.grading = level_grading<3>(scene, choice, level);
-  spec.grading.growth = 0.9 * far_share(level);
-  spec.grading.largest_m = 0.25 * size_m.maxCoeff() * far_share(level);
+  const double far = change.far_field * far_share(level);
+  spec.grading = level_grading<3>(scene, choice, level, change);
+  spec.grading.growth = 0.9 * far;
+  spec.grading.largest_m = 0.25 * size_m.maxCoeff() * far;
   return block_mesh(spec);
 }
 
 template <int dim>
-Mesh<dim> round_level(const Scene& scene, const ModelChoice& choice, int level) {
+Mesh<dim> round_level(const Scene& scene, const ModelChoice& choice, int level, const MeshChange& change) {
   RoundSpec spec = round_spec(scene.body);
   spec.symmetric_x = choice.mirror_x;
   spec.symmetric_y = choice.mirror_y;
   const scene::Bounds bounds = scene::body_shape(scene.body)->bounds();
   const double half_m = 0.5 * (bounds.upper_m - bounds.lower_m).maxCoeff();
-  Grading<dim> grading = level_grading<dim>(scene, choice, level);
-  grading.growth = (dim == 2 ? 0.5 : 0.9) * far_share(level);
-  grading.largest_m = (dim == 2 ? 0.25 : 0.5) * half_m * far_share(level);
+  const double far = change.far_field * far_share(level);
+  Grading<dim> grading = level_grading<dim>(scene, choice, level, change);
+  grading.growth = (dim == 2 ? 0.5 : 0.9) * far;
+  grading.largest_m = (dim == 2 ? 0.25 : 0.5) * half_m * far;
   // Around the edge of the support; on an ellipsoid its distance is taken across the longer axis.
   const Eigen::Vector2d edge_m = support_edge_m(spec);
   const Eigen::Vector2d stretch = spec.stretch;
@@ -119,7 +123,7 @@ Mesh<dim> round_level(const Scene& scene, const ModelChoice& choice, int level) 
                             if constexpr (dim == 3) r_m = x_m.template head<2>().cwiseQuotient(stretch).norm();
                             return std::hypot((r_m - edge_m.x()) * stretch.maxCoeff(), x_m[dim - 1] - edge_m.y());
                           },
-                          half_m / (dim == 2 ? 32.0 : 8.0) / std::exp2(level)});
+                          half_m / (dim == 2 ? 32.0 : 8.0) / refinement(level)});
   return round_mesh(spec, grading);
 }
 
@@ -232,7 +236,7 @@ std::vector<scene::Fault> unsupported_parts(const Scene& scene) {
     }
     break;
   }
-  if (scene.reference.levels < 1) add("reference.levels: at least 1, and 3 for an uncertainty");
+  if (scene.reference.levels.value_or(1) < 1) add("reference.levels: at least 1, and 3 for an uncertainty");
   return faults;
 }
 
@@ -243,22 +247,25 @@ double expected_contact_radius_m(const Scene& scene, double depth_m) {
 
 double element_size_m(const Scene& scene, const ModelChoice& choice, int level) {
   const double cells_per_radius = choice.dim == 3 ? 1.5 : 4.0;
-  return scene.reference.element_size_m.value_or(choice.half_width_m / cells_per_radius) / std::exp2(level);
+  return scene.reference.element_size_m.value_or(choice.half_width_m / cells_per_radius) / refinement(level);
 }
 
+double refinement(int level) { return std::ldexp(level % 2 == 0 ? 1.0 : 1.5, level / 2); }
+
 template <int dim>
-Mesh<dim> level_mesh(const Scene& scene, const ModelChoice& choice, int level) {
+Mesh<dim> level_mesh(const Scene& scene, const ModelChoice& choice, int level, const MeshChange& change) {
   Mesh<dim> mesh;
   if constexpr (dim == 3) {
-    mesh = scene.body.shape == BodyShape::box ? box_mesh(scene, choice, level) : round_level<dim>(scene, choice, level);
+    mesh = scene.body.shape == BodyShape::box ? box_mesh(scene, choice, level, change)
+                                              : round_level<dim>(scene, choice, level, change);
   } else {
-    mesh = round_level<dim>(scene, choice, level);
+    mesh = round_level<dim>(scene, choice, level, change);
   }
   embed_inclusions(scene.body, mesh);
   return mesh;
 }
 
-template Mesh<2> level_mesh(const Scene&, const ModelChoice&, int);
-template Mesh<3> level_mesh(const Scene&, const ModelChoice&, int);
+template Mesh<2> level_mesh(const Scene&, const ModelChoice&, int, const MeshChange&);
+template Mesh<3> level_mesh(const Scene&, const ModelChoice&, int, const MeshChange&);
 
 }  // namespace touchstone::reference

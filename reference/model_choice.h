@@ -37,7 +37,12 @@ inline constexpr double smallest_fillet_share = 0.25;
 /// needed. 1/R is the sum of the curvatures of tool and body.
 [[nodiscard]] double expected_contact_radius_m(const scene::Scene& scene, double depth_m);
 
-/// Edge of the cells at the rim of the deepest contact on a level, 0 the coarsest; each level halves it. Cells are
+/// How much smaller the cells under the tool are on a level than on level 0: 1, 1.5, 2, 3, 4, 6, ... Every second level
+/// halves them, and a level in between tells whether two agree by chance.
+[[nodiscard]] double refinement(int level);
+
+/// Edge of the cells at the rim of the deepest contact on a level, 0 the coarsest, as wished: octree cells are up to
+/// half of it, by the same share on every level. Cells are
 /// smaller towards the middle, so that shallower contacts are resolved by as many cells as the deepest, down to a
 /// tenth of its depth; and smaller where the tool bends tightly: rim_share of the bend's radius on the coarsest level,
 /// but at least a sixteenth of the others. From scene.reference.element_size_m; automatic: a / 1.5 in three dimensions,
@@ -45,13 +50,20 @@ inline constexpr double smallest_fillet_share = 0.25;
 [[nodiscard]] double element_size_m(const scene::Scene& scene, const ModelChoice& choice, int level);
 inline constexpr double rim_share = 0.4;
 
-/// Mesh of the refinement sequence, inclusions in it. Under the tool every level halves the cells; away from it cells
-/// grow with the distance, and both that growth and the largest cell shrink by 2^(1/3) a level: finer everywhere,
-/// though not by the same factor. The smooth far field of quadratic elements needs no more. Halved as well are the
-/// cells at the surface of an inclusion and at the edge of a round body's support, where the displacement has a
-/// singular gradient: 1/32 of half the body's size there on the coarsest level in two dimensions, 1/8 in three.
-/// Measured on a ball on a ball in two dimensions, 1/8 to 1/64 all give the force of 1/512 to 0.07 %.
+/// Factors on the usual sizes of the cells, to see what they matter.
+struct MeshChange {
+  double far_field = 1.0;   ///< growth with the distance, and the largest cell
+  double inclusions = 1.0;  ///< cells at the surfaces of inclusions
+};
+
+/// Mesh of the refinement sequence, inclusions in it. Under the tool cells shrink by refinement(level); away from it
+/// they grow with the distance, and both that growth and the largest cell shrink by the cube root of it: finer
+/// everywhere, though not by the same factor. The smooth far field of quadratic elements needs no more. Refined like
+/// the contact are the cells at the surface of an inclusion and at the edge of a round body's support, where the
+/// displacement has a singular gradient: 1/32 of half the body's size there on the coarsest level in two dimensions,
+/// 1/8 in three. Measured on a ball on a ball in two dimensions, 1/8 to 1/64 all give the force of 1/512 to 0.07 %.
 template <int dim>
-[[nodiscard]] Mesh<dim> level_mesh(const scene::Scene& scene, const ModelChoice& choice, int level);
+[[nodiscard]] Mesh<dim> level_mesh(const scene::Scene& scene, const ModelChoice& choice, int level,
+                                   const MeshChange& change = {});
 
 }  // namespace touchstone::reference

@@ -8,8 +8,11 @@
 #include "scene/scene.h"
 
 #include <atomic>
+#include <cmath>
 #include <filesystem>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -18,13 +21,14 @@ namespace touchstone::reference {
 
 /// One line of progress: a Newton iteration or a finished load step.
 struct Progress {
-  int level = 0, levels = 0;      ///< 1-based refinement level
+  int level = 0;                  ///< 1-based refinement level
+  int levels = 0;                 ///< 0: as many as the asked error takes
   int instant = 0, instants = 0;  ///< 1-based track instant being solved
   double depth_m = 0.0;
   int newton = 0;             ///< iteration within the load step
   double residual_rel = 0.0;  ///< Newton residual over its scale
   int unknowns = 0;
-  double seconds_left = 0.0;   ///< estimate for all levels; negative while unknown
+  double seconds_left = 0.0;   ///< estimate for this level; negative while unknown
   bool step_finished = false;  ///< true once per finished load step, after it is on disk
   std::string note{};          ///< "load step halved", "resumed at instant 7", "from the store"; usually empty
 };
@@ -33,6 +37,12 @@ struct Options {
   std::filesystem::path store;                    ///< folder of content-addressed results; made when missing
   std::function<void(const Progress&)> progress;  ///< may be empty
   const std::atomic<bool>* stop = nullptr;        ///< when it becomes true: throw Interrupted, losing no finished step
+  /// Area that each rest point stands for in the norm of the shape's uncertainty; empty: all the same.
+  std::vector<double> rest_area_m2{};
+  /// Where the scene asks for an error and not for a number of levels, no level is begun that would exceed these by
+  /// prediction, and none but the first is gone on with after that time.
+  std::optional<double> memory_limit_bytes{};  ///< of the process; absent: 80 % of the machine's
+  double seconds_limit = std::numeric_limits<double>::infinity();
 };
 
 /// What one mesh of the refinement sequence gave.
@@ -42,7 +52,30 @@ struct LevelRecord {
   int newton_iterations = 0;    ///< all load steps
   int steps_cut = 0;            ///< load steps halved on the way
   double wall_s = 0.0;          ///< when it was solved, also if it now comes from the store
+  double cpu_s = 0.0;           ///< the same, of all threads
   std::vector<double> force_n;  ///< magnitude of the contact force per instant
+};
+
+/// What one choice of the method, that refinement does not touch, changes on the coarsest level at the deepest instant.
+struct Sensitivity {
+  std::string part;                       ///< "far_field"
+  std::string change;                     ///< "cells half as large"
+  double force_rel = 0.0;                 ///< |F' - F| / |F|
+  double shape_rel = 0.0;                 ///< sqrt(sum A |u' - u|^2 / sum A |u|^2) over the rest points
+  Eigen::VectorXd displacement_change_m;  ///< |u' - u| per rest point
+  /// The bands hold it, falling with the refinement to the power of minus this; absent: the differences between the
+  /// levels show it already.
+  std::optional<double> order;
+
+  /// The part of it that the bands hold on a level whose cells are this much smaller than the coarsest's.
+  [[nodiscard]] double share_at(double refinement) const { return order ? std::pow(refinement, -*order) : 0.0; }
+};
+
+/// How far the refinement came.
+struct Refinement {
+  double error_asked = 0.0;  ///< of force and shape, relative; 0: the scene asks for a number of levels
+  bool reached = false;      ///< both uncertainties are at most that
+  std::string why_ended;     ///< "there is no level 5: ... would take about 31 GiB of memory, more than 19"
 };
 
 /// Answer for one scene; `instants` is the finest level's.
@@ -54,11 +87,16 @@ struct Result {
   std::vector<std::vector<scene::Vec3>> region_middles_m;   ///< per instant, one for every region
   std::vector<double> force_uncertainty_n;                  ///< per instant, conservative half width
   std::vector<Eigen::VectorXd> displacement_uncertainty_m;  ///< per instant, per rest point
-  std::vector<double> residual_penetration_m;               ///< per instant, largest over contact nodes
-  std::vector<double> between_nodes_penetration_m;          ///< per instant, largest over face quadrature points
-  std::vector<double> equilibrium_rel;                      ///< per instant, |contact + support| / |contact|
-  std::vector<double> volume_change_rel;                    ///< per instant, of the body
+  std::optional<double> force_uncertainty_rel;      ///< largest band / |F| over the instants with a deep contact
+  std::optional<double> shape_uncertainty_rel;      ///< band over displacement, both root mean square by area over all
+                                                    ///< points and instants
+  std::vector<double> residual_penetration_m;       ///< per instant, largest over contact nodes
+  std::vector<double> between_nodes_penetration_m;  ///< per instant, largest over face quadrature points
+  std::vector<double> equilibrium_rel;              ///< per instant, |contact + support| / |contact|
+  std::vector<double> volume_change_rel;            ///< per instant, of the body
   std::vector<LevelRecord> levels;
+  std::vector<Sensitivity> sensitivities;  ///< empty with fewer than three levels
+  Refinement refinement;
   bool from_store = false;  ///< nothing had to be solved
 };
 

@@ -63,13 +63,19 @@ class Store {
   /// Keeps a finished step. @throws std::filesystem::filesystem_error; the step is then absent
   void write(int level, int instant, const Record& record) const;
 
+  /// The same for a solution that is no step of a level, by name.
+  void write(const std::string& name, const Record& record) const;
+  [[nodiscard]] std::optional<Record> read(const std::string& name) const;
+
   /// The step, or nothing when it is missing, torn, altered or another step's; such a file is removed.
   [[nodiscard]] std::optional<Record> read(int level, int instant) const;
 
   [[nodiscard]] std::filesystem::path step_file(int level, int instant) const;
 
  private:
-  [[nodiscard]] std::string checksum(int level, int instant, std::string_view bytes) const;
+  void write(const std::filesystem::path& file, const Record& record) const;
+  [[nodiscard]] std::optional<Record> read(const std::filesystem::path& file) const;
+  [[nodiscard]] std::string checksum(const std::filesystem::path& file, std::string_view bytes) const;
   std::filesystem::path folder_;
   std::optional<scene::FolderLock> lock_;
 };

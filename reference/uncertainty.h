@@ -1,27 +1,57 @@
 // How far the finest level may be from the exact answer of the model, from what refinement changed.
 #pragma once
 
+#include "scene/record.h"
+
 #include <Eigen/Core>
 
+#include <optional>
 #include <vector>
 
 namespace touchstone::reference {
 
-/// Half width of the band per instant, for a quantity on successively refined levels F0, F1, F2 (the last three count):
-///   b = 1.25 max(|F2 - F1|, |F1 - F0| / 2), then the largest over the instant and its two neighbours.
+/// Half width of the band per instant, for a quantity F0, F1, F2 on the last three levels, whose cells are 1 / f of a
+/// common size:
+///   b = 1.25 max over pairs j < k of |Fk - Fj| / (f2 / fj - f2 / fk),  pairs no closer than fk / fj = 1.5,
+/// then the largest over the instant and its two neighbours.
 /// Why so: a contact force does not approach its limit from one side, because the contact's edge moves by whole nodes;
-/// Richardson's extrapolation would be luck. Each level halves the cells under the tool, so even at first order the
-/// error after F2 is no more than |F2 - F1|, and no more than half of the change before: the second term guards against
-/// F2 and F1 agreeing by chance, the neighbours against both doing so at one instant, and 1.25 is Roache's factor for
-/// three or more grids (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413).
-/// It covers the mesh and nothing else: not the material law, not friction left out.
+/// Richardson's extrapolation would be luck. Each quotient is the error of F2 when the error is of first order in the
+/// cell size and the pair differs by no chance; quadratic cells do better. Several pairs guard against two levels
+/// agreeing by chance, the neighbours against all doing so at one instant, and 1.25 is Roache's factor for three or
+/// more grids (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413). It covers the mesh and nothing else: not the material
+/// law.
 /// @param levels  [level][instant], coarsest first
+/// @param finer   f of each level
 /// @returns infinity throughout with fewer than three levels
-[[nodiscard]] std::vector<double> force_band(const std::vector<std::vector<double>>& levels);
+[[nodiscard]] std::vector<double> force_band(const std::vector<std::vector<double>>& levels,
+                                             const std::vector<double>& finer);
 
 /// The same per rest point, with the length of the difference of two displacement vectors.
 /// @param levels  [level][instant], each 3 x points
 /// @returns per instant, per point
-[[nodiscard]] std::vector<Eigen::VectorXd> displacement_band(const std::vector<std::vector<Eigen::Matrix3Xd>>& levels);
+[[nodiscard]] std::vector<Eigen::VectorXd> displacement_band(const std::vector<std::vector<Eigen::Matrix3Xd>>& levels,
+                                                             const std::vector<double>& finer);
+
+/// Figures "where the contact is deep" use the instants whose depth exceeds this share of the largest depth.
+inline constexpr double deep_share = 0.1;
+
+/// Below this depth a tool only grazes: round-off of the track decides whether it touches at all.
+inline constexpr double grazing_depth_m = 1e-9;
+
+/// Per instant: in contact, and deeper than deep_share of the deepest.
+[[nodiscard]] std::vector<bool> deep_instants(const std::vector<scene::InstantRecord>& instants);
+
+/// Largest band / |F| over the deep instants; absent where nothing pushes.
+[[nodiscard]] std::optional<double> force_uncertainty_rel(const std::vector<scene::InstantRecord>& instants,
+                                                          const std::vector<double>& band_n);
+
+/// sqrt(sum over instants and rest points of A b^2 / the same of A |u|^2); absent where nothing moves.
+/// @param area_m2  A of each rest point; empty: equal
+[[nodiscard]] std::optional<double> shape_uncertainty_rel(const std::vector<scene::InstantRecord>& instants,
+                                                          const std::vector<Eigen::VectorXd>& band_m,
+                                                          const std::vector<double>& area_m2);
+
+/// The areas as a vector, ones where there are none.
+[[nodiscard]] Eigen::VectorXd areas_or_ones(const std::vector<double>& area_m2, Eigen::Index points);
 
 }  // namespace touchstone::reference

@@ -158,8 +158,10 @@ std::vector<Field<Scene>> make_scene_fields() {
 
       {"reference.kinematics", "", any, "\"finite\"", reference, choice({"finite", "small"}, +[](S& s) -> Kinematics& { return s.reference.kinematics; }), always,
            "Finite strain, or small strain for closed forms."},
-      {"reference.levels", "", between(1, 6), "3", reference, +[](S& s) -> int& { return s.reference.levels; }, always,
-           "Refined meshes; an uncertainty needs at least 3."},
+      {"reference.error", "", between(1e-4, 0.5), "0.01", reference, +[](S& s) -> double& { return s.reference.error; }, always,
+           "Meshes are refined until the uncertainties of force and shape, relative, are at most this."},
+      {"reference.levels", "", between(1, 9), absent, reference, +[](S& s) -> std::optional<int>& { return s.reference.levels; }, always,
+           "Number of refined meshes in place of reference.error; an uncertainty needs at least 3."},
       {"reference.element_size_m", "m", above(0.0, 1.0), absent, reference, +[](S& s) -> std::optional<double>& { return s.reference.element_size_m; }, always,
            "Element size under the tool on the coarsest mesh; chosen from the contact radius when absent."},
 
@@ -262,6 +264,7 @@ std::string value_text(const Field<T>& field, const T& object) {
     std::string operator()(int& (*at)(T&)) const { return std::to_string(at(o)); }
     std::string operator()(std::string& (*at)(T&)) const { return toml_quoted(at(o)); }
     std::string operator()(std::optional<double>& (*at)(T&)) const { return at(o) ? number_text(*at(o)) : ""; }
+    std::string operator()(std::optional<int>& (*at)(T&)) const { return at(o) ? std::to_string(*at(o)) : ""; }
     std::string operator()(Vec3& (*at)(T&)) const { return numbers(at(o)); }
     std::string operator()(std::optional<Vec3>& (*at)(T&)) const { return at(o) ? numbers(*at(o)) : ""; }
     std::string operator()(std::vector<double>& (*at)(T&)) const { return numbers(at(o)); }
@@ -297,7 +300,8 @@ std::string expected_text(const Field<T>& field) {
     out = "three numbers, each in ";
   } else if (std::holds_alternative<Eigen::Quaterniond& (*)(T&)>(field.access)) {
     out = "four numbers, each in ";
-  } else if (std::holds_alternative<int& (*)(T&)>(field.access)) {
+  } else if (std::holds_alternative<int& (*)(T&)>(field.access) ||
+             std::holds_alternative<std::optional<int>& (*)(T&)>(field.access)) {
     out = "a whole number in ";
   } else if (std::holds_alternative<std::vector<double>& (*)(T&)>(field.access)) {
     out = "a list of numbers, each in ";

@@ -35,9 +35,10 @@ struct Choice {
   std::function<void(T&, int)> set;
 };
 template <class T>
-using Access = std::variant<double& (*)(T&), int& (*)(T&), std::string& (*)(T&), std::optional<double>& (*)(T&),
-                            Vec3& (*)(T&), std::optional<Vec3>& (*)(T&), Eigen::Quaterniond& (*)(T&),
-                            std::vector<double>& (*)(T&), std::vector<Eigen::Vector2d>& (*)(T&), Choice<T>>;
+using Access =
+    std::variant<double& (*)(T&), int& (*)(T&), std::string& (*)(T&), std::optional<double>& (*)(T&),
+                 std::optional<int>& (*)(T&), Vec3& (*)(T&), std::optional<Vec3>& (*)(T&), Eigen::Quaterniond& (*)(T&),
+                 std::vector<double>& (*)(T&), std::vector<Eigen::Vector2d>& (*)(T&), Choice<T>>;
 
 /// The key applies only where this holds; elsewhere giving it is an error.
 template <class T>
@@ -85,6 +86,7 @@ template <class T>
 template <class T>
 [[nodiscard]] bool optional(const Field<T>& field) {
   return std::holds_alternative<std::optional<double>& (*)(T&)>(field.access) ||
+         std::holds_alternative<std::optional<int>& (*)(T&)>(field.access) ||
          std::holds_alternative<std::optional<Vec3>& (*)(T&)>(field.access);
 }
 

@@ -123,7 +123,8 @@ struct FastSettings {
 
 struct ReferenceSettings {
   Kinematics kinematics = Kinematics::finite;
-  int levels = 0;                        ///< systematically refined meshes, at least 3 for an uncertainty
+  double error = 0.01;                   ///< refine until force and shape are known to that
+  std::optional<int> levels;             ///< in place of that: so many meshes, at least 3 for an uncertainty
   std::optional<double> element_size_m;  ///< cells under the tool on the coarsest level; automatic when absent
 };
 

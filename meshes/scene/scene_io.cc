@@ -250,6 +250,14 @@ class Reader {
     return true;
   }
   template <class T>
+  static bool assign(const Field<T>& field, std::optional<int>& (*const& member)(T&), const toml::node& node,
+                     T& object) {
+    const auto value = node.is_integer() ? node.value<std::int64_t>() : std::nullopt;
+    if (!value || !field.range.contains(static_cast<double>(*value))) return false;
+    member(object) = static_cast<int>(*value);
+    return true;
+  }
+  template <class T>
   static bool assign(const Field<T>&, std::string& (*const& member)(T&), const toml::node& node, T& object) {
     const auto value = node.is_string() ? node.value<std::string>() : std::nullopt;
     if (!value) return false;

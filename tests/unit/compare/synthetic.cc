@@ -66,6 +66,7 @@ Sides pressed(int instants, int triangles) {
                                    96,
                                    static_cast<int>(level),
                                    2.4 * std::pow(11.0, static_cast<double>(level)),
+                                   4.1 * std::pow(11.0, static_cast<double>(level)),
                                    {}});
   }
   for (const double time_s : scene::instants_s(sides.scene)) {
@@ -120,6 +121,8 @@ Sides pressed(int instants, int triangles) {
   sides.run.memory_bytes = 3'400'000;
   sides.run.ticks = 1100;
   sides.run.regions_max = 1;
+  sides.result.shape_uncertainty_rel = reference::shape_uncertainty_rel(
+      sides.result.instants, sides.result.displacement_uncertainty_m, surface.vertex_area_m2);
   sides.result.model = "quarter 3D u-p finite strain";
   sides.result.linear_solver = "CHOLMOD with OpenBLAS";
   sides.plans.fast = {{"contact law", true, "contact.law = \"duffing\"", "under 1 us"},

@@ -65,7 +65,7 @@ TEST(ModelChoice, InclusionsCountForSymmetry) {
   EXPECT_TRUE(choose_model(scene).mirror_x && choose_model(scene).mirror_y);
 }
 
-/// Small cells at every inclusion's surface, its volume right, and both halved from level to level.
+/// Small cells at every inclusion's surface, its volume right, and both refined from level to level.
 TEST(ModelChoice, EveryLevelResolvesTheInclusion) {
   scene::Scene scene = cube({0, 0, .07}, {0, 0, .068});
   scene::Inclusion ball;
@@ -88,23 +88,73 @@ TEST(ModelChoice, EveryLevelResolvesTheInclusion) {
       const auto within = std::count(materials.begin(), materials.end(), 1);
       volume_m3 += size_m.prod() * within / 27.0;
       if (within > 0 && within < 27) {
-        EXPECT_LE(size_m.mean(), 0.5 * ball.radius_m / (1 << level) * (1 + 1e-6));
+        EXPECT_LE(size_m.mean(), 0.5 * ball.radius_m / refinement(level) * (1 + 1e-6));
       }
     }
-    EXPECT_NEAR(volume_m3 / quarter_m3, 1.0, 0.1 / (1 << level));
+    EXPECT_NEAR(volume_m3 / quarter_m3, 1.0, 0.1 / refinement(level));
   }
 }
 
-TEST(ModelChoice, EveryLevelIsFinerUnderTheTool) {
+/// Longest edge of the cells at a place on the surface.
+template <int dim>
+double cell_size_at_m(const Mesh<dim>& mesh, const Eigen::Matrix<double, dim, 1>& place_m) {
+  double largest_m = 0.0;
+  for (const auto& cell : mesh.cells) {
+    Eigen::Matrix<double, dim, Mesh<dim>::nodes_per_cell> X_m;
+    for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) X_m.col(a) = mesh.points_m.col(cell[a]);
+    const Eigen::Matrix<double, dim, 1> low_m = X_m.rowwise().minCoeff(), high_m = X_m.rowwise().maxCoeff();
+    const double edge_m = (high_m - low_m).maxCoeff();
+    const double near_m = 1e-3 * edge_m;
+    if (((place_m - low_m).array() > -near_m).all() && ((high_m - place_m).array() > -near_m).all()) {
+      largest_m = std::max(largest_m, edge_m);
+    }
+  }
+  return largest_m;
+}
+
+TEST(ModelChoice, EveryLevelIsFinerUnderTheToolByWhatItSays) {
   const scene::Scene scene = cube({0, 0, .07}, {0, 0, .068});
   const ModelChoice choice = choose_model(scene);
+  const double coarsest_m = cell_size_at_m<3>(level_mesh<3>(scene, choice, 0), {0.0, 0.0, 0.06});
+  EXPECT_LE(coarsest_m, element_size_m(scene, choice, 0) * (1.0 + 1e-6));
+  const double finer[] = {1.0, 1.5, 2.0, 3.0, 4.0};
   int cells = 0;
-  for (int level = 0; level < 3; ++level) {
-    EXPECT_DOUBLE_EQ(element_size_m(scene, choice, level), 2.0 * element_size_m(scene, choice, level + 1));
+  for (int level = 0; level < 5; ++level) {
+    EXPECT_DOUBLE_EQ(refinement(level), finer[level]);
+    EXPECT_DOUBLE_EQ(element_size_m(scene, choice, 0), finer[level] * element_size_m(scene, choice, level));
     const Mesh<3> mesh = level_mesh<3>(scene, choice, level);
+    EXPECT_NEAR(cell_size_at_m<3>(mesh, {0.0, 0.0, 0.06}) * finer[level] / coarsest_m, 1.0, 1e-9) << level;
     EXPECT_GT(mesh.cell_count(), cells);
     cells = mesh.cell_count();
   }
+  // Cells of a round body are bent and never of equal size; near the pole they come close.
+  scene::Scene round = scene;
+  round.body.shape = scene::BodyShape::sphere;
+  round.body.radius_m = 0.03;
+  round.body.support_height_m = 0.006;
+  const double pole_m = cell_size_at_m<2>(level_mesh<2>(round, choose_model(round), 0), {0.0, 0.06});
+  for (int level = 1; level < 5; ++level) {
+    const Mesh<2> mesh = level_mesh<2>(round, choose_model(round), level);
+    EXPECT_NEAR(cell_size_at_m<2>(mesh, {0.0, 0.06}) * finer[level] / pole_m, 1.0, 0.1) << level;
+  }
+}
+
+TEST(ModelChoice, MeshChangesDoWhatTheySay) {
+  scene::Scene scene = cube({0, 0, .07}, {0, 0, .068});
+  scene::Inclusion& ball = scene.body.inclusions.emplace_back();
+  ball.shape = scene::BodyShape::sphere;
+  ball.radius_m = 0.008;
+  ball.center_m = {0.0, 0.0, 0.03};
+  ball.material = {3e4, 0.33};
+  const ModelChoice choice = choose_model(scene);
+  const Mesh<3> usual = level_mesh<3>(scene, choice, 0);
+  const Eigen::Vector3d contact_m(0.0, 0.0, 0.06), corner_m(0.03, 0.03, 0.0), ball_m(0.0, 0.0, 0.022);
+  const Mesh<3> far = level_mesh<3>(scene, choice, 0, {.far_field = 0.5, .inclusions = 1.0});
+  EXPECT_NEAR(cell_size_at_m<3>(far, contact_m), cell_size_at_m<3>(usual, contact_m), 1e-12);
+  EXPECT_NEAR(cell_size_at_m<3>(far, corner_m), 0.5 * cell_size_at_m<3>(usual, corner_m), 1e-12);
+  const Mesh<3> inside = level_mesh<3>(scene, choice, 0, {.far_field = 1.0, .inclusions = 0.5});
+  EXPECT_NEAR(cell_size_at_m<3>(inside, contact_m), cell_size_at_m<3>(usual, contact_m), 1e-12);
+  EXPECT_NEAR(cell_size_at_m<3>(inside, ball_m), 0.5 * cell_size_at_m<3>(usual, ball_m), 1e-12);
 }
 
 TEST(ModelChoice, NamesWhatItCannotDo) {

@@ -7,22 +7,46 @@
 namespace touchstone::reference {
 namespace {
 
+const std::vector<double> halved = {1.0, 2.0, 4.0};
+
 TEST(Uncertainty, LargerOfTheLastChangeAndHalfTheOneBefore) {
-  const auto band = force_band({{10.0, 10.0}, {10.4, 10.1}, {10.5, 10.0}});
+  const auto band = force_band({{10.0, 10.0}, {10.4, 10.1}, {10.5, 10.0}}, halved);
   ASSERT_EQ(band.size(), 2u);
   EXPECT_NEAR(band[0], 1.25 * 0.2, 1e-12);
   EXPECT_NEAR(band[1], 1.25 * 0.2, 1e-12);  // from its neighbour; its own is 0.125
 }
 
 TEST(Uncertainty, NeighboursCoverAChanceAgreement) {
-  const auto band = force_band({{1.0, 2.0, 3.0, 4.0}, {1.0, 2.0, 3.0, 4.2}, {1.0, 2.0, 3.0, 4.2}});
+  const auto band = force_band({{1.0, 2.0, 3.0, 4.0}, {1.0, 2.0, 3.0, 4.2}, {1.0, 2.0, 3.0, 4.2}}, halved);
   EXPECT_EQ(band[1], 0.0);
   EXPECT_NEAR(band[2], 0.125, 1e-12);
 }
 
+/// An error that is a multiple of the cell size is held with the safety factor to spare, whichever the sizes.
+TEST(Uncertainty, HoldsAFirstOrderError) {
+  for (const std::vector<double>& finer :
+       {std::vector<double>{1.0, 1.5, 2.0}, {1.5, 2.0, 3.0}, {2.0, 3.0, 4.0}, {1.0, 2.0, 4.0}, {1.0, 3.0, 9.0}}) {
+    std::vector<std::vector<double>> levels;
+    for (const double f : finer) levels.push_back({5.0 + 0.3 / f});
+    EXPECT_NEAR(force_band(levels, finer)[0], 1.25 * 0.3 / finer.back(), 1e-12);
+  }
+}
+
+/// Two levels whose cells hardly differ say nothing: an error of the last one is not blown up by their nearness.
+TEST(Uncertainty, LeavesOutPairsTooClose) {
+  const auto band = force_band({{1.0}, {1.1}, {1.0}}, {1.0, 1.5, 2.0});
+  EXPECT_NEAR(band[0], 1.25 * 0.1 / (2.0 - 2.0 / 1.5), 1e-12);
+}
+
+TEST(Uncertainty, TakesTheLastThreeLevels) {
+  const auto three = force_band({{1.1}, {1.05}, {1.0}}, {2.0, 3.0, 4.0});
+  const auto four = force_band({{7.0}, {1.1}, {1.05}, {1.0}}, {1.5, 2.0, 3.0, 4.0});
+  EXPECT_EQ(three[0], four[0]);
+}
+
 TEST(Uncertainty, UnknownWithFewerThanThreeLevels) {
-  for (const double half_width : force_band({{1.0, 2.0}, {1.0, 2.0}})) EXPECT_TRUE(std::isinf(half_width));
-  const auto shape = displacement_band({{Eigen::Matrix3Xd::Zero(3, 2)}});
+  for (const double half_width : force_band({{1.0, 2.0}, {1.0, 2.0}}, {1.0, 1.5})) EXPECT_TRUE(std::isinf(half_width));
+  const auto shape = displacement_band({{Eigen::Matrix3Xd::Zero(3, 2)}}, {1.0});
   EXPECT_TRUE(std::isinf(shape[0][1]));
 }
 
@@ -30,9 +54,34 @@ TEST(Uncertainty, ShapePerPoint) {
   Eigen::Matrix3Xd u0 = Eigen::Matrix3Xd::Zero(3, 2), u1 = u0, u2 = u0;
   u1.col(1) << 3.0, 4.0, 0.0;
   u2.col(1) << 3.0, 4.0, 1.0;
-  const auto band = displacement_band({{u0}, {u1}, {u2}});
+  const auto band = displacement_band({{u0}, {u1}, {u2}}, halved);
   EXPECT_EQ(band[0][0], 0.0);
   EXPECT_NEAR(band[0][1], 1.25 * 2.5, 1e-12);
+}
+
+/// Three instants: apart, shallow, deep.
+std::vector<scene::InstantRecord> instants() {
+  std::vector<scene::InstantRecord> list(3);
+  for (int i = 0; i < 3; ++i) {
+    list[i].depth_m = std::vector{0.0, 0.0009, 0.01}[i];
+    list[i].displacement_m = i * Eigen::Matrix3Xd::Ones(3, 2);
+    if (i > 0) list[i].regions.push_back({.depth_m = list[i].depth_m, .force_n = {0.0, 0.0, 2.0 * i}});
+  }
+  return list;
+}
+
+TEST(Uncertainty, RelativeForceOfTheDeepInstants) {
+  EXPECT_NEAR(*force_uncertainty_rel(instants(), {9.0, 9.0, 0.2}), 0.05, 1e-12);
+  EXPECT_TRUE(std::isnan(*force_uncertainty_rel(instants(), {9.0, 9.0, std::nan("")})));
+  EXPECT_FALSE(force_uncertainty_rel({scene::InstantRecord{}}, {1.0}));
+}
+
+TEST(Uncertainty, RelativeShapeByArea) {
+  const std::vector<Eigen::VectorXd> band_m{Eigen::Vector2d::Zero(), Eigen::Vector2d(0.0, 0.3),
+                                            Eigen::Vector2d(0.0, 0.4)};
+  // All points move by sqrt(3) and 2 sqrt(3); three quarters of the area are uncertain.
+  EXPECT_NEAR(*shape_uncertainty_rel(instants(), band_m, {1.0, 3.0}), std::sqrt(0.25 * 3.0 / (15.0 * 4.0)), 1e-12);
+  EXPECT_NEAR(*shape_uncertainty_rel(instants(), band_m, {}), std::sqrt(0.25 / (15.0 * 2.0)), 1e-12);
 }
 
 }  // namespace

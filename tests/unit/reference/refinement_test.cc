@@ -1,0 +1,211 @@
+// Refinement towards an error: where it ends, what it says, what it finds again, and where its levels start from.
+#include "reference/contact_problem.h"
+#include "reference/load_path.h"
+#include "reference/model_choice.h"
+#include "reference/run.h"
+#include "reference/solver.h"
+#include "reference/uncertainty.h"
+
+#include "scene/surface.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+#include <filesystem>
+#include <set>
+
+namespace touchstone::reference {
+namespace {
+
+/// A ball pressed on a ball: axisymmetric.
+scene::Scene ball_on_ball() {
+  scene::Scene scene;
+  scene.name = "ball-on-ball";
+  scene.body.shape = scene::BodyShape::sphere;
+  scene.body.radius_m = 0.03;
+  scene.body.support_height_m = 0.006;
+  scene.body.material = {3e6, 0.5};
+  scene.tool.radius_m = 0.01;
+  scene.track = {{0.0, {{0.0, 0.0, 0.0702}, Eigen::Quaterniond::Identity()}},
+                 {1.0, {{0.0, 0.0, 0.0662}, Eigen::Quaterniond::Identity()}}};
+  scene.compare.instants = 6;
+  scene.reference.element_size_m = 0.003;
+  return scene;
+}
+
+class RefinementTest : public testing::Test {
+ protected:
+  RefinementTest()
+      : root_(std::filesystem::temp_directory_path() / ("touchstone-refinement-" + std::to_string(::getpid()))),
+        scene_(ball_on_ball()),
+        surface_(scene::tessellate(*scene::body_shape(scene_.body), 128)) {}
+  ~RefinementTest() override { std::filesystem::remove_all(root_); }
+
+  /// Solves, and notes the levels on which a step was solved.
+  Result run(Options options = {}) {
+    solved_.clear();
+    options.store = root_;
+    options.rest_area_m2 = surface_.vertex_area_m2;
+    options.progress = [&](const Progress& progress) {
+      if (progress.step_finished) solved_.insert(progress.level);
+    };
+    return solve(scene_, surface_.points_m, options);
+  }
+  Result run_to(double error) {
+    scene_.reference.error = error;
+    return run();
+  }
+
+  std::filesystem::path root_;
+  scene::Scene scene_;
+  scene::Surface surface_;
+  std::set<int> solved_;
+};
+
+TEST_F(RefinementTest, EndsWhenForceAndShapeAreKnown) {
+  const Result rough = run_to(0.05);
+  EXPECT_TRUE(rough.refinement.reached) << rough.refinement.why_ended;
+  EXPECT_GE(rough.levels.size(), 3u);
+  EXPECT_LE(*rough.force_uncertainty_rel, 0.05);
+  EXPECT_LE(*rough.shape_uncertainty_rel, 0.05);
+  const std::string key = rough.key;
+
+  const Result fine = run_to(0.004);
+  EXPECT_TRUE(fine.refinement.reached) << fine.refinement.why_ended;
+  EXPECT_LE(std::max(*fine.force_uncertainty_rel, *fine.shape_uncertainty_rel), 0.004);
+  ASSERT_GT(fine.levels.size(), rough.levels.size());
+  // One level fewer would not have done.
+  scene_.reference.levels = static_cast<int>(fine.levels.size()) - 1;
+  const Result fewer = run();
+  EXPECT_TRUE(fewer.from_store);
+  EXPECT_GT(std::max(*fewer.force_uncertainty_rel, *fewer.shape_uncertainty_rel), 0.004);
+  EXPECT_EQ(fewer.key, key);
+}
+
+TEST_F(RefinementTest, FindsTheLevelsOfAnEarlierRun) {
+  const Result rough = run_to(0.05);
+  const int first = static_cast<int>(rough.levels.size());
+  const Result fine = run_to(0.004);
+  ASSERT_FALSE(solved_.empty());
+  EXPECT_GT(*solved_.begin(), first);
+  for (int level = 0; level < first; ++level) EXPECT_EQ(rough.levels[level].force_n, fine.levels[level].force_n);
+  const Result again = run_to(0.05);
+  EXPECT_TRUE(again.from_store);
+  EXPECT_EQ(again.levels.size(), rough.levels.size());
+  EXPECT_EQ(again.force_uncertainty_n, rough.force_uncertainty_n);
+}
+
+TEST_F(RefinementTest, SaysThatTheMemoryEndedIt) {
+  scene_.reference.error = 0.0002;
+  Options options;
+  options.memory_limit_bytes = expected_memory_bytes(2, 6000.0);
+  const Result result = run(options);
+  EXPECT_FALSE(result.refinement.reached);
+  EXPECT_NE(result.refinement.why_ended.find("GiB of memory"), std::string::npos) << result.refinement.why_ended;
+  EXPECT_LE(result.levels.back().unknowns, 6000);
+  const std::string next = "no level " + std::to_string(result.levels.size() + 1) + ":";
+  EXPECT_NE(result.refinement.why_ended.find(next), std::string::npos) << result.refinement.why_ended;
+}
+
+TEST_F(RefinementTest, SaysThatTheTimeEndedIt) {
+  Options options;
+  options.seconds_limit = 0.0;
+  const Result result = run(options);
+  EXPECT_EQ(result.levels.size(), 1u);
+  EXPECT_FALSE(result.refinement.reached);
+  EXPECT_NE(result.refinement.why_ended.find("min left"), std::string::npos) << result.refinement.why_ended;
+  EXPECT_TRUE(std::isinf(*result.force_uncertainty_rel));
+}
+
+/// Without friction the answer does not depend on where Newton starts: a level followed along its own load path ends
+/// in the same force, after more iterations.
+TEST_F(RefinementTest, CoarserLevelSavesIterationsAndMovesNothing) {
+  scene_.reference.levels = 3;
+  const Result result = run();
+  const ModelChoice choice = choose_model(scene_);
+  ContactProblem<2> problem(level_mesh<2>(scene_, choice, 2), scene_.body.material, scene_.reference.kinematics, true,
+                            true, 1);
+  const auto body = scene::body_shape(scene_.body);
+  LoadPath<2> path(problem, [&](double time_s) -> std::optional<RigidTool<2>> {
+    const scene::Pose pose = scene::pose_at(scene_.track, time_s);
+    if (scene::rest_depth_m(*body, scene_.tool, pose) <= 0.0) return std::nullopt;
+    return RigidTool<2>(choice.tool, pose);
+  });
+  const std::vector<double> times_s = scene::instants_s(scene_);
+  int iterations = 0;
+  std::optional<Solved<2>> before;
+  Solved<2> current{times_s[0] - 1.0, problem.rest(), false};
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    Solved<2> next;
+    const AdvanceReport report = path.advance(before ? &*before : nullptr, current, times_s[i], next, {}, {});
+    ASSERT_TRUE(report.converged);
+    iterations += report.newton_iterations;
+    const double force_n = problem.observe(next.state).force_n.norm();
+    EXPECT_NEAR(result.levels[2].force_n[i], force_n, 1e-7 * force_n) << i;
+    before = std::move(current);
+    current = std::move(next);
+  }
+  EXPECT_LT(result.levels[2].newton_iterations, iterations);
+}
+
+TEST_F(RefinementTest, SensitivitiesAreMeasuredOnce) {
+  scene_.reference.levels = 3;
+  const Result result = run();
+  std::set<std::string> parts;
+  for (const Sensitivity& one : result.sensitivities) {
+    parts.insert(one.part);
+    if (one.part == "far_field") {
+      EXPECT_GT(one.force_rel, 1e-6);
+      EXPECT_LT(one.force_rel, 0.01);
+      EXPECT_GT(one.shape_rel, 1e-5);
+      EXPECT_GT(one.share_at(1.0), one.share_at(2.0));
+    } else {
+      // Frictionless contact in the end knows no steps, no parameter and no numerical modulus.
+      EXPECT_LT(one.force_rel, 1e-7) << one.part;
+      EXPECT_LT(one.shape_rel, 1e-7) << one.part;
+      EXPECT_EQ(one.share_at(4.0), 1.0);
+    }
+  }
+  EXPECT_EQ(parts, (std::set<std::string>{"load_step", "contact_parameter", "numerical_bulk", "far_field"}));
+  const Result again = run();
+  EXPECT_TRUE(again.from_store);
+  ASSERT_EQ(again.sensitivities.size(), result.sensitivities.size());
+  for (std::size_t i = 0; i < again.sensitivities.size(); ++i) {
+    EXPECT_EQ(again.sensitivities[i].force_rel, result.sensitivities[i].force_rel);
+    EXPECT_EQ(again.sensitivities[i].shape_rel, result.sensitivities[i].shape_rel);
+  }
+}
+
+/// The band holds the differences of the levels and, on top, what those do not show.
+TEST_F(RefinementTest, SensitivitiesWidenTheBand) {
+  scene_.reference.levels = 3;
+  const Result result = run();
+  std::vector<std::vector<double>> forces_n;
+  for (const LevelRecord& level : result.levels) forces_n.push_back(level.force_n);
+  const std::vector<double> mesh_n = force_band(forces_n, {1.0, 1.5, 2.0});
+  double sum_rel = 0.0;
+  for (const Sensitivity& one : result.sensitivities) sum_rel += one.share_at(2.0) * one.force_rel;
+  EXPECT_GT(sum_rel, 1e-6);
+  for (std::size_t i = 0; i < mesh_n.size(); ++i) {
+    EXPECT_NEAR(result.force_uncertainty_n[i], mesh_n[i] + sum_rel * result.instants[i].force_n().norm(), 1e-12);
+  }
+}
+
+/// One formulation serves every Poisson's ratio, and near one half nothing locks.
+TEST_F(RefinementTest, EveryPoissonsRatioReachesTheError) {
+  double before_n = 0.0;
+  for (const double nu : {0.0, 0.3, 0.4999, 0.5}) {
+    scene_.body.material.poissons_ratio = nu;
+    const Result result = run_to(0.02);
+    EXPECT_TRUE(result.refinement.reached) << nu << ": " << result.refinement.why_ended;
+    const double force_n = result.instants.back().force_n().z();
+    EXPECT_GT(force_n, before_n) << nu;
+    if (nu == 0.5) {
+      EXPECT_NEAR(force_n / before_n, 1.0, 2e-3);
+    }
+    before_n = force_n;
+  }
+}
+
+}  // namespace
+}  // namespace touchstone::reference
