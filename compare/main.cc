@@ -1,5 +1,6 @@
 // touchstone: one scene in, one result folder out.
 #include "compare/verbs.h"
+#include "compare/verify_verb.h"
 #include "fast/command_line.h"
 #include "fast/live/live_verb.h"
 #include "scene/fields.h"
@@ -20,6 +21,7 @@ int main(int argc, char** argv) {
 
   fast::VerbOptions options;
   live::LiveOptions live_options;
+  compare::VerifyOptions verify_options;
   std::filesystem::path store = "out/reference-store";
   int exit_code = fast::done;
   const auto add = [&](const char* name, const char* what, auto verb) {
@@ -42,5 +44,6 @@ int main(int argc, char** argv) {
   add_store(
       add_with_folder("compare", "both sides, then force and shape errors: tables, VTK, report", compare::run_compare));
   live::add_live_verb(app, options, live_options, exit_code);
+  compare::add_verify_verb(app, verify_options, exit_code);
   return fast::run_command_line(app, argc, argv, exit_code);
 }

@@ -106,6 +106,7 @@ typename ContactProblem<dim>::Forces ContactProblem<dim>::forces(const State<dim
     }
     sum.nodal_n.col(hanging.node).setZero();
   }
+  if (dead_force_n_.size() > 0) sum.nodal_n -= dead_force_n_;
   return sum;
 }
 
@@ -246,11 +247,25 @@ void ContactProblem<dim>::assemble(const State<dim>& state) {
       scatter(places, result.stiffness.data(), result.condensed_force_n.data(), lane);
     }
   });
+  if (dead_force_n_.size() > 0) add_dead_forces();
   // An eliminated component stays in the pattern as an equation of its own, scaled like its neighbours.
   for (const int node : contact_nodes_) {
     if (eliminated_[node] < 0) continue;
     const int unknown = unknown_[node * dim + eliminated_[node]];
     lanes_[0].value[matrix_.column_begin[unknown]] = material_.shear_modulus_pa() * tool_->half_width_m();
+  }
+}
+
+template <int dim>
+void ContactProblem<dim>::add_dead_forces() {
+  Expansion expansion;
+  for (int node = 0; node < mesh_.node_count(); ++node) {
+    for (int i = 0; i < dim; ++i) {
+      if (dead_force_n_(i, node) == 0.0) continue;
+      expansion.clear();
+      expand(node, i, dead_force_n_(i, node), expansion);
+      for (const auto& [unknown, force_n] : expansion.terms) lanes_[0].right[unknown] += force_n;
+    }
   }
 }
 
@@ -268,11 +283,13 @@ void ContactProblem<dim>::add_curvature() {
 }
 
 template void ContactProblem<2>::assemble(const State<2>&);
+template void ContactProblem<2>::add_dead_forces();
 template void ContactProblem<2>::add_curvature();
 template void ContactProblem<2>::expand(int, int, double, Expansion&) const;
 template ContactProblem<2>::Forces ContactProblem<2>::forces(const State<2>&) const;
 template ContactProblem<2>::Nodal ContactProblem<2>::internal_forces(const State<2>&) const;
 template void ContactProblem<3>::assemble(const State<3>&);
+template void ContactProblem<3>::add_dead_forces();
 template void ContactProblem<3>::add_curvature();
 template void ContactProblem<3>::expand(int, int, double, Expansion&) const;
 template ContactProblem<3>::Forces ContactProblem<3>::forces(const State<3>&) const;

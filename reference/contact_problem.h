@@ -75,6 +75,9 @@ class ContactProblem {
   /// New places are fixed only before the first solve.
   void prescribe(int node, int direction, double displacement_m);
 
+  /// Dead forces on the nodes from the next solve on, one column per node [N]; hanging nodes pass theirs on.
+  void load(Eigen::Matrix<double, dim, Eigen::Dynamic> force_n);
+
   /// The tool's place for the next solve; without a tool nothing touches.
   void set_tool(const RigidTool<dim>& tool) { tool_ = tool; }
 
@@ -88,8 +91,8 @@ class ContactProblem {
   ///                      dimensions all are
   [[nodiscard]] Observation observe(const State<dim>& state, double region_gap_m = 0.0) const;
 
-  /// Internal nodal forces of a state, hanging nodes' passed on to their masters [N]: the support's force where
-  /// displacement is prescribed, zero elsewhere but for contact.
+  /// Internal nodal forces of a state less the dead forces, hanging nodes' passed on to their masters [N]: the
+  /// support's force where displacement is prescribed, zero elsewhere but for contact.
   [[nodiscard]] Eigen::Matrix<double, dim, Eigen::Dynamic> internal_forces(const State<dim>& state) const;
 
   [[nodiscard]] const Mesh<dim>& mesh() const noexcept { return mesh_; }
@@ -136,6 +139,7 @@ class ContactProblem {
   /// Adds a symmetric matrix given by columns, of which the lower triangle is read; unknowns ascending.
   void add_sorted(const int* unknowns, int count, const double* K, Lane& lane) const;
   void assemble(const State<dim>& state);
+  void add_dead_forces();
   void add_curvature();
   /// Next active set; returns the largest |gap| over touching nodes [m].
   double update_touching(State<dim>& state, int iteration, bool& changed) const;
@@ -161,6 +165,7 @@ class ContactProblem {
   // Per node and direction.
   std::vector<char> prescribed_;
   Nodal prescribed_m_;
+  Nodal dead_force_n_;        // no columns without any
   std::vector<int> unknown_;  // number or -1
   int unknowns_ = 0;
 
