@@ -1,6 +1,7 @@
 // touchstone: one scene in, one result folder out.
 #include "compare/study_verb.h"
 #include "compare/verbs.h"
+#include "compare/verify_verb.h"
 #include "fast/command_line.h"
 #include "fast/live/live_verb.h"
 #include "reference/contact_shares.h"
@@ -29,6 +30,7 @@ int main(int argc, char** argv) {
   fast::VerbOptions options;
   live::LiveOptions live_options;
   compare::ReferenceOptions reference;
+  compare::VerifyOptions verify_options;
   int exit_code = fast::done;
   const auto add = [&](const char* name, const char* what, auto verb) {
     return fast::add_verb(
@@ -65,5 +67,6 @@ int main(int argc, char** argv) {
   compare::StudyOptions study_options;
   compare::add_study_verb(app, study_options, exit_code);
   live::add_live_verb(app, options, live_options, exit_code);
+  compare::add_verify_verb(app, verify_options, exit_code);
   return fast::run_command_line(app, argc, argv, exit_code);
 }

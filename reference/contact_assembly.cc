@@ -76,6 +76,7 @@ typename ContactProblem<dim>::Forces ContactProblem<dim>::forces(const State<dim
     }
     sum.nodal_n.col(hanging.node).setZero();
   }
+  if (dead_force_n_.size() > 0) sum.nodal_n -= dead_force_n_;
   return sum;
 }
 
@@ -263,6 +264,7 @@ void ContactProblem<dim>::assemble(const State<dim>& state) {
       scatter(places, result.stiffness.data(), result.condensed_force_n.data(), lane, slip_rows_ > 0);
     }
   });
+  if (dead_force_n_.size() > 0) add_dead_forces();
   // An eliminated component stays in the pattern as an equation of its own, scaled like its neighbours.
   for (const int node : contact_nodes_) {
     if (eliminated_[node] < 0) continue;
@@ -270,6 +272,19 @@ void ContactProblem<dim>::assemble(const State<dim>& state) {
       const int unknown = unknown_[node * dim + i];
       if (unknown < 0 || (eliminated_[node] != i && eliminated_[node] != all_directions)) continue;
       lanes_[0].value[matrix_.column_begin[unknown]] = material_.shear_modulus_pa() * tool_->half_width_m();
+    }
+  }
+}
+
+template <int dim>
+void ContactProblem<dim>::add_dead_forces() {
+  Expansion expansion;
+  for (int node = 0; node < mesh_.node_count(); ++node) {
+    for (int i = 0; i < dim; ++i) {
+      if (dead_force_n_(i, node) == 0.0) continue;
+      expansion.clear();
+      expand(node, i, dead_force_n_(i, node), expansion);
+      for (const auto& [unknown, force_n] : expansion.terms) lanes_[0].right[unknown] += force_n;
     }
   }
 }
@@ -343,6 +358,7 @@ typename ContactProblem<dim>::Pressures ContactProblem<dim>::pressure_change_of_
 }
 
 template void ContactProblem<2>::assemble(const State<2>&);
+template void ContactProblem<2>::add_dead_forces();
 template void ContactProblem<2>::add_curvature();
 template void ContactProblem<2>::expand(int, int, double, Expansion&) const;
 template void ContactProblem<2>::build_pattern();
@@ -354,6 +370,7 @@ template ContactProblem<2>::Pressures ContactProblem<2>::pressure_change(const N
 template ContactProblem<2>::Pressures ContactProblem<2>::pressure_change_of_share(const Nodal&) const;
 template ContactProblem<2>::Nodal ContactProblem<2>::internal_forces(const State<2>&) const;
 template void ContactProblem<3>::assemble(const State<3>&);
+template void ContactProblem<3>::add_dead_forces();
 template void ContactProblem<3>::add_curvature();
 template void ContactProblem<3>::expand(int, int, double, Expansion&) const;
 template void ContactProblem<3>::build_pattern();

@@ -58,7 +58,9 @@ ContactProblem<dim>::ContactProblem(Mesh<dim> mesh, const scene::Material& mater
       }
     }
   }
-  // Areas and normals of the surface that may touch. Lumping at the nodes keeps every weight positive.
+  // Areas and normals of the surface that may touch. Lumping at the nodes keeps every weight positive. Outward is away
+  // from the nodes' mean, which is inside a convex body; neighbouring faces may run opposite ways.
+  const Point middle_m = mesh_.points_m.rowwise().mean();
   for (const auto& face : mesh_.faces) {
     if (face.boundary != Boundary::free) continue;
     Eigen::Matrix<double, dim, Mesh<dim>::nodes_per_face> X;
@@ -80,7 +82,7 @@ ContactProblem<dim>::ContactProblem(Mesh<dim> mesh, const scene::Material& mater
       }
       const int node = face.nodes[a];
       area_m2_[node] += weight * normal.norm();
-      surface_normal_.col(node) += normal.normalized();
+      surface_normal_.col(node) += normal.dot(X.col(a) - middle_m) < 0.0 ? -normal.normalized() : normal.normalized();
       if constexpr (dim == 2) {
         // The node on the axis carries no force: alone it would flip freely, so it follows its neighbour.
         const double on_axis_m = 1e-9 * largest_extent_m_;
@@ -91,14 +93,8 @@ ContactProblem<dim>::ContactProblem(Mesh<dim> mesh, const scene::Material& mater
   for (const auto& hanging : mesh_.hanging) {
     for (const auto& [master, weight] : hanging.masters) area_m2_[master] += weight * area_m2_[hanging.node];
   }
-  // Outward is away from the cell behind the face; on convex bodies that is the side away from the nodes' mean.
-  const Point middle = mesh_.points_m.rowwise().mean();
-  for (const auto& face : mesh_.faces) {
-    if (face.boundary != Boundary::free) continue;
-    for (const int node : face.nodes) {
-      surface_normal_.col(node).normalize();
-      if (surface_normal_.col(node).dot(mesh_.points_m.col(node) - middle) < 0.0) surface_normal_.col(node) *= -1.0;
-    }
+  for (auto normal : surface_normal_.colwise()) {
+    if (!normal.isZero(0.0)) normal.normalize();
   }
   for (const auto& face : mesh_.faces) {
     if (face.boundary == Boundary::free) {
@@ -129,6 +125,17 @@ void ContactProblem<dim>::prescribe(int node, int direction, double displacement
   if (prescribed_[node * dim + direction]) return;
   prescribed_[node * dim + direction] = 1;
   number_unknowns();
+}
+
+template <int dim>
+void ContactProblem<dim>::load(Nodal force_n) {
+  dead_force_n_ = std::move(force_n);
+  for (const auto& hanging : mesh_.hanging) {
+    for (const auto& [master, weight] : hanging.masters) {
+      dead_force_n_.col(master) += weight * dead_force_n_.col(hanging.node);
+    }
+    dead_force_n_.col(hanging.node).setZero();
+  }
 }
 
 template <int dim>

@@ -115,6 +115,9 @@ class ContactProblem : public ranks::Part {
   /// New places are fixed only before the first solve.
   void prescribe(int node, int direction, double displacement_m);
 
+  /// Dead forces on the nodes from the next solve on, one column per node [N]; hanging nodes pass theirs on.
+  void load(Eigen::Matrix<double, dim, Eigen::Dynamic> force_n);
+
   /// The tool's place for the next solve; without a tool nothing touches.
   void set_tool(const RigidTool<dim>& tool) { tool_ = tool; }
 
@@ -139,8 +142,8 @@ class ContactProblem : public ranks::Part {
   /// coefficient is that of the node's region.
   [[nodiscard]] std::vector<NodeContact<dim>> node_contacts(const State<dim>& state, double region_gap_m = 0.0) const;
 
-  /// Internal nodal forces of a state, hanging nodes' passed on to their masters [N]: the support's force where
-  /// displacement is prescribed, zero elsewhere but for contact.
+  /// Internal nodal forces of a state less the dead forces, hanging nodes' passed on to their masters [N]: the
+  /// support's force where displacement is prescribed, zero elsewhere but for contact.
   [[nodiscard]] Eigen::Matrix<double, dim, Eigen::Dynamic> internal_forces(const State<dim>& state) const;
 
   [[nodiscard]] const Mesh<dim>& mesh() const noexcept { return mesh_; }
@@ -205,6 +208,7 @@ class ContactProblem : public ranks::Part {
   /// Adds a symmetric matrix given by columns, of which the lower triangle is read; unknowns ascending.
   void add_sorted(const int* unknowns, int count, const double* K, Lane& lane) const;
   void assemble(const State<dim>& state);
+  void add_dead_forces();
   void add_curvature();
   void add_turning();
   [[nodiscard]] SlipCoupling slip_coupling() const;
@@ -270,6 +274,7 @@ class ContactProblem : public ranks::Part {
   // Per node and direction.
   std::vector<char> prescribed_;
   Nodal prescribed_m_;
+  Nodal dead_force_n_;        // no columns without any
   std::vector<int> unknown_;  // number or -1
   int unknowns_ = 0;
 

@@ -1,5 +1,5 @@
 // The closed forms against printed or independently computed numbers, before anything is held against them.
-#include "verification/closed_forms.h"
+#include "reference/verification/closed_forms.h"
 
 #include <gtest/gtest.h>
 

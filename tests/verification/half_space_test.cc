@@ -1,7 +1,7 @@
 // Ball on a half space: Hertz in the limit of small load, Sneddon's exact ball, and the incompressible limit.
-#include "reference/half_space.h"
+#include "reference/verification/half_space.h"
 
-#include "verification/closed_forms.h"
+#include "reference/verification/closed_forms.h"
 
 #include <gtest/gtest.h>
 

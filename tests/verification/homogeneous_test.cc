@@ -2,7 +2,7 @@
 #include "reference/contact_problem.h"
 #include "reference/mesh.h"
 #include "reference/round_mesh.h"
-#include "verification/closed_forms.h"
+#include "reference/verification/closed_forms.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Inflation of a thick incompressible neo-Hookean sphere: the displacement is known exactly, so its order can be
 // asserted.
 #include "reference/contact_problem.h"
-#include "verification/closed_forms.h"
+#include "reference/verification/closed_forms.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include "reference/tool_distance.h"
 #include "scene/surface.h"
 #include "unit/reference/mesh_tools.h"
-#include "verification/closed_forms.h"
+#include "reference/verification/closed_forms.h"
 
 #include <gtest/gtest.h>
 

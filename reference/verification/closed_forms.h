@@ -3,7 +3,9 @@
 
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace touchstone::verification {
 
@@ -70,9 +72,71 @@ inline RoundedPunch rounded_punch(double E_star_pa, double b_m, double e_m, doub
   return punch;
 }
 
+/// Flat punch of radius a on a half space: F = 2 a E* d, and outside the surface settles by (2 d / pi) asin(a / r).
+/// I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47-57.
+inline double flat_punch_force_n(double E_star_pa, double a_m, double d_m) { return 2.0 * a_m * E_star_pa * d_m; }
+inline double flat_punch_settlement_m(double a_m, double d_m, double r_m) {
+  return M_2_PI * d_m * std::asin(std::min(1.0, a_m / r_m));
+}
+
+/// Cone of the given half angle from its axis: F = (2/pi) E* tan(angle) d^2, a = (2/pi) d tan(angle). Sneddon, as
+/// above.
+inline Indentation cone(double E_star_pa, double half_angle, double d_m) {
+  return {M_2_PI * E_star_pa * std::tan(half_angle) * d_m * d_m, M_2_PI * d_m * std::tan(half_angle)};
+}
+
+/// The cone with a ball of radius rho in its tip, which the flank touches at r0 = rho cos(angle): Sneddon's integrals
+/// of f' = r / sqrt(rho^2 - r^2) up to r0 and cot(angle) from there to the contact radius a.
+inline Indentation rounded_cone(double E_star_pa, double half_angle, double rho_m, double a_m, double& depth_m) {
+  const double begin = std::asin(std::min(1.0, rho_m * std::cos(half_angle) / a_m)), flank = 1.0 / std::tan(half_angle);
+  constexpr int intervals = 2000;
+  double depth = 0.0, force = 0.0;
+  for (const bool tip : {true, false}) {
+    const double from = tip ? 0.0 : begin, to = tip ? begin : M_PI_2, step = (to - from) / intervals;
+    for (int k = 0; k <= intervals; ++k) {  // Simpson's rule over r = a sin t
+      const double weight = (k == 0 || k == intervals ? 1.0 : k % 2 == 1 ? 4.0 : 2.0) * step / 3.0;
+      const double r_m = a_m * std::sin(from + k * step);
+      const double slope = tip ? r_m / std::sqrt(rho_m * rho_m - r_m * r_m) : flank;
+      depth += weight * a_m * slope;
+      force += weight * 2.0 * E_star_pa * r_m * r_m * slope;
+    }
+  }
+  depth_m = depth;
+  return {force, a_m};
+}
+
 /// Incompressible neo-Hookean bar: force over rest area at stretch lam, P = mu (lam - lam^-2); negative in compression.
 /// Laterally free, P = lam sigma_1 / lam with sigma_1 - sigma_2 = mu (lam^2 - 1/lam) and sigma_2 = 0.
 inline double neo_hookean_bar_pa(double mu_pa, double lam) { return mu_pa * (lam - 1.0 / (lam * lam)); }
+
+/// The same for any Poisson's ratio, W = mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2: the lateral stretch makes the
+/// lateral stress mu/3 J^(-5/3) (lat^2 - lam^2) + kappa (J - 1), J = lam lat^2, vanish, and P = sigma lat^2.
+inline double neo_hookean_bar_pa(const scene::Material& material, double lam) {
+  const double mu = material.shear_modulus_pa();
+  if (material.poissons_ratio == 0.5) return neo_hookean_bar_pa(mu, lam);
+  const double kappa = material.bulk_modulus_pa();
+  const auto stresses = [&](double lat) {
+    const double J = lam * lat * lat, deviator = mu * std::pow(J, -5.0 / 3.0) * (lat * lat - lam * lam) / 3.0;
+    const double pressure = kappa * (J - 1.0);
+    return std::pair(deviator + pressure, -2.0 * deviator + pressure);  // lateral, axial
+  };
+  double low = 0.1, high = 10.0;
+  for (int k = 0; k < 200; ++k) {
+    const double middle = 0.5 * (low + high);
+    (stresses(middle).first < 0.0 ? low : high) = middle;
+  }
+  return stresses(low).second * low * low;
+}
+
+/// Incompressible neo-Hookean block in plane strain, free on the other sides: stretch under a force over rest area
+/// P = mu (lam - lam^-3), found by Newton's method. Code_Aster SSNV187 with mu = 2 C10.
+inline double plane_strain_stretch(double mu_pa, double P_pa) {
+  double lam = 1.0;
+  for (int k = 0; k < 50; ++k) {
+    lam -= (lam - std::pow(lam, -3) - P_pa / mu_pa) / (1.0 + 3.0 * std::pow(lam, -4));
+  }
+  return lam;
+}
 
 /// A ball of radius b with a concentric one of radius a inside, in small strain; its surface is moved out by strain *
 /// b: the radial stress there. In the outer part u = B r + C / r^2, inside u = A r; displacement and stress 3 K A and
@@ -107,11 +171,6 @@ inline double cantilever_tip_m(double F_n, double l_m, double E1I1_nm2, double E
                                double lb_m = 0.0) {
   const double k = (std::pow(l_m - la_m, 3) - std::pow(l_m - lb_m, 3)) / 3.0;
   return F_n * ((l_m * l_m * l_m / 3.0 - k) / E1I1_nm2 + k / E2I2_nm2);
-}
-
-/// Order p of an error that behaves like h^p, from two meshes whose cell sizes differ by `ratio`.
-inline double observed_order(double coarse_error, double fine_error, double ratio = 2.0) {
-  return std::log(coarse_error / fine_error) / std::log(ratio);
 }
 
 }  // namespace touchstone::verification

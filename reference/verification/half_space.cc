@@ -1,0 +1,132 @@
+#include "reference/verification/half_space.h"
+
+#include "reference/contact_problem.h"
+#include "reference/load_path.h"
+#include "reference/model_choice.h"
+#include "reference/sampling.h"
+#include "reference/solver.h"
+#include "reference/tool_distance.h"
+#include "reference/verification/solids.h"
+#include "scene/revolution.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchstone::verification {
+namespace {
+
+using scene::Vec3;
+
+/// The distance of a convex profile turned about z. Without a Hessian: for small kinematics, which need none.
+class TurnedTool final : public reference::ToolDistance {
+ public:
+  explicit TurnedTool(const scene::Profile& profile) : shape_(profile) {}
+  [[nodiscard]] reference::Gap<3> at(const Vec3& p_T_m) const override {
+    const scene::SurfaceQuery foot = shape_.query(p_T_m);
+    const Vec3 from_m = p_T_m - foot.point_m;
+    const double length_m = from_m.norm();
+    // Off an edge or a tip the distance grows away from the foot, not along a normal there.
+    const bool off = foot.signed_distance_m > 1e-9 * half_width_m();
+    return {foot.signed_distance_m, off ? Vec3(from_m / length_m) : foot.normal, scene::Mat3::Zero()};
+  }
+  [[nodiscard]] scene::Bounds bounds() const override { return shape_.bounds(); }
+  [[nodiscard]] double half_width_m() const override {
+    const scene::Bounds box = shape_.bounds();
+    return 0.5 * (box.upper_m - box.lower_m).minCoeff();
+  }
+
+ private:
+  scene::Revolution shape_;
+};
+
+scene::Tool cylinder(double radius_m, double edge_radius_m) {
+  scene::Tool tool;
+  tool.shape = scene::ToolShape::cylinder;
+  tool.radius_m = radius_m;
+  tool.length_m = 4.0 * radius_m;
+  tool.edge_radius_m = edge_radius_m;
+  return tool;
+}
+
+}  // namespace
+
+Punch ball_punch(double radius_m, double depth_m) {
+  scene::Tool tool;
+  tool.radius_m = radius_m;
+  return {reference::tool_distance(tool), radius_m, std::min(std::sqrt(radius_m * depth_m), radius_m)};
+}
+
+Punch flat_punch(double radius_m) {
+  return {reference::tool_distance(cylinder(radius_m, 0.0)), 2.0 * radius_m, radius_m, {{radius_m, 0.0}}};
+}
+
+Punch rounded_punch(double radius_m, double edge_radius_m, double depth_m) {
+  const double flat_m = radius_m - edge_radius_m, up_m = std::min(0.5 * depth_m, edge_radius_m);
+  const double patch_m = flat_m + std::sqrt(up_m * (2.0 * edge_radius_m - up_m));
+  return {reference::tool_distance(cylinder(radius_m, edge_radius_m)),
+          2.0 * radius_m,
+          patch_m,
+          {{flat_m, edge_radius_m}, {patch_m, edge_radius_m}}};
+}
+
+Punch cone_punch(double half_angle, double tip_radius_m, double depth_m) {
+  const double patch_m = 0.5 * depth_m * std::tan(half_angle);
+  // Three times as wide as it is needed; the tip, or the ball in it, at z = 0.
+  const double wide_m = 6.0 * patch_m, slope = 1.0 / std::tan(half_angle);
+  scene::Profile profile;
+  const double top_m = 2.0 * wide_m * slope;
+  if (tip_radius_m > 0.0) {
+    const double touch_r_m = tip_radius_m * std::cos(half_angle);
+    const double touch_z_m = tip_radius_m * (1.0 - std::sin(half_angle));
+    profile.rz_m = {{0.0, 0.0}, {touch_r_m, touch_z_m}, {wide_m, touch_z_m + slope * (wide_m - touch_r_m)}};
+    profile.arc_radius_m = {tip_radius_m, 0.0, 0.0, 0.0};
+  } else {
+    profile.rz_m = {{0.0, 0.0}, {wide_m, slope * wide_m}};
+  }
+  profile.rz_m.emplace_back(wide_m, top_m);
+  profile.rz_m.emplace_back(0.0, top_m);
+  return {std::make_shared<TurnedTool>(profile), 0.0, patch_m, {{0.0, tip_radius_m}}};
+}
+
+HalfSpaceAnswer indent_half_space(const HalfSpaceProblem& problem) {
+  const Punch& punch = problem.punch;
+  const double L_m = problem.domain_over_patch * punch.patch_radius_m;
+  scene::Scene scene;
+  scene.body.shape = scene::BodyShape::revolution;
+  scene.body.profile = {{{0.0, 0.0}, {L_m, 0.0}, {L_m, L_m}, {0.0, L_m}}, {}};
+  scene.body.material = problem.material;
+  const Vec3 top_m(0.0, 0.0, L_m);
+  reference::ContactPatch patch{
+      top_m, Vec3::UnitZ(), problem.depth_m, punch.patch_radius_m, {{top_m, punch.patch_radius_m}}, {}};
+  for (const Punch::Rim& rim : punch.rims) patch.rims.push_back({{rim.radius_m, 0.0, L_m}, rim.bend_radius_m});
+  reference::ModelChoice choice;
+  choice.dim = 2;
+  choice.tool = punch.tool;
+  choice.contacts = {patch};
+  choice.half_width_m = punch.patch_radius_m;
+  const reference::Mesh<2> mesh = reference::level_mesh<2>(scene, choice, problem.level);
+  reference::ContactProblem<2> body(mesh, problem.material, problem.kinematics, false, false);
+
+  const reference::Solved<2> rest{0.0, body.rest(), false};
+  reference::Solved<2> end;
+  reference::LoadPath<2> path(body, [&](double share) -> std::optional<reference::RigidTool<2>> {
+    const Vec3 center_m(0.0, 0.0, L_m + punch.tip_m - share * problem.depth_m);
+    return reference::RigidTool<2>(punch.tool, {center_m, Eigen::Quaterniond::Identity()});
+  });
+  const reference::AdvanceReport report = path.advance(nullptr, rest, 1.0, end, {}, {});
+  if (!report.converged) throw reference::NotConverged("tool on half space: " + report.last.trouble);
+  const reference::Observation seen = body.observe(end.state);
+  HalfSpaceAnswer answer{seen.force_n.z(),     seen.contact_radius_m,   axis_pressure_pa(body, end.state),
+                         seen.equilibrium_rel, seen.node_penetration_m, {},
+                         body.unknowns(),      report.newton_iterations};
+  if (problem.radii_m.size() > 0) {
+    Eigen::Matrix3Xd points_m = Eigen::Matrix3Xd::Zero(3, problem.radii_m.size());
+    points_m.row(0) = problem.radii_m.transpose();
+    points_m.row(2).setConstant(L_m);
+    const reference::SurfaceSampler<2> sampler(mesh, points_m, false, false);
+    answer.settlement_m = -sampler.displacement_m(end.state.u_m).row(2).transpose();
+  }
+  return answer;
+}
+
+}  // namespace touchstone::verification
