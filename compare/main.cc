@@ -1,4 +1,5 @@
 // touchstone: one scene in, one result folder out.
+#include "compare/export_verb.h"
 #include "compare/verbs.h"
 #include "fast/command_line.h"
 #include "fast/live/live_verb.h"
@@ -41,6 +42,10 @@ int main(int argc, char** argv) {
                             compare::run_reference));
   add_store(
       add_with_folder("compare", "both sides, then force and shape errors: tables, VTK, report", compare::run_compare));
+  compare::ExportOptions export_options;
+  CLI::App* export_verb = compare::add_export_verb(app, options, export_options, store, exit_code);
+  export_verb->add_option("--out", options.out, "result folder (default out/<scene>-export)");
+  add_store(export_verb);
   live::add_live_verb(app, options, live_options, exit_code);
   return fast::run_command_line(app, argc, argv, exit_code);
 }

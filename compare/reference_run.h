@@ -5,6 +5,7 @@
 #include "scene/results.h"
 
 #include <filesystem>
+#include <functional>
 
 namespace touchstone::compare {
 
@@ -12,6 +13,9 @@ namespace touchstone::compare {
 /// Newton iteration with reference::Interrupted; a second Ctrl-C ends the process at once.
 [[nodiscard]] reference::Result solve_with_progress(const scene::Scene& scene, const Eigen::Matrix3Xd& rest_points_m,
                                                     const std::filesystem::path& store, bool quiet);
+
+/// Runs a solve; its two ways of giving no answer become one message and the exit code that is returned.
+[[nodiscard]] int with_reference_exits(const std::function<int()>& solve);
 
 /// Writes curve.csv, summary.json and manifest.json of the reference alone.
 /// @throws std::filesystem::filesystem_error
