@@ -1,4 +1,5 @@
 // touchstone: one scene in, one result folder out.
+#include "compare/export_verb.h"
 #include "compare/study_verb.h"
 #include "compare/verbs.h"
 #include "compare/verify_verb.h"
@@ -41,9 +42,12 @@ int main(int argc, char** argv) {
     command->add_option("--out", options.out, std::string("result folder (default out/<scene>-") + name + ")");
     return command;
   };
-  const auto add_reference = [&](CLI::App* command) {
+  const auto add_store = [&](CLI::App* command) {
     command->add_option("--store", reference.store, "content-addressed reference results, shared by all runs")
         ->capture_default_str();
+  };
+  const auto add_reference = [&](CLI::App* command) {
+    add_store(command);
     auto* levels = command->add_option("--level", reference.levels, "number of meshes, in place of an error")
                        ->check(CLI::Range(1, 9));
     command
@@ -66,6 +70,10 @@ int main(int argc, char** argv) {
       add_with_folder("compare", "both sides, then force and shape errors: tables, VTK, report", compare::run_compare));
   compare::StudyOptions study_options;
   compare::add_study_verb(app, study_options, exit_code);
+  compare::ExportOptions export_options;
+  CLI::App* export_verb = compare::add_export_verb(app, options, export_options, reference, exit_code);
+  export_verb->add_option("--out", options.out, "result folder (default out/<scene>-export)");
+  add_store(export_verb);
   live::add_live_verb(app, options, live_options, exit_code);
   compare::add_verify_verb(app, verify_options, exit_code);
   return fast::run_command_line(app, argc, argv, exit_code);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <iostream>
 
 namespace touchstone::compare {
 namespace {
@@ -81,6 +82,18 @@ reference::Result solve_with_progress(const scene::Scene& scene, const scene::Su
     line.show(progress_text(p), p.step_finished || !p.note.empty());
   };
   return reference::solve(scene, surface.points_m, solve_options);
+}
+
+int with_reference_exits(const std::function<int()>& solve) {
+  try {
+    return solve();
+  } catch (const reference::Interrupted& stopped) {
+    std::cerr << "\n" << stopped.what() << '\n';
+    return fast::interrupted;
+  } catch (const reference::NotConverged& failure) {
+    std::cerr << failure.what() << '\n';
+    return fast::not_converged;
+  }
 }
 
 void write_reference(const std::filesystem::path& folder, const reference::Result& result,

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <functional>
 
 namespace touchstone::compare {
 
@@ -25,6 +26,9 @@ struct ReferenceOptions {
 /// Newton iteration with reference::Interrupted; a second Ctrl-C ends the process at once.
 [[nodiscard]] reference::Result solve_with_progress(const scene::Scene& scene, const scene::Surface& surface,
                                                     const ReferenceOptions& options, bool quiet);
+
+/// Runs a solve; its two ways of giving no answer become one message and the exit code that is returned.
+[[nodiscard]] int with_reference_exits(const std::function<int()>& solve);
 
 /// Writes curve.csv, summary.json and manifest.json of the reference alone.
 /// @throws std::filesystem::filesystem_error

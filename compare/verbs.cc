@@ -18,20 +18,6 @@ void refuse(std::vector<scene::Fault> faults) {
   if (!faults.empty()) throw scene::InputError(std::move(faults));
 }
 
-/// Runs a solve; its two ways of giving no answer become exit codes with one message.
-template <class Solve>
-int with_reference_exits(Solve solve) {
-  try {
-    return solve();
-  } catch (const reference::Interrupted& stopped) {
-    std::cerr << "\n" << stopped.what() << '\n';
-    return fast::interrupted;
-  } catch (const reference::NotConverged& failure) {
-    std::cerr << failure.what() << '\n';
-    return fast::not_converged;
-  }
-}
-
 }  // namespace
 
 int plan(const fast::VerbOptions& options, const ReferenceOptions&) {

@@ -37,12 +37,16 @@ std::string text_of(double value, const char* format = "%.3g") {
 
 double E_star_pa(double nu) { return contact_modulus_pa(E_pa, nu); }
 
+/// Every second level halves the cells.
+int halving_level(int mesh) { return 2 * mesh; }
+
 /// The answers on successive meshes, coarsest first.
 std::vector<HalfSpaceAnswer> on_meshes(HalfSpaceProblem problem, int meshes, const Effort& effort,
                                        const std::string& what) {
   std::vector<HalfSpaceAnswer> answers;
-  for (problem.level = 0; problem.level < meshes; ++problem.level) {
-    effort.tell(what + ", mesh " + std::to_string(problem.level + 1) + " of " + std::to_string(meshes));
+  for (int mesh = 0; mesh < meshes; ++mesh) {
+    problem.level = halving_level(mesh);
+    effort.tell(what + ", mesh " + std::to_string(mesh + 1) + " of " + std::to_string(meshes));
     answers.push_back(indent_half_space(problem));
   }
   return answers;
@@ -58,9 +62,9 @@ double force_of(const HalfSpaceAnswer& answer) { return answer.force_n; }
 double radius_of(const HalfSpaceAnswer& answer) { return answer.contact_radius_m; }
 double peak_of(const HalfSpaceAnswer& answer) { return answer.peak_pressure_pa; }
 
-/// What the cylinder's end adds to the force: half of what it adds at half the size, on meshes as coarse as level 1.
+/// What the cylinder's end adds to the force: half of what it adds at half the size, on the second mesh.
 double domain_part(HalfSpaceProblem problem) {
-  problem.level = 1;
+  problem.level = halving_level(1);
   const double whole_n = indent_half_space(problem).force_n;
   problem.domain_over_patch *= 0.5;
   return indent_half_space(problem).force_n / whole_n - 1.0;
@@ -192,10 +196,10 @@ Findings hertz_finite(const Effort& effort) {
                                           values_of(answers, radius_of)));
     effort.tell(at + ", small strain");
     problem.kinematics = Kinematics::small;
-    problem.level = meshes - 2;
+    const int mesh = meshes - 2;
+    problem.level = halving_level(mesh);
     const double small_n = indent_half_space(problem).force_n;
-    findings.notes.push_back(at + ": finite strain is " +
-                             text_of(100.0 * (answers[problem.level].force_n / small_n - 1.0)) +
+    findings.notes.push_back(at + ": finite strain is " + text_of(100.0 * (answers[mesh].force_n / small_n - 1.0)) +
                              " % of the small-strain force on the same mesh, at a/R = " + text_of(a_over_R) + ".");
   }
   findings.notes.push_back(mesh_note(meshes));
@@ -324,9 +328,9 @@ Findings pressed_ball(const Effort& effort) {
     const double d_m = depth_m / std::pow(4.0, k);
     const Indentation exact = hertz(E_star, radius_m, d_m);
     PressedBall finest;
-    for (int level = 0; level < meshes; ++level) {
-      effort.tell("depth " + text_of(1e3 * d_m) + " mm, mesh " + std::to_string(level + 1));
-      finest = press_half_ball(radius_m, material, d_m, Kinematics::finite, level);
+    for (int mesh = 0; mesh < meshes; ++mesh) {
+      effort.tell("depth " + text_of(1e3 * d_m) + " mm, mesh " + std::to_string(mesh + 1));
+      finest = press_half_ball(radius_m, material, d_m, Kinematics::finite, halving_level(mesh));
       peak[k].push_back(finest.peak_pa / hertz_peak_pressure_pa(exact));
       radius[k].push_back(finest.contact_radius_m / exact.contact_radius_m);
     }
@@ -341,8 +345,8 @@ Findings pressed_ball(const Effort& effort) {
        {std::tuple("peak pressure over Hertz, to small load", &peak, limit_of_table),
         std::tuple("contact radius over Hertz, to small load", &radius, limit_of_table)}) {
     std::vector<double> limits;
-    for (int level = 0; level < meshes; ++level) {
-      limits.push_back((8.0 * (*shares)[2][level] - 6.0 * (*shares)[1][level] + (*shares)[0][level]) / 3.0);
+    for (int mesh = 0; mesh < meshes; ++mesh) {
+      limits.push_back((8.0 * (*shares)[2][mesh] - 6.0 * (*shares)[1][mesh] + (*shares)[0][mesh]) / 3.0);
     }
     findings.checks.push_back(from_levels(what, "", 1.0, limit, limits));
   }
@@ -364,7 +368,7 @@ Findings scene_problem(const Effort& effort) {
   scene.track = {{0.0, {{0.0, 0.0, half_space_m + R_m}, Eigen::Quaterniond::Identity()}},
                  {1.0, {{0.0, 0.0, half_space_m + R_m - deepest_m}, Eigen::Quaterniond::Identity()}}};
   scene.reference.kinematics = Kinematics::small;
-  scene.reference.levels = effort.quick ? 4 : 5;
+  scene.reference.levels = 1 + halving_level(effort.quick ? 3 : 4);
   scene.compare.instants = 5;
   const auto store = std::filesystem::temp_directory_path() / ("touchstone-verify-" + std::to_string(::getpid()));
   reference::Options options;

@@ -17,8 +17,12 @@ Check from_levels(std::string what, std::string unit, double target, double limi
   const std::size_t n = values.size();
   if (n < 3) return check;
   std::vector<std::vector<double>> levels;
-  for (const double value : values) levels.push_back({value});
-  check.mesh_band = reference::force_band(levels).front() / std::abs(target);
+  std::vector<double> finer;
+  for (std::size_t k = 0; k < n; ++k) {
+    levels.push_back({values[k]});
+    finer.push_back(std::exp2(k));
+  }
+  check.mesh_band = reference::force_band(levels, finer).front() / std::abs(target);
   check.order = observed_order(values[n - 2] - values[n - 3], values[n - 1] - values[n - 2]);
   return check;
 }

@@ -31,7 +31,7 @@ inline constexpr double limit_of_table = 0.01;          ///< singular solutions 
 /// Place of a contact's edge, where the pressure falls to zero with an infinite slope within one cell.
 inline constexpr double limit_of_edge = 0.005;
 
-/// A check of a quantity from successively finer meshes. The finest counts; the band is force_band() of the last three;
+/// A check of a quantity from successively finer meshes. The finest counts; the band is force_band() of all;
 /// the order comes from their differences and is absent where they change sign or grow, as a contact force's do when
 /// the contact's edge moves by whole nodes.
 /// @param values  coarsest first, each mesh with half the cell size of the one before

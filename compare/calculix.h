@@ -1,0 +1,33 @@
+// Runs CalculiX on an exported deck and reads its answer.
+#pragma once
+
+#include "reference/calculix_deck.h"
+#include "scene/frames.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace touchstone::compare {
+
+/// What CalculiX says at the end of one step of a deck, of the whole body in the world frame.
+struct CalculixStep {
+  scene::Vec3 support_force_n = scene::Vec3::Zero();  ///< of the support on the body: what acts on the tool
+  scene::Vec3 tool_force_n = scene::Vec3::Zero();     ///< that holds the tool in its place: minus what acts on it
+  Eigen::Matrix3Xd displacement_m;                    ///< one column per node of Deck::surface_nodes
+};
+
+/// Reads a .dat file: as many steps as are complete in it, none when there is no such file.
+[[nodiscard]] std::vector<CalculixStep> read_calculix(const std::filesystem::path& dat, const reference::Deck& deck);
+
+struct CalculixRun {
+  std::vector<CalculixStep> steps;  ///< fewer than the deck's when it did not converge
+  double wall_s = 0.0, cpu_s = 0.0;
+};
+
+/// Runs `ccx` on folder/name.inp, its text in folder/name.log, with as many threads as the reference takes.
+/// @throws scene::InputError when there is no such program
+[[nodiscard]] CalculixRun run_calculix(const std::filesystem::path& folder, const std::string& name,
+                                       const reference::Deck& deck);
+
+}  // namespace touchstone::compare

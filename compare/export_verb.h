@@ -1,0 +1,24 @@
+// `touchstone export`: the scene as a deck for a second finite element code, and what that code says of it.
+#pragma once
+
+#include "compare/reference_run.h"
+#include "fast/command_line.h"
+#include "reference/calculix_deck.h"
+
+namespace touchstone::compare {
+
+struct ExportOptions {
+  reference::DeckOptions deck;
+  bool run = false;  ///< run CalculiX on it, solve the reference, and print both
+};
+
+/// Writes the deck and, when asked, curve.csv with the forces of both codes.
+/// @returns exit code; @throws scene::InputError for bad input
+int export_deck(const fast::VerbOptions& options, const ExportOptions& export_options,
+                const ReferenceOptions& reference);
+
+/// Adds the verb to the command line. @param options, reference, exit_code  as for the other verbs
+CLI::App* add_export_verb(CLI::App& app, fast::VerbOptions& options, ExportOptions& export_options,
+                          const ReferenceOptions& reference, int& exit_code);
+
+}  // namespace touchstone::compare
