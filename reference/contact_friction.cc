@@ -2,6 +2,8 @@
 #include "reference/contact_problem.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 
 namespace touchstone::reference {
@@ -176,7 +178,8 @@ double ContactProblem<dim>::update_slipping(State<dim>& state, const std::vector
     const double c_n_per_m = c_pa_per_m * area_m2_[node];
     const double limit_n = contact.coefficient * std::max(contact.normal_n, 0.0);
     const Point trial_n = contact.friction_n - c_n_per_m * contact.slip_m;
-    contact.slips = state.slipping[node] != 0 && before[node];
+    // At the edge of the contact, where nodes come to touch, there is next to no friction to hold them.
+    contact.slips = state.slipping[node] != 0 || !before[node];
     if (iteration > 0 && before[node]) {
       contact.slips = contact.slips ? trial_n.norm() > limit_n
                                     : contact.friction_n.norm() > limit_n + 0.1 * force_tolerance * acting_n;
@@ -202,22 +205,54 @@ double ContactProblem<dim>::update_slipping(State<dim>& state, const std::vector
     contacts_.push_back(contact);
     slips_.push_back(slip);
   }
+  if (getenv("FRDEBUG")) {
+    int on = 0, off = 0, tn = 0, tf = 0, count = 0;
+    for (int node : contact_nodes_) {
+      on += next[node] && !state.slipping[node];
+      off += !next[node] && state.slipping[node];
+      tn += state.touching[node] && !before[node];
+      tf += !state.touching[node] && before[node];
+      count += state.touching[node];
+    }
+    fprintf(stderr, "DBG it %d touching %d (+%d -%d) slips %d (+%d -%d) unplaced %g\n", iteration, count, tn, tf,
+            slip_rows_, on, off, unplaced_m);
+  }
   changed = changed || next != state.slipping;
   state.slipping = std::move(next);
   return unplaced_m;
 }
 
 template <int dim>
-bool ContactProblem<dim>::begin_sliding(State<dim>& state) const {
-  std::vector<char> sticks_somewhere(contacts_.size() + 1, 0), slides(contacts_.size() + 1, 0);
-  for (const NodeContact<dim>& contact : contacts_) {
-    if (!contact.slips) sticks_somewhere[contact.region] = 1;
-    if (state.sliding[contact.node]) slides[contact.region] = 1;
+std::vector<typename ContactProblem<dim>::RegionFriction> ContactProblem<dim>::region_frictions(
+    const State<dim>& state) const {
+  const Touching touching = touching_points(state, region_gap_m_);
+  const int count = static_cast<int>(touching.nodes.size());
+  std::vector<RegionFriction> regions(touching.region_of.size());
+  for (std::size_t point = 0; point < touching.region_of.size(); ++point) {
+    const int index = contact_of_[touching.nodes[point % count]];
+    if (index < 0) continue;
+    const NodeContact<dim>& contact = contacts_[index];
+    RegionFriction& region = regions[touching.region_of[point]];
+    region.normal_n += contact.normal_n;
+    if (contact.slips) region.slipping_normal_n += contact.normal_n;
+    region.limit_n += contact.coefficient * contact.normal_n;
+    if constexpr (dim == 3) region.friction_n += touching.mirrors[point / count].cwiseProduct(contact.friction_n);
+    region.sticks_somewhere = region.sticks_somewhere || !contact.slips;
+    region.slides = region.slides || state.sliding[contact.node];
   }
+  return regions;
+}
+
+template <int dim>
+bool ContactProblem<dim>::begin_sliding(State<dim>& state) const {
+  // Slip in all directions, as when the tool is pressed, is not the tool's sliding.
+  constexpr double one_way_share = 0.9;
+  const std::vector<RegionFriction> regions = region_frictions(state);
   bool weaker = false;
   for (const NodeContact<dim>& contact : contacts_) {
-    if (sticks_somewhere[contact.region]) continue;
-    weaker = weaker || (!slides[contact.region] && friction_->mu_D() < contact.coefficient);
+    const RegionFriction& region = regions[contact.region];
+    if (region.slides || region.sticks_somewhere || region.friction_n.norm() < one_way_share * region.limit_n) continue;
+    weaker = weaker || friction_->mu_D() < contact.coefficient;
     state.sliding[contact.node] = 1;
   }
   return weaker;
@@ -226,17 +261,16 @@ bool ContactProblem<dim>::begin_sliding(State<dim>& state) const {
 template <int dim>
 void ContactProblem<dim>::keep_history(State<dim>& state) const {
   if (!tool_) return;
-  std::vector<char> slips(contacts_.size() + 1, 0), slides(contacts_.size() + 1, 0);
-  for (const NodeContact<dim>& contact : contacts_) {
-    if (contact.slips) slips[contact.region] = 1;
-    if (state.sliding[contact.node]) slides[contact.region] = 1;
-  }
+  const std::vector<RegionFriction> regions = region_frictions(state);
   const double images = (mirror_x_ ? 2.0 : 1.0) * (mirror_y_ ? 2.0 : 1.0);
   std::fill(state.sliding.begin(), state.sliding.end(), 0);
   for (const NodeContact<dim>& contact : contacts_) {
-    // Stuck all over, a region holds what it could hold before it slid.
-    state.sliding[contact.node] = slides[contact.region] && slips[contact.region];
-    if (contact.slips) state.dissipated_j -= images * contact.friction_n.dot(contact.slip_m);
+    const RegionFriction& region = regions[contact.region];
+    state.sliding[contact.node] = region.slides && region.slipping_normal_n > 0.5 * region.normal_n;
+    if (contact.slips) {
+      const double limit_n = contact.coefficient * std::max(contact.normal_n, 0.0);
+      state.dissipated_j -= images * limit_n * slips_[contact_of_[contact.node]].direction.dot(contact.slip_m);
+    }
   }
   note_places(*tool_, state);
 }
@@ -333,6 +367,7 @@ template ContactProblem<2>::Touching ContactProblem<2>::touching_points(const St
 template ContactProblem<2>::Point ContactProblem<2>::contact_place_m(const State<2>&, int) const;
 template void ContactProblem<2>::begin_increment(State<2>&);
 template double ContactProblem<2>::update_slipping(State<2>&, const std::vector<char>&, const Nodal&, int, bool&);
+template std::vector<ContactProblem<2>::RegionFriction> ContactProblem<2>::region_frictions(const State<2>&) const;
 template bool ContactProblem<2>::begin_sliding(State<2>&) const;
 template void ContactProblem<2>::keep_history(State<2>&) const;
 template void ContactProblem<2>::add_slip_rows(const std::vector<std::pair<int, int>>&, const std::vector<int>&,
@@ -348,6 +383,7 @@ template ContactProblem<3>::Touching ContactProblem<3>::touching_points(const St
 template ContactProblem<3>::Point ContactProblem<3>::contact_place_m(const State<3>&, int) const;
 template void ContactProblem<3>::begin_increment(State<3>&);
 template double ContactProblem<3>::update_slipping(State<3>&, const std::vector<char>&, const Nodal&, int, bool&);
+template std::vector<ContactProblem<3>::RegionFriction> ContactProblem<3>::region_frictions(const State<3>&) const;
 template bool ContactProblem<3>::begin_sliding(State<3>&) const;
 template void ContactProblem<3>::keep_history(State<3>&) const;
 template void ContactProblem<3>::add_slip_rows(const std::vector<std::pair<int, int>>&, const std::vector<int>&,

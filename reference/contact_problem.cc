@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 
 namespace touchstone::reference {
 namespace {
@@ -14,6 +15,13 @@ std::vector<MixedMaterial> mixed(const std::vector<scene::Material>& materials, 
   std::vector<MixedMaterial> result;
   for (const scene::Material& material : materials) result.emplace_back(material, kinematics);
   return result;
+}
+
+/// Which nodes touch, and which of them slip.
+template <int dim>
+std::string status_text(const State<dim>& state) {
+  std::string text(state.touching.begin(), state.touching.end());
+  return text.append(state.slipping.begin(), state.slipping.end());
 }
 
 /// Weights of the three Gauss-Lobatto points on [0,1], which are the nodes of a quadratic side.
@@ -166,7 +174,7 @@ Gap<dim> ContactProblem<dim>::gap(const State<dim>& state, int node) const {
 }
 
 template <int dim>
-double ContactProblem<dim>::update_touching(State<dim>& state, int iteration, bool& changed) const {
+double ContactProblem<dim>::update_touching(State<dim>& state, bool late, bool& changed) const {
   changed = false;
   double open_m = 0.0;
   if (!tool_) return open_m;
@@ -177,7 +185,7 @@ double ContactProblem<dim>::update_touching(State<dim>& state, int iteration, bo
   }
   // A node exactly on the contact's edge may flip between two equal answers. Late in the solve it is let go only when
   // it pulls noticeably.
-  const double tolerated_pull_pa = iteration > largest_iterations / 2 ? 1e-5 * largest_pa : 0.0;
+  const double tolerated_pull_pa = late ? 1e-5 * largest_pa : 0.0;
   std::vector<char> next(state.touching.size(), 0);
   for (const int node : contact_nodes_) {
     const double g_m = gaps_[node].value_m;
@@ -245,6 +253,10 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     report.trouble = "the starting state turns an element inside out";
     return report;
   }
+  // With friction the nodes' status may come round again and again.
+  constexpr int most_cycles = 4;
+  int cycles = 0;
+  std::set<std::string> passed;
   if (friction_) begin_increment(state);
   for (int iteration = 0;; ++iteration) {
     report.iterations = iteration;
@@ -263,9 +275,11 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     }
     bool changed = false;
     const std::vector<char> before_touching = friction_ ? state.touching : std::vector<char>();
-    double open_m = update_touching(state, iteration, changed);
-    if (friction_)
+    double open_m = update_touching(state, cycles > 0 || iteration > largest_iterations / 2, changed);
+    if (friction_) {
       open_m = std::max(open_m, update_slipping(state, before_touching, current.nodal_n, iteration, changed));
+      if (changed && !passed.insert(status_text(state)).second) ++cycles;
+    }
     double still_to_move_m = 0.0;
     for (int node = 0; node < mesh_.node_count(); ++node) {
       for (int i = 0; i < dim; ++i) {
@@ -293,7 +307,7 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
       report.trouble = "the tangent stays indefinite";
       return report;
     }
-    if (iteration == most_iterations) {
+    if (iteration == most_iterations || cycles > most_cycles) {
       report.trouble = changed ? (friction_ ? "the contact area or its sticking part keeps changing"
                                             : "the contact area keeps changing")
                                : "the residual stays up";

@@ -156,7 +156,7 @@ class ContactProblem : public ranks::Part {
   /// Newton stops when the out-of-balance force is below this share of the acting forces.
   static constexpr double force_tolerance = 1e-8;
   static constexpr int largest_iterations = 25;
-  static constexpr int largest_iterations_with_friction = 50;
+  static constexpr int largest_iterations_with_friction = 40;
 
  private:
   using Nodal = Eigen::Matrix<double, dim, Eigen::Dynamic>;
@@ -219,8 +219,8 @@ class ContactProblem : public ranks::Part {
   /// What the pressures do with a displacement, all cells'.
   [[nodiscard]] Pressures pressure_change(const Nodal& du_m) const;
   [[nodiscard]] Pressures pressure_change_of_share(const Nodal& du_m) const;
-  /// Next active set; returns the largest |gap| over touching nodes [m].
-  double update_touching(State<dim>& state, int iteration, bool& changed) const;
+  /// Next active set; late in a solve it changes less easily. Returns the largest |gap| over touching nodes [m].
+  double update_touching(State<dim>& state, bool late, bool& changed) const;
   [[nodiscard]] Touching touching_points(const State<dim>& state, double region_gap_m) const;
   /// Where contact is looked at: in small strain at rest.
   [[nodiscard]] Point contact_place_m(const State<dim>& state, int node) const;
@@ -235,9 +235,17 @@ class ContactProblem : public ranks::Part {
   /// @param before  touching in the last iteration
   double update_slipping(State<dim>& state, const std::vector<char>& before, const Nodal& forces_n, int iteration,
                          bool& changed);
-  /// Regions of which every node slips begin to slide. @returns whether that changes the coefficient of one
+  /// Friction of a region, of the whole body.
+  struct RegionFriction {
+    double normal_n = 0.0, slipping_normal_n = 0.0, limit_n = 0.0;
+    scene::Vec3 friction_n = scene::Vec3::Zero();
+    bool sticks_somewhere = false, slides = false;
+  };
+  [[nodiscard]] std::vector<RegionFriction> region_frictions(const State<dim>& state) const;
+  /// Regions of which every node slips, all to one side, begin to slide. @returns whether that changes the coefficient
+  /// of one
   bool begin_sliding(State<dim>& state) const;
-  /// Makes the solved state the start of the next increment.
+  /// Makes the solved state the start of the next increment. A region slides on until half of its normal force sticks.
   void keep_history(State<dim>& state) const;
   /// Out-of-balance force and sum of the acting forces [N].
   [[nodiscard]] std::array<double, 2> residual(const State<dim>& state, const Nodal& forces_n) const;

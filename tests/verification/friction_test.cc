@@ -68,7 +68,7 @@ class BallPath {
   int iterations_ = 0;
 };
 
-/// Sums over a region: normal force, friction, limits; and the largest excess over a node's limit.
+/// Sums over a region of the whole body: normal force, friction, limits; and the largest excess over a node's limit.
 struct Sums {
   double normal_n = 0.0, friction_n = 0.0, limit_n = 0.0, excess_n = 0.0;
   bool all_slip = true, all_stick = true;
@@ -78,9 +78,9 @@ Sums sums(const ContactProblem<3>& body, const State<3>& state) {
   for (const NodeContact<3>& contact : body.node_contacts(state)) {
     EXPECT_GE(contact.normal_n, 0.0);
     const double limit_n = contact.coefficient * contact.normal_n;
-    sum.normal_n += contact.normal_n;
-    sum.friction_n += contact.friction_n.norm();
-    sum.limit_n += limit_n;
+    sum.normal_n += 2.0 * contact.normal_n;
+    sum.friction_n += 2.0 * contact.friction_n.norm();
+    sum.limit_n += 2.0 * limit_n;
     sum.excess_n = std::max(sum.excess_n, contact.friction_n.norm() - limit_n);
     sum.all_slip = sum.all_slip && contact.slips;
     sum.all_stick = sum.all_stick && !contact.slips;
@@ -105,12 +105,14 @@ TEST(Friction, NafemsWedge) {
   };
   const Vec3 pressed_m(0.0, 0.0, -0.0005);
   for (const double share : {-2.0, -0.5, 1.0}) move(share * pressed_m);
-  for (const double way_m : {0.0005, 0.001, 0.0015}) move(pressed_m + way_m * along);
+  for (const double way_m : {0.001, 0.004, 0.008}) move(pressed_m + way_m * along);
   const std::vector<NodeContact<3>> contacts = body.node_contacts(state);
   ASSERT_GT(contacts.size(), 8u);
+  double acting_n = 0.0;
+  for (const NodeContact<3>& contact : contacts) acting_n += contact.normal_n;
   for (const NodeContact<3>& contact : contacts) {
     EXPECT_TRUE(contact.slips);
-    EXPECT_NEAR(contact.friction_n.norm(), mu * contact.normal_n, 1e-8 * mu * contact.normal_n + 1e-8);
+    EXPECT_NEAR(contact.friction_n.norm(), mu * contact.normal_n, 1e-8 * acting_n);
     EXPECT_GT(contact.friction_n.dot(along), 0.0);
   }
   const Observation seen = body.observe(state, 1.0);
@@ -210,7 +212,11 @@ TEST(Friction, AStuckBallIsStifferByMossakovskiisFactor) {
 
 TEST(Friction, ConvergesWithTheLoadStep) {
   std::vector<double> forces_n;
-  for (const int steps : {4, 8, 16, 32}) forces_n.push_back(press(0.0, 0.2, steps).seen.force_n.z());
+  for (const int steps : {3, 6, 12, 24}) {
+    const Pressed pressed = press(0.0, 0.2, steps);
+    forces_n.push_back(pressed.seen.force_n.z());
+    printf("STEPS %d F %.10g a %.10g W %.10g it %d stuck %g\n", steps, forces_n.back(), pressed.seen.contact_radius_m, pressed.seen.dissipated_j, pressed.iterations, pressed.seen.regions[0].stuck_share);
+  }
   for (std::size_t i = 0; i < forces_n.size(); ++i)
     RecordProperty("n" + std::to_string(i), std::to_string(forces_n[i]));
   EXPECT_LT(std::abs(forces_n[3] - forces_n[2]), 0.7 * std::abs(forces_n[2] - forces_n[1]));
@@ -231,6 +237,7 @@ TEST(Friction, CattaneoAndMindlin) {
   ShiftedBall problem{{3e6, 0.3}, 0.01, 1e-6, 0.3};
   problem.shift_m = 1.25 * 0.3 * 1e-6 * 1.7 / 1.4;
   problem.steps = 5;
+  problem.cells_per_radius = 4.0;
   for (const ShiftedBallStep& step : shift_ball(problem)) {
     const double force = step.tangential_n / (problem.friction * step.normal_n);
     const double exact = mindlin_force(problem, step.shift_m);
