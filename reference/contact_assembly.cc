@@ -125,6 +125,8 @@ void ContactProblem<dim>::expand(int node, int direction, double weight, Expansi
   }
   if (prescribed_[node * dim + direction]) {
     out.offset_m += weight * step_offset_m_(direction, node);
+  } else if (eliminated_[node] == all_directions) {
+    out.offset_m += weight * stick_m_(direction, node);
   } else if (eliminated_[node] == direction) {
     // n . du = -g, solved for the largest component of n.
     const Gap<dim>& g = gaps_[node];
@@ -145,7 +147,7 @@ void ContactProblem<dim>::expand(int node, int direction, double weight, Expansi
 
 template <int dim>
 void ContactProblem<dim>::scatter(const std::vector<std::pair<int, int>>& places, const double* K, const double* f,
-                                  Lane& lane) const {
+                                  Lane& lane, bool with_slip) const {
   // du = T x + offset for the unknowns x that these places depend on: add T' K T and -T' (f + K offset).
   const int n = static_cast<int>(places.size());
   std::vector<Expansion> expansions(n);
@@ -179,6 +181,7 @@ void ContactProblem<dim>::scatter(const std::vector<std::pair<int, int>>& places
     }
   }
   add_sorted(unknowns.data(), m, TKT.data(), lane);
+  if (with_slip) add_slip_rows(places, unknowns, KT, out_of_balance_n, lane);
 }
 
 template <int dim>
@@ -223,6 +226,8 @@ void ContactProblem<dim>::assemble(const State<dim>& state) {
     Lane& lane = lanes_[number];
     std::fill(lane.value.begin(), lane.value.end(), 0.0);
     std::fill(lane.right.begin(), lane.right.end(), 0.0);
+    lane.slip_rows.clear();
+    lane.slip_normal_n.assign(slip_rows_, 0.0);
     CellResult<dim>& result = scratch_[number];
     typename Element<dim>::Nodal X, u;
     std::vector<std::pair<int, int>> places(CellResult<dim>::unknowns);
@@ -244,15 +249,18 @@ void ContactProblem<dim>::assemble(const State<dim>& state) {
       for (int i = 0; i < dim; ++i) {
         for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) places[i * Mesh<dim>::nodes_per_cell + a] = {cell[a], i};
       }
-      scatter(places, result.stiffness.data(), result.condensed_force_n.data(), lane);
+      scatter(places, result.stiffness.data(), result.condensed_force_n.data(), lane, slip_rows_ > 0);
     }
   });
   if (dead_force_n_.size() > 0) add_dead_forces();
   // An eliminated component stays in the pattern as an equation of its own, scaled like its neighbours.
   for (const int node : contact_nodes_) {
     if (eliminated_[node] < 0) continue;
-    const int unknown = unknown_[node * dim + eliminated_[node]];
-    lanes_[0].value[matrix_.column_begin[unknown]] = material_.shear_modulus_pa() * tool_->half_width_m();
+    for (int i = 0; i < dim; ++i) {
+      const int unknown = unknown_[node * dim + i];
+      if (unknown < 0 || (eliminated_[node] != i && eliminated_[node] != all_directions)) continue;
+      lanes_[0].value[matrix_.column_begin[unknown]] = material_.shear_modulus_pa() * tool_->half_width_m();
+    }
   }
 }
 

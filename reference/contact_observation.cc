@@ -58,7 +58,7 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
   std::vector<double> pressure_pa(mesh_.node_count(), 0.0);
   std::vector<double> opening_m(mesh_.node_count(), std::numeric_limits<double>::infinity());
   std::vector<char> inside = state.touching;
-  std::vector<int> touching_nodes, touching_index(mesh_.node_count(), -1);
+  std::vector<int> touching_index(mesh_.node_count(), -1);
   std::vector<Point> on_tool_n;
   for (const int node : contact_nodes_) {
     const Gap<dim> g = gap(state, node);
@@ -69,8 +69,7 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
     for (int i = 0; i < dim; ++i) {
       if (prescribed_[node * dim + i]) normal[i] = 0.0;
     }
-    touching_index[node] = static_cast<int>(touching_nodes.size());
-    touching_nodes.push_back(node);
+    touching_index[node] = static_cast<int>(on_tool_n.size());
     on_tool_n.push_back(-F.col(node).dot(normal) / normal.squaredNorm() * g.gradient);
     if (area_m2_[node] > 0.0) pressure_pa[node] = -on_tool_n.back().dot(g.gradient.normalized()) / area_m2_[node];
   }
@@ -91,63 +90,48 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
     }
   }
 
-  // Regions of the whole body: point i of image m is number i + m * (touching nodes).
-  const bool finite = kinematics_ == scene::Kinematics::finite;
-  const auto place = [&](int node) -> Point {
-    return finite ? Point(mesh_.points_m.col(node) + state.u_m.col(node)) : Point(mesh_.points_m.col(node));
-  };
-  const int touching_count = static_cast<int>(touching_nodes.size());
-  std::vector<scene::Vec3> mirrors;
-  for (const double x : {1.0, -1.0}) {
-    for (const double y : {1.0, -1.0}) {
-      if ((x > 0.0 || (dim == 3 && mirror_x_)) && (y > 0.0 || (dim == 3 && mirror_y_))) mirrors.emplace_back(x, y, 1.0);
+  const Touching touched = touching_points(state, region_gap_m);
+  const std::vector<scene::Vec3>& mirrors = touched.mirrors;
+  const std::vector<int>& region_of = touched.region_of;
+  const int touching_count = static_cast<int>(touched.nodes.size());
+  const auto place = [&](int node) { return contact_place_m(state, node); };
+  // Friction, which the weights by pressure below go without.
+  std::vector<Point> friction_on_tool_n(touching_count, Point::Zero());
+  if (friction_) {
+    for (const NodeContact<dim>& contact : contacts_of(state, F, touched)) {
+      friction_on_tool_n[touching_index[contact.node]] = -contact.friction_n;
     }
+    seen.dissipated_j = state.dissipated_j;
   }
-  std::vector<int> region_of;
-  if constexpr (dim == 3) {
-    Eigen::Matrix3Xd points_m(3, touching_count * static_cast<int>(mirrors.size()));
-    std::vector<std::pair<int, int>> links;
-    for (std::size_t m = 0; m < mirrors.size(); ++m) {
-      const int first = static_cast<int>(m) * touching_count;
-      for (int i = 0; i < touching_count; ++i) {
-        points_m.col(first + i) = mirrors[m].cwiseProduct(place(touching_nodes[i]));
-      }
-      for (const auto& face : mesh_.faces) {
-        int before = -1;
-        for (const int node : face.nodes) {
-          const int here = touching_index[node];
-          if (here >= 0 && before >= 0) links.emplace_back(first + before, first + here);
-          if (here >= 0) before = here;
-        }
-      }
-    }
-    region_of = region_of_points(points_m, links, region_gap_m);
-  } else {
-    region_of.assign(touching_count, 0);
-  }
-  std::vector<double> weights_n;
+  std::vector<double> weights_n, stuck_n;
   for (std::size_t point = 0; point < region_of.size(); ++point) {
     const int i = static_cast<int>(point) % touching_count;
     if (region_of[point] == static_cast<int>(seen.regions.size())) {
       seen.regions.emplace_back();
       weights_n.push_back(0.0);
+      stuck_n.push_back(0.0);
     }
     ContactRegion& region = seen.regions[region_of[point]];
     const double weight_n = on_tool_n[i].norm();
     weights_n[region_of[point]] += weight_n;
+    if (friction_ && !state.slipping[touched.nodes[i]]) stuck_n[region_of[point]] += weight_n;
     if constexpr (dim == 3) {
       const scene::Vec3& mirror = mirrors[point / touching_count];
-      const scene::Vec3 at_m = mirror.cwiseProduct(place(touching_nodes[i]));
-      const scene::Vec3 force_n = mirror.cwiseProduct(on_tool_n[i]);
+      const scene::Vec3 at_m = mirror.cwiseProduct(place(touched.nodes[i]));
+      const scene::Vec3 friction_n = mirror.cwiseProduct(friction_on_tool_n[i]);
+      const scene::Vec3 force_n = mirror.cwiseProduct(on_tool_n[i]) + friction_n;
+      region.friction_n += friction_n;
       region.force_n += force_n;
       region.torque_nm += (at_m - tool_->mass_center_m()).cross(force_n);
       region.center_m += weight_n * at_m;
     } else {
-      region.force_n.z() += on_tool_n[i][1];
-      region.center_m.z() += weight_n * place(touching_nodes[i])[1];
+      region.friction_n.z() += friction_on_tool_n[i][1];
+      region.force_n.z() += on_tool_n[i][1] + friction_on_tool_n[i][1];
+      region.center_m.z() += weight_n * place(touched.nodes[i])[1];
     }
   }
   for (std::size_t r = 0; r < seen.regions.size(); ++r) {
+    if (friction_) seen.regions[r].stuck_share = weights_n[r] > 0.0 ? stuck_n[r] / weights_n[r] : 0.0;
     seen.regions[r].center_m /= std::max(weights_n[r], std::numeric_limits<double>::min());
     seen.force_n += seen.regions[r].force_n;
     seen.torque_nm += seen.regions[r].torque_nm;
@@ -219,7 +203,8 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
         u += shape.value[a] * state.u_m.col(face.nodes[a]);
         N += shape.value[a] * surface_normal_.col(face.nodes[a]);
       }
-      const Gap<dim> g = finite ? tool_->gap(X + u) : tool_->gap_along(X, N.normalized(), u);
+      const Gap<dim> g =
+          kinematics_ == scene::Kinematics::finite ? tool_->gap(X + u) : tool_->gap_along(X, N.normalized(), u);
       seen.between_nodes_penetration_m = std::max(seen.between_nodes_penetration_m, -g.value_m);
     }
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 
 namespace touchstone::reference {
 namespace {
@@ -12,6 +13,13 @@ std::vector<MixedMaterial> mixed(const std::vector<scene::Material>& materials, 
   std::vector<MixedMaterial> result;
   for (const scene::Material& material : materials) result.emplace_back(material, kinematics);
   return result;
+}
+
+/// Which nodes touch, and which of them slip.
+template <int dim>
+std::string status_text(const State<dim>& state) {
+  std::string text(state.touching.begin(), state.touching.end());
+  return text.append(state.slipping.begin(), state.slipping.end());
 }
 
 /// Weights of the three Gauss-Lobatto points on [0,1], which are the nodes of a quadratic side.
@@ -155,7 +163,7 @@ Gap<dim> ContactProblem<dim>::gap(const State<dim>& state, int node) const {
 }
 
 template <int dim>
-double ContactProblem<dim>::update_touching(State<dim>& state, int iteration, bool& changed) const {
+double ContactProblem<dim>::update_touching(State<dim>& state, bool late, bool& changed) const {
   changed = false;
   double open_m = 0.0;
   if (!tool_) return open_m;
@@ -166,7 +174,7 @@ double ContactProblem<dim>::update_touching(State<dim>& state, int iteration, bo
   }
   // A node exactly on the contact's edge may flip between two equal answers. Late in the solve it is let go only when
   // it pulls noticeably.
-  const double tolerated_pull_pa = iteration > largest_iterations / 2 ? 1e-5 * largest_pa : 0.0;
+  const double tolerated_pull_pa = late ? 1e-5 * largest_pa : 0.0;
   std::vector<char> next(state.touching.size(), 0);
   for (const int node : contact_nodes_) {
     const double g_m = gaps_[node].value_m;
@@ -205,6 +213,14 @@ std::array<double, 2> ContactProblem<dim>::residual(const State<dim>& state, con
       acting_n += 0.5 * std::abs(lambda_n_[node]);
       normal.normalize();
       free -= free.dot(normal) * normal;
+      if (friction_ && contact_of_[node] >= 0) {
+        const NodeContact<dim>& contact = contacts_[contact_of_[node]];
+        if (contact.slips) {
+          free -= contact.coefficient * std::max(contact.normal_n, 0.0) * slips_[contact_of_[node]].direction;
+        } else {
+          free.setZero();
+        }
+      }
     }
     sum2_n2 += free.squaredNorm();
   }
@@ -218,6 +234,7 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
   const double smallest_scale_n = 1e-10 * material_.shear_modulus_pa() * length_m * length_m;
   constexpr double volume_tolerance = 1e-9, gap_tolerance = 1e-10, place_tolerance = 1e-12;
   constexpr int most_indefinite = 3;
+  const int most_iterations = friction_ ? largest_iterations_with_friction : largest_iterations;
   bool last_definite = true;
 
   Forces current = forces(state);
@@ -225,6 +242,11 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     report.trouble = "the starting state turns an element inside out";
     return report;
   }
+  // With friction the nodes' status may come round again and again.
+  constexpr int most_cycles = 4;
+  int cycles = 0;
+  std::set<std::string> passed;
+  if (friction_) begin_increment(state);
   for (int iteration = 0;; ++iteration) {
     report.iterations = iteration;
     if (tool_) {
@@ -241,7 +263,12 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
       }
     }
     bool changed = false;
-    const double open_m = update_touching(state, iteration, changed);
+    const std::vector<char> before_touching = friction_ ? state.touching : std::vector<char>();
+    double open_m = update_touching(state, cycles > 0 || iteration > largest_iterations / 2, changed);
+    if (friction_) {
+      open_m = std::max(open_m, update_slipping(state, before_touching, current.nodal_n, iteration, changed));
+      if (changed && !passed.insert(status_text(state)).second) ++cycles;
+    }
     double still_to_move_m = 0.0;
     for (int node = 0; node < mesh_.node_count(); ++node) {
       for (int i = 0; i < dim; ++i) {
@@ -257,16 +284,22 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
         current.volume_error_rel < volume_tolerance && still_to_move_m <= place_tolerance * largest_extent_m_) {
       // A balance whose tangent is indefinite is one the body would leave: a large step can end there, small ones do
       // not.
-      report.converged = last_definite;
-      if (!last_definite) report.trouble = "the balance found is not stable";
-      return report;
+      if (!friction_ || !begin_sliding(state)) {
+        report.converged = last_definite;
+        if (!last_definite) report.trouble = "the balance found is not stable";
+        if (friction_) keep_history(state);
+        return report;
+      }
+      update_slipping(state, state.touching, current.nodal_n, 0, changed);
     }
     if (report.indefinite > most_indefinite) {
       report.trouble = "the tangent stays indefinite";
       return report;
     }
-    if (iteration == largest_iterations) {
-      report.trouble = changed ? "the contact area keeps changing" : "the residual stays up";
+    if (iteration == most_iterations || cycles > most_cycles) {
+      report.trouble = changed ? (friction_ ? "the contact area or its sticking part keeps changing"
+                                            : "the contact area keeps changing")
+                               : "the residual stays up";
       return report;
     }
 
@@ -279,11 +312,15 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
         largest = std::abs(gaps_[node].gradient[i]);
         eliminated_[node] = i;
       }
+      if (friction_ && contact_of_[node] >= 0 && !contacts_[contact_of_[node]].slips) {
+        eliminated_[node] = all_directions;
+      }
     }
     std::vector<double> solution;
     const auto combine = [&](bool with_curvature) {
       assemble(state);
       if (with_curvature) add_curvature();
+      if (friction_) add_turning();
       matrix_.value = lanes_[0].value;
       solution = lanes_[0].right;
       for (std::size_t lane = 1; lane < lanes_.size(); ++lane) {
@@ -300,7 +337,14 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
       combine(false);
       definite = solver_.factorise(matrix_);
     }
-    if (definite) {
+    const SlipCoupling slip = slip_rows_ > 0 ? slip_coupling() : SlipCoupling{};
+    if (!definite && slip_rows_ > 0) {
+      Eigen::VectorXd::Map(solution.data(), unknowns_) -= slip.column * slip.guess_n;
+    }
+    if (definite && slip_rows_ > 0) {
+      solve_with_slip(
+          slip, [this](std::vector<double>& x) { solver_.solve(x); }, solution);
+    } else if (definite) {
       solver_.solve(solution);
     } else if (!CholmodSolver::solve_indefinite(matrix_, solution)) {
       report.trouble = "the tangent is singular";

@@ -31,11 +31,15 @@ struct AdvanceReport {
 template <int dim>
 class LoadPath {
  public:
-  /// The tool at a time; nothing when it does not reach the body at rest. Frictionless contact leaves no trace, so the
-  /// body is then at rest whatever came before.
+  /// The tool at a time; nothing when it does not reach the body at rest. Contact that has ended leaves no trace, so
+  /// the body is then at rest whatever came before.
   using ToolAt = std::function<std::optional<RigidTool<dim>>(double time_s)>;
+  using ToolAnywhere = std::function<RigidTool<dim>(double time_s)>;
 
-  LoadPath(ContactProblem<dim>& problem, ToolAt tool_at) : problem_(problem), tool_at_(std::move(tool_at)) {}
+  /// @param approach  the tool at any time, for friction: a node that comes to touch holds on where its way over the
+  ///                  tool began. Without it, that of the first contact begins at the nearest place of the tool
+  LoadPath(ContactProblem<dim>& problem, ToolAt tool_at, ToolAnywhere approach = {})
+      : problem_(problem), tool_at_(std::move(tool_at)), approach_(std::move(approach)) {}
 
   /// Smallest piece of the way between two instants, as a share.
   static constexpr double smallest_share = 1.0 / 64.0;
@@ -88,6 +92,9 @@ class LoadPath {
     if (!tool) return Solved<dim>{time_s, problem_.rest(), false};
     problem_.set_tool(*tool);
     Solved<dim> next{time_s, current.state, true};
+    if (problem_.has_friction() && !current.touching && approach_) {
+      problem_.note_places(approach_(current.time_s), next.state);
+    }
     if (previous && previous->touching && current.touching) {
       const double ratio = (time_s - current.time_s) / (current.time_s - previous->time_s);
       next.state.u_m += ratio * (current.state.u_m - previous->state.u_m);
@@ -102,6 +109,7 @@ class LoadPath {
 
   ContactProblem<dim>& problem_;
   ToolAt tool_at_;
+  ToolAnywhere approach_;
 };
 
 }  // namespace touchstone::reference

@@ -177,14 +177,21 @@ ModelChoice choose_model(const Scene& scene) {
   const auto always = [&](const scene::Mat3& map) {
     const std::vector<double> times_s = symmetry_times_s(scene);
     return std::all_of(times_s.begin(), times_s.end(), [&](double time_s) {
-      return maps_to_itself(scene.tool, scene::pose_at(scene.track, time_s), map);
+      const scene::Pose pose = scene::pose_at(scene.track, time_s);
+      return maps_to_itself(scene.tool, pose, map) &&
+             (!scene.contact.friction || moves_alike(scene::pose_at(scene.track, times_s.front()), pose, map));
     });
   };
+  // With friction a tool that turns about its own axis twists the body: no mirror image of itself.
+  const Vec3 across_x(-1.0, 1.0, 1.0), across_y(1.0, -1.0, 1.0);
   ModelChoice choice;
-  choice.mirror_x = mirrored(scene.body.inclusions, 0) && always(Vec3(-1.0, 1.0, 1.0).asDiagonal());
-  choice.mirror_y = mirrored(scene.body.inclusions, 1) && always(Vec3(1.0, -1.0, 1.0).asDiagonal());
+  choice.mirror_x = mirrored(scene.body.inclusions, 0) && always(across_x.asDiagonal());
+  choice.mirror_y = mirrored(scene.body.inclusions, 1) && always(across_y.asDiagonal());
   // A turn by one radian is no symmetry but of a body of revolution.
-  if (revolved(scene.body) && always(Eigen::AngleAxisd(1.0, Vec3::UnitZ()).toRotationMatrix())) choice.dim = 2;
+  if (revolved(scene.body) && always(Eigen::AngleAxisd(1.0, Vec3::UnitZ()).toRotationMatrix()) &&
+      (!scene.contact.friction || choice.mirror_x)) {
+    choice.dim = 2;
+  }
   choice.tool = tool_distance(scene.tool);
   expect_contacts(scene, choice);
   return choice;
@@ -201,7 +208,6 @@ std::vector<scene::Fault> unsupported_parts(const Scene& scene) {
          << smallest_fillet_share * scene.tool.radius_m << " m, found " << scene.tool.edge_radius_m << " m";
     add(text.str());
   }
-  if (scene.contact.friction) add("contact.friction: the reference solves frictionless contact only");
   if (!faults.empty()) return faults;
   if (scene.body.shape != BodyShape::box) {
     if (const std::string fault = round_fault(round_spec(scene.body)); !fault.empty()) {

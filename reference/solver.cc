@@ -30,6 +30,9 @@ using Clock = std::chrono::steady_clock;
 /// Raised with every change of method that moves a result; results of other versions are then not found.
 constexpr const char* method_version = "touchstone reference 2: Q2-P1disc u-p, primal-dual active set";
 
+/// Raised alike, for scenes with friction alone.
+constexpr const char* friction_method = "1";
+
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 std::string tool_text(const scene::Tool& tool) {
@@ -104,6 +107,10 @@ std::string identity_text(const Scene& scene) {
        << scene.reference.levels << " element "
        << (scene.reference.element_size_m ? std::to_string(*scene.reference.element_size_m * 1e9) + " nm" : "automatic")
        << '\n';
+  if (const auto& friction = scene.contact.friction) {
+    text << "friction " << friction_method << " K " << friction->K << " beta " << friction->beta << " mu_D "
+         << friction->mu_D << '\n';
+  }
   for (const double time_s : scene::instants_s(scene)) {
     const scene::Pose pose = scene::pose_at(scene.track, time_s);
     text << "instant " << time_s << " tool at " << pose.position_m.transpose() << " turned "
@@ -122,6 +129,34 @@ struct Step {
   double wall_s = 0.0;
   std::string linear_solver;
 };
+
+/// Friction's history, at the end of a record and only where there is one.
+template <int dim>
+void put_friction(const State<dim>& state, const Observation& seen, Record& record) {
+  record.put(state.slipping.data(), state.slipping.size());
+  record.put(state.sliding.data(), state.sliding.size());
+  record.put(state.on_tool_m.data(), static_cast<std::size_t>(state.on_tool_m.size()));
+  record.put(state.dissipated_j);
+  for (const ContactRegion& region : seen.regions) {
+    record.put(region.friction_n.data(), 3);
+    record.put(region.stuck_share);
+  }
+}
+
+template <int dim>
+void take_friction(Record& record, int nodes, State<dim>& state, Observation& seen) {
+  state.slipping.resize(nodes);
+  state.sliding.resize(nodes);
+  state.on_tool_m.resize(3, nodes);
+  record.take(state.slipping.data(), state.slipping.size());
+  record.take(state.sliding.data(), state.sliding.size());
+  record.take(state.on_tool_m.data(), static_cast<std::size_t>(state.on_tool_m.size()));
+  seen.dissipated_j = state.dissipated_j = record.take_double();
+  for (ContactRegion& region : seen.regions) {
+    record.take(region.friction_n.data(), 3);
+    region.stuck_share = record.take_double();
+  }
+}
 
 template <int dim>
 Record to_record(const Solved<dim>& solved, const Step& step) {
@@ -148,6 +183,7 @@ Record to_record(const Solved<dim>& solved, const Step& step) {
     record.put(region.area_m2);
   }
   record.put(std::string_view(step.linear_solver));
+  if (solved.state.on_tool_m.cols() > 0) put_friction(solved.state, step.seen, record);
   return record;
 }
 
@@ -183,6 +219,7 @@ std::optional<std::pair<Solved<dim>, Step>> from_record(Record record, const Mes
       region.area_m2 = record.take_double();
     }
     step.linear_solver = record.take_text();
+    if (!record.at_end()) take_friction(record, mesh.node_count(), solved.state, step.seen);
     if (!record.at_end()) return std::nullopt;
     return result;
   } catch (const std::out_of_range&) {
@@ -348,6 +385,7 @@ class Run {
         all_stored = false;
         if (!problem) {
           problem.emplace(mesh, scene_.body.material, scene_.reference.kinematics, choice_.mirror_x, choice_.mirror_y);
+          if (scene_.contact.friction) problem->set_friction(*scene_.contact.friction, scene_.fast.r_th_m);
         }
         if (!note.empty()) show({.level = level + 1, .instant = instant + 1, .instants = count(), .note = note});
         found = solve_instant(*problem, level, instant, before, current);
@@ -382,10 +420,14 @@ class Run {
                       .instants = count(),
                       .depth_m = depth_m(time_s),
                       .unknowns = problem.unknowns()};
-    LoadPath<dim> path(problem, [&](double t) -> std::optional<RigidTool<dim>> {
-      if (depth_m(t) <= 0.0) return std::nullopt;
-      return RigidTool<dim>(choice_.tool, scene::pose_at(scene_.track, t));
-    });
+    const auto tool = [&](double t) { return RigidTool<dim>(choice_.tool, scene::pose_at(scene_.track, t)); };
+    LoadPath<dim> path(
+        problem,
+        [&](double t) -> std::optional<RigidTool<dim>> {
+          if (depth_m(t) <= 0.0) return std::nullopt;
+          return tool(t);
+        },
+        tool);
     // A track that starts in contact is entered from rest, a moment before its first instant.
     const double lead_s = times_s_.size() > 1 ? times_s_[1] - times_s_[0] : 1.0;
     const Solved<dim> from = current ? *current : Solved<dim>{time_s - lead_s, problem.rest(), false};
@@ -474,7 +516,8 @@ class Run {
     const std::vector<double> depths_m = region_depths_m(scene_, *body_, record.tool, regions);
     for (const RegionIds::Place& place : ids.follow(regions, reach_m)) {
       const ContactRegion& region = regions[place.region];
-      record.regions.push_back({depths_m[place.region], region.force_n, region.torque_nm, region.area_m2, place.id});
+      record.regions.push_back({depths_m[place.region], region.force_n, region.torque_nm, region.area_m2, place.id,
+                                region.friction_n, scene_.contact.friction && region.stuck_share == 0.0});
     }
     // The tool may dip in between the nodes.
     if (regions.empty() && record.depth_m > 0.0) record.regions.push_back({.depth_m = record.depth_m});
@@ -547,7 +590,13 @@ scene::Plan plan(const Scene& scene) {
      << (scene.body.material.poissons_ratio == 0.5 ? "incompressible, the pressure keeps the volume"
                                                    : "the same mixed element serves every nu, so nothing locks");
   add("pressure unknowns", true, nu.str(), "eliminated cell by cell, none in the global matrix");
-  add("friction", false, "the scene has none");
+  if (scene.contact.friction) {
+    add("friction", true,
+        "|t| <= m N at every node, m of its region: stuck m F_n = K F_n^beta, sliding m = mu_D, but no more than stuck",
+        "every load step is an increment of the path");
+  } else {
+    add("friction", false, "the scene has none");
+  }
   add("several contact regions", !scene.tool.convex(),
       scene.tool.convex() ? "a convex tool touches a convex body once"
                           : "touching nodes nearer than fast.r_th_m, or of one cell face, are one region");

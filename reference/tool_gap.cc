@@ -61,6 +61,32 @@ Vec3 RigidTool<dim>::turned_into_tool_frame(const Point& direction) const {
 }
 
 template <int dim>
+typename RigidTool<dim>::Point RigidTool<dim>::in_world(const Vec3& p_T_m) const {
+  const Vec3 x_m = to_world_ * p_T_m + pose_.position_m;
+  if constexpr (dim == 3) {
+    return x_m;
+  } else {
+    return {x_m.x(), x_m.z()};
+  }
+}
+
+template <int dim>
+Vec3 RigidTool<dim>::entry_T_m(const Vec3& from_T_m, const Vec3& to_T_m) const {
+  Vec3 outside_m = from_T_m, inside_m = to_T_m, entry_m = to_T_m;
+  if (from_T_m.allFinite() && distance_->at(from_T_m).value_m > 0.0) {
+    for (int halving = 0; halving < 50; ++halving) {
+      entry_m = 0.5 * (outside_m + inside_m);
+      (distance_->at(entry_m).value_m > 0.0 ? outside_m : inside_m) = entry_m;
+    }
+  }
+  for (int step = 0; step < 4; ++step) {
+    const Gap<3> here = distance_->at(entry_m);
+    entry_m -= here.value_m / here.gradient.squaredNorm() * here.gradient;
+  }
+  return entry_m;
+}
+
+template <int dim>
 Gap<dim> RigidTool<dim>::gap(const Point& x_m) const {
   const Gap<3> in_tool = distance_->at(in_tool_frame(x_m));
   Eigen::Matrix<double, 3, dim> to_tool;

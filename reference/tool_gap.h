@@ -49,11 +49,18 @@ class RigidTool {
   /// passes the tool by has no gap.
   [[nodiscard]] Gap<dim> gap_along(const Point& X_m, const Point& N, const Point& u_m) const;
 
+  /// A point of the world as a point of the tool, and back [m].
+  [[nodiscard]] scene::Vec3 in_tool_frame(const Point& x_m) const;
+  [[nodiscard]] Point in_world(const scene::Vec3& p_T_m) const;
+
+  /// Where the straight way between two points of the tool frame enters the tool. Without an outside start, the place
+  /// of the surface next to the end.
+  [[nodiscard]] scene::Vec3 entry_T_m(const scene::Vec3& from_T_m, const scene::Vec3& to_T_m) const;
+
   [[nodiscard]] const scene::Vec3& mass_center_m() const noexcept { return pose_.position_m; }
   [[nodiscard]] double half_width_m() const { return distance_->half_width_m(); }
 
  private:
-  [[nodiscard]] scene::Vec3 in_tool_frame(const Point& x_m) const;
   [[nodiscard]] scene::Vec3 turned_into_tool_frame(const Point& direction) const;
 
   std::shared_ptr<const ToolDistance> distance_;

@@ -51,4 +51,11 @@ bool maps_to_itself(const scene::Tool& tool, const scene::Pose& pose, const scen
   });
 }
 
+bool moves_alike(const scene::Pose& from, const scene::Pose& to, const scene::Mat3& map) {
+  constexpr double same_turn = 1e-9, same_place_m = 1e-12;
+  const scene::Mat3 turn = (to.orientation * from.orientation.conjugate()).toRotationMatrix();
+  const Vec3 shift_m = to.position_m - turn * from.position_m;
+  return (map * turn * map.transpose() - turn).norm() <= same_turn && (map * shift_m - shift_m).norm() <= same_place_m;
+}
+
 }  // namespace touchstone::reference

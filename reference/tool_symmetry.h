@@ -10,4 +10,7 @@ namespace touchstone::reference {
 /// 0.15: which way its facets are cut into triangles makes less of a difference than the facets themselves.
 [[nodiscard]] bool maps_to_itself(const scene::Tool& tool, const scene::Pose& pose, const scene::Mat3& map);
 
+/// True when the motion from one pose to another is its own image under the map: what friction asks for besides.
+[[nodiscard]] bool moves_alike(const scene::Pose& from, const scene::Pose& to, const scene::Mat3& map);
+
 }  // namespace touchstone::reference
