@@ -165,7 +165,7 @@ Findings sneddon_ball(const Effort& effort) {
   Findings findings;
   for (const double nu : {0.3, 0.5}) {
     for (const double d_over_R : {0.05, 0.3, 0.6, 1.0}) {
-      if (effort.quick && (nu == 0.3) != (d_over_R == 0.05 || d_over_R == 0.6)) continue;
+      if (effort.quick && d_over_R != (nu == 0.3 ? 0.6 : 1.0)) continue;
       HalfSpaceProblem problem{{E_pa, nu}, ball_punch(R_m, d_over_R * R_m), d_over_R * R_m};
       const std::string at = "d/R = " + text_of(d_over_R) + ", nu = " + text_of(nu);
       const auto answers = on_meshes(problem, meshes, effort, at);
@@ -184,6 +184,7 @@ Findings hertz_finite(const Effort& effort) {
   const int meshes = meshes_for(effort);
   Findings findings;
   for (const double nu : {0.3, 0.5}) {
+    if (effort.quick && nu == 0.5) continue;
     constexpr double a_over_R = 0.03;
     HalfSpaceProblem problem{
         {E_pa, nu}, ball_punch(R_m, a_over_R * a_over_R * R_m), a_over_R * a_over_R * R_m, Kinematics::finite};
@@ -312,16 +313,16 @@ PressedBall press_half_ball(double radius_m, const Material& material, double de
     body.set_tool({choice.tool, {center_m, Eigen::Quaterniond::Identity()}});
   });
   const reference::Observation seen = body.observe(state);
-  return {seen.force_n.z(), seen.contact_radius_m, axis_pressure_pa(body, state)};
+  return {seen.force_n.z(), seen.contact_radius_m, axis_pressure_pa(body, state, kinematics)};
 }
 
 Findings pressed_ball(const Effort& effort) {
   constexpr double radius_m = 0.05, depth_m = 0.002;
   const Material material{20e9, 0.3};
   const double E_star = contact_modulus_pa(material.youngs_modulus_pa, material.poissons_ratio);
-  const int meshes = effort.quick ? 4 : 5;
-  // At the printed depth a/R is 0.2. Each third of the way to small load halves a/R, so that the rest of Hertz's limit
-  // is extrapolated with the three depths: a parabola in a/R through them, taken at zero.
+  const int meshes = effort.quick ? 3 : 4;
+  // At the printed depth a/R is 0.2, at the others half and a quarter of it. Hertz is the limit of small load: that of
+  // the parabola in a/R through the three.
   std::array<std::vector<double>, 3> peak, radius;
   Findings findings;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -369,7 +370,7 @@ Findings scene_problem(const Effort& effort) {
                  {1.0, {{0.0, 0.0, half_space_m + R_m - deepest_m}, Eigen::Quaterniond::Identity()}}};
   scene.reference.kinematics = Kinematics::small;
   scene.reference.levels = 1 + halving_level(effort.quick ? 3 : 4);
-  scene.compare.instants = 5;
+  scene.compare.instants = effort.quick ? 3 : 5;
   const auto store = std::filesystem::temp_directory_path() / ("touchstone-verify-" + std::to_string(::getpid()));
   reference::Options options;
   options.store = store;

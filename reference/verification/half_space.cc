@@ -116,9 +116,10 @@ HalfSpaceAnswer indent_half_space(const HalfSpaceProblem& problem) {
   const reference::AdvanceReport report = path.advance(nullptr, rest, 1.0, end, {}, {});
   if (!report.converged) throw reference::NotConverged("tool on half space: " + report.last.trouble);
   const reference::Observation seen = body.observe(end.state);
-  HalfSpaceAnswer answer{seen.force_n.z(),     seen.contact_radius_m,   axis_pressure_pa(body, end.state),
-                         seen.equilibrium_rel, seen.node_penetration_m, {},
-                         body.unknowns(),      report.newton_iterations};
+  HalfSpaceAnswer answer{
+      seen.force_n.z(),     seen.contact_radius_m,   axis_pressure_pa(body, end.state, problem.kinematics),
+      seen.equilibrium_rel, seen.node_penetration_m, {},
+      body.unknowns(),      report.newton_iterations};
   if (problem.radii_m.size() > 0) {
     Eigen::Matrix3Xd points_m = Eigen::Matrix3Xd::Zero(3, problem.radii_m.size());
     points_m.row(0) = problem.radii_m.transpose();

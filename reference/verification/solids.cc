@@ -135,10 +135,11 @@ State<dim> solve_in_steps(ContactProblem<dim>& body, int steps, const std::strin
   return state;
 }
 
-double axis_pressure_pa(const ContactProblem<2>& body, const State<2>& state) {
+double axis_pressure_pa(const ContactProblem<2>& body, const State<2>& state, scene::Kinematics kinematics) {
   const Mesh<2>& mesh = body.mesh();
   const Nodal<2> F_n = body.internal_forces(state);
-  const Nodal<2> x_m = mesh.points_m + state.u_m;
+  Nodal<2> x_m = mesh.points_m;
+  if (kinematics == scene::Kinematics::finite) x_m += state.u_m;
   for (const auto& face : mesh.faces) {
     const int middle = face.nodes[1];
     const double near_m = std::min(mesh.points_m(0, face.nodes[0]), mesh.points_m(0, face.nodes[2]));

@@ -59,8 +59,9 @@ template <int dim>
                                                    const std::function<void(double share)>& set);
 
 /// Contact pressure on the axis of a body of revolution: the force on the middle node of the touching face there, over
-/// that node's share of the deformed area [Pa]; not a number when nothing touches there.
-[[nodiscard]] double axis_pressure_pa(const reference::ContactProblem<2>& body, const reference::State<2>& state);
+/// that node's share of the area, deformed in finite strain [Pa]; not a number when nothing touches there.
+[[nodiscard]] double axis_pressure_pa(const reference::ContactProblem<2>& body, const reference::State<2>& state,
+                                      scene::Kinematics kinematics);
 
 /// How far a state of uniform strain is off when u = H X is prescribed on the boundary.
 struct PatchDeviation {

@@ -2,6 +2,7 @@
 #include "reference/contact_problem.h"
 #include "reference/model_choice.h"
 #include "reference/round_mesh.h"
+#include "reference/verification/closed_forms.h"
 
 #include <gtest/gtest.h>
 
@@ -126,6 +127,31 @@ TEST(Bodies, PunchedCylinderInSpaceAgreesWithItsMeridianPlane) {
   const double plane_n = last_force_n<2>(scene, choice, 2);
   EXPECT_GT(plane_n, 10.0);
   EXPECT_NEAR(last_force_n<3>(scene, choice, 0) / plane_n, 1.0, 0.02);
+}
+
+/// In small strain the gap is taken along the body's own normal, which must be outward on every face.
+TEST(Bodies, SmallStrainOnASphereIsTheLimitOfFiniteStrain) {
+  constexpr double depth_m = 2e-5, top_m = 0.06;
+  const RoundSpec whole = round_spec(sphere());
+  RoundSpec quarter = whole;
+  quarter.symmetric_x = quarter.symmetric_y = true;
+  const auto force_n = [&]<int dim>(const Mesh<dim>& mesh, scene::Kinematics kinematics) {
+    ContactProblem<dim> body(mesh, {3e6, 0.5}, kinematics, true, true, 1);
+    State<dim> state = body.rest();
+    body.set_tool(ball_tool<dim>(ball_m, (top_m + ball_m - depth_m) * Eigen::Matrix<double, dim, 1>::Unit(dim - 1)));
+    const NewtonReport report = body.solve(state);
+    EXPECT_TRUE(report.converged) << report.trouble;
+    return body.observe(state).force_n.z();
+  };
+  const Mesh<2> plane = round_mesh<2>(whole, fine_at<2>(top_m, 0.00005));
+  const double small_n = force_n(plane, scene::Kinematics::small);
+  EXPECT_NEAR(small_n / force_n(plane, scene::Kinematics::finite), 1.0, 0.01);
+  const Mesh<3> space = round_mesh<3>(quarter, fine_at<3>(top_m, 0.0015));
+  EXPECT_NEAR(force_n(space, scene::Kinematics::small) / force_n(space, scene::Kinematics::finite), 1.0, 0.02);
+  // Hertz with the curvatures added; the ball's other side gives way by a/R of that.
+  const double R_m = 1.0 / (1.0 / ball_m + 1.0 / 0.03);
+  EXPECT_NEAR(small_n / verification::hertz(verification::contact_modulus_pa(3e6, 0.5), R_m, depth_m).force_n, 1.0,
+              0.02);
 }
 
 /// The same ellipsoid with its longer axis along x and along y: the mesh has no preferred side.

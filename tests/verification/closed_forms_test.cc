@@ -34,6 +34,37 @@ TEST(ClosedForms, RoundedPunchIsABallWithoutFlatAndAFlatPunchWithoutFillet) {
   EXPECT_NEAR(sharp.force_n / (2.0 * sharp.depth_m), 1.0, 1e-6);
 }
 
+TEST(ClosedForms, FlatPunchSettlesTheSurfaceByItsDepthAtTheRim) {
+  EXPECT_NEAR(flat_punch_settlement_m(2.0, 0.1, 2.0), 0.1, 1e-15);
+  EXPECT_NEAR(flat_punch_settlement_m(2.0, 0.1, 4.0), 0.1 / 3.0, 1e-15);
+  EXPECT_DOUBLE_EQ(flat_punch_force_n(3.0, 2.0, 0.1), 1.2);
+}
+
+TEST(ClosedForms, RoundedConeIsACone) {
+  const double half_angle = 1.2;
+  double depth_m = 0.0;
+  const Indentation blunt = rounded_cone(1.0, half_angle, 1e-5, 1.0, depth_m);
+  const Indentation sharp = cone(1.0, half_angle, depth_m);
+  EXPECT_NEAR(sharp.contact_radius_m, 1.0, 1e-5);
+  EXPECT_NEAR(blunt.force_n / sharp.force_n, 1.0, 1e-5);
+  // Wholly inside its ball the cone is a ball.
+  EXPECT_NEAR(rounded_cone(1.0, half_angle, 4.0, 1.0, depth_m).force_n, sneddon_force_n(1.0, 4.0, 1.0), 1e-12);
+  EXPECT_NEAR(depth_m, sneddon_depth_m(4.0, 1.0), 1e-12);
+}
+
+TEST(ClosedForms, CompressibleBarBecomesIncompressible) {
+  for (const double stretch : {0.7, 1.5}) {
+    const scene::Material rubber{3.0, 0.5}, nearly{3.0, 0.499999};
+    EXPECT_NEAR(neo_hookean_bar_pa(nearly, stretch) / neo_hookean_bar_pa(rubber, stretch), 1.0, 1e-5);
+  }
+  const scene::Material foam{3.0, 0.0};
+  EXPECT_NEAR(neo_hookean_bar_pa(foam, 1.0 + 1e-6) / 1e-6, 3.0, 1e-4);
+}
+
+TEST(ClosedForms, DisplacementOfSsnv187) {
+  EXPECT_NEAR(plane_strain_stretch(2.0 * 1.2345, -0.876) - 1.0, -0.078180, 5e-7);
+}
+
 TEST(ClosedForms, CantileverOfOneMaterial) {
   EXPECT_DOUBLE_EQ(cantilever_tip_m(3.0, 2.0, 4.0), 3.0 * 8.0 / (3.0 * 4.0));
   EXPECT_NEAR(cantilever_tip_m(3.0, 2.0, 4.0, 4.0, 0.5, 1.0), cantilever_tip_m(3.0, 2.0, 4.0), 1e-15);

@@ -4,7 +4,7 @@
 #include "reference/mesh.h"
 #include "reference/shifted_ball.h"
 #include "reference/tool_distance.h"
-#include "verification/closed_forms.h"
+#include "reference/verification/closed_forms.h"
 
 #include <gtest/gtest.h>
 
