@@ -2,8 +2,6 @@
 #include "reference/contact_problem.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 
 namespace touchstone::reference {
@@ -204,18 +202,6 @@ double ContactProblem<dim>::update_slipping(State<dim>& state, const std::vector
     contact_of_[node] = static_cast<int>(contacts_.size());
     contacts_.push_back(contact);
     slips_.push_back(slip);
-  }
-  if (getenv("FRDEBUG")) {
-    int on = 0, off = 0, tn = 0, tf = 0, count = 0;
-    for (int node : contact_nodes_) {
-      on += next[node] && !state.slipping[node];
-      off += !next[node] && state.slipping[node];
-      tn += state.touching[node] && !before[node];
-      tf += !state.touching[node] && before[node];
-      count += state.touching[node];
-    }
-    fprintf(stderr, "DBG it %d touching %d (+%d -%d) slips %d (+%d -%d) unplaced %g\n", iteration, count, tn, tf,
-            slip_rows_, on, off, unplaced_m);
   }
   changed = changed || next != state.slipping;
   state.slipping = std::move(next);

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
+#include <optional>
 
 namespace touchstone::reference {
 namespace {
@@ -201,13 +201,46 @@ TEST(Friction, AStuckBallIsStifferByMossakovskiisFactor) {
   for (const double nu : {0.0, 0.3}) {
     const Pressed stuck = press(nu, 1e3, 40);
     const double C = (1.0 - nu) * std::log(3.0 - 4.0 * nu) / (1.0 - 2.0 * nu);
-    const double a_m = stuck.seen.contact_radius_m, d_m = 1e-5;
-    EXPECT_NEAR(stuck.seen.force_n.z() / (4.0 / 3.0 * verification::contact_modulus_pa(3e6, nu) * a_m * d_m), C,
-                0.005 * C);
-    RecordProperty(
-        "C" + std::to_string(nu),
-        std::to_string(stuck.seen.force_n.z() / (4.0 / 3.0 * verification::contact_modulus_pa(3e6, nu) * a_m * d_m)));
+    // The contact radius moves by whole nodes, which is worth 1 %.
+    const double a_m = stuck.seen.contact_radius_m, d_m = 1e-5, E_star_pa = verification::contact_modulus_pa(3e6, nu);
+    const double found = stuck.seen.force_n.z() / (4.0 / 3.0 * E_star_pa * a_m * d_m);
+    EXPECT_NEAR(found, C, 0.012 * C);
+    RecordProperty("C at nu " + std::to_string(nu), std::to_string(found));
   }
+}
+
+/// Force on a ball of R = 10 mm pressed 5 mm into a cylinder of 50 x 50 mm of incompressible rubber.
+double deep_press_n(std::optional<double> coefficient) {
+  CylinderSpec spec{0.05, 0.05, {}};
+  spec.grading.growth = 0.5;
+  spec.grading.largest_m = 0.0125;
+  spec.grading.discs.push_back({{0.0, 0.05}, {0.0, 1.0}, 0.008, 0.0008});
+  ContactProblem<2> body(cylinder_mesh(spec), {3e6, 0.5}, scene::Kinematics::finite, false, false, 1);
+  if (coefficient) body.set_friction({*coefficient, 1.0, *coefficient}, 0.0);
+  State<2> state = body.rest();
+  if (coefficient) body.note_places(ball_tool<2>(0.01, {0.0, 0.06}), state);
+  constexpr int steps = 20;
+  for (int step = 1; step <= steps; ++step) {
+    body.set_tool(ball_tool<2>(0.01, {0.0, 0.06 - 0.005 * step / steps}));
+    const NewtonReport report = body.solve(state);
+    EXPECT_TRUE(report.converged) << report.trouble;
+    if (!coefficient) continue;
+    for (const NodeContact<2>& contact : body.node_contacts(state)) {
+      EXPECT_LE(contact.friction_n.norm(), *coefficient * contact.normal_n + 1e-6);
+    }
+  }
+  return body.observe(state).force_n.z();
+}
+
+TEST(Friction, HoldsRubberUnderADeepBall) {
+  // An independent program with the penalty method found 191.18 N without friction, 194.2 N with mu = 0.3 and the
+  // stiffest penalty that converged, and 194.6 N stuck.
+  const double without_n = deep_press_n(std::nullopt), some_n = deep_press_n(0.3), stuck_n = deep_press_n(10.0);
+  EXPECT_NEAR(without_n, 191.18, 0.002 * 191.18);
+  EXPECT_NEAR(some_n / without_n, 1.016, 0.003);
+  EXPECT_NEAR(stuck_n / without_n, 1.018, 0.003);
+  EXPECT_GE(stuck_n, some_n);
+  RecordProperty("forces", std::to_string(without_n) + " " + std::to_string(some_n) + " " + std::to_string(stuck_n));
 }
 
 TEST(Friction, ConvergesWithTheLoadStep) {
@@ -215,7 +248,6 @@ TEST(Friction, ConvergesWithTheLoadStep) {
   for (const int steps : {3, 6, 12, 24}) {
     const Pressed pressed = press(0.0, 0.2, steps);
     forces_n.push_back(pressed.seen.force_n.z());
-    printf("STEPS %d F %.10g a %.10g W %.10g it %d stuck %g\n", steps, forces_n.back(), pressed.seen.contact_radius_m, pressed.seen.dissipated_j, pressed.iterations, pressed.seen.regions[0].stuck_share);
   }
   for (std::size_t i = 0; i < forces_n.size(); ++i)
     RecordProperty("n" + std::to_string(i), std::to_string(forces_n[i]));
@@ -242,7 +274,7 @@ TEST(Friction, CattaneoAndMindlin) {
     const double force = step.tangential_n / (problem.friction * step.normal_n);
     const double exact = mindlin_force(problem, step.shift_m);
     EXPECT_NEAR(force, exact, 0.015) << step.shift_m;
-    EXPECT_NEAR(stick_radius_of_share(step.stuck_share), mindlin_stick_radius(exact), 0.05) << step.shift_m;
+    EXPECT_NEAR(stick_radius_of_share(step.stuck_share), mindlin_stick_radius(exact), 0.025) << step.shift_m;
     RecordProperty("s" + std::to_string(step.shift_m * 1e9),
                    std::to_string(force) + " " + std::to_string(exact) + " c/a " +
                        std::to_string(stick_radius_of_share(step.stuck_share)) + " " +

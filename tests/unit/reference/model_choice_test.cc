@@ -36,6 +36,26 @@ TEST(ModelChoice, UsesEverySymmetryOfTheWholeTrack) {
             "full 3D u-p small strain");
 }
 
+TEST(ModelChoice, WithFrictionTheMotionCountsForSymmetry) {
+  scene::Scene scene = cube({0, 0, .07}, {0, 0, .068});
+  scene.contact.friction = scene::Friction{0.3, 1.0, 0.3};
+  EXPECT_EQ(choose_model(scene).name(scene::Kinematics::finite), "quarter 3D u-p finite strain");
+  scene.track[1].pose.orientation = turned(0.3, scene::Vec3::UnitY());  // rolls along x
+  EXPECT_EQ(choose_model(scene).name(scene::Kinematics::finite), "half 3D u-p finite strain");
+  EXPECT_TRUE(choose_model(scene).mirror_y);
+  scene.track[1].pose.orientation = turned(0.3, scene::Vec3::UnitZ());  // twists
+  EXPECT_EQ(choose_model(scene).name(scene::Kinematics::finite), "full 3D u-p finite strain");
+
+  scene.body.shape = scene::BodyShape::ellipsoid;
+  scene.body.semi_axes_m = {0.03, 0.03, 0.03};
+  EXPECT_EQ(choose_model(scene).dim, 3);
+  scene.track[1].pose.orientation.setIdentity();
+  EXPECT_EQ(choose_model(scene).dim, 2);
+  scene.track[1].pose.orientation = turned(0.3, scene::Vec3::UnitZ());
+  scene.contact.friction.reset();
+  EXPECT_EQ(choose_model(scene).dim, 2);
+}
+
 TEST(ModelChoice, InclusionsCountForSymmetry) {
   scene::Scene scene = cube({0, 0, .07}, {0, 0, .068});
   scene::Inclusion ball;

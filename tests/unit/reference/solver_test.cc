@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <unistd.h>
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -52,15 +53,22 @@ class SolverTest : public testing::Test {
       EXPECT_EQ(a.instants[i].force_n(), b.instants[i].force_n());
       EXPECT_EQ(a.instants[i].displacement_m, b.instants[i].displacement_m);
       EXPECT_EQ(a.levels[0].force_n[i], b.levels[0].force_n[i]);
+      ASSERT_EQ(a.instants[i].regions.size(), b.instants[i].regions.size());
+      for (std::size_t r = 0; r < a.instants[i].regions.size(); ++r) {
+        EXPECT_EQ(a.instants[i].regions[r].friction_n, b.instants[i].regions[r].friction_n);
+        EXPECT_EQ(a.instants[i].regions[r].sliding, b.instants[i].regions[r].sliding);
+      }
     }
   }
+
+  void expect_resumed_bit_for_bit();
 
   std::filesystem::path root_;
   scene::Scene scene_;
   Eigen::Matrix3Xd points_m_;
 };
 
-TEST_F(SolverTest, InterruptedRunResumesBitForBit) {
+void SolverTest::expect_resumed_bit_for_bit() {
   const Result whole = run("whole");
   std::atomic<bool> stop = false;
   int finished = 0, first_resumed = 0;
@@ -79,6 +87,40 @@ TEST_F(SolverTest, InterruptedRunResumesBitForBit) {
   const Result resumed = run("parts", resume);
   EXPECT_EQ(first_resumed, 5);
   expect_identical(whole, resumed);
+}
+
+TEST_F(SolverTest, InterruptedRunResumesBitForBit) { expect_resumed_bit_for_bit(); }
+
+TEST_F(SolverTest, InterruptedFrictionResumesBitForBit) {
+  scene_.contact.friction = scene::Friction{0.5, 0.8, 0.2};
+  expect_resumed_bit_for_bit();
+}
+
+TEST_F(SolverTest, FrictionRemembersThePress) {
+  scene_.body.material.poissons_ratio = 0.0;  // whose surface moves inwards under the ball, where friction holds it
+  const Result without = run("without");
+  scene_.contact.friction = scene::Friction{0.5, 0.8, 0.2};
+  const Result with = run("with");
+  EXPECT_NE(with.key, without.key);
+  const std::size_t last = with.instants.size() - 1;
+  for (std::size_t i = 1; i < last; ++i) {
+    ASSERT_EQ(with.instants[i].regions.size(), 1u);
+    const scene::RegionRecord& region = with.instants[i].regions[0];
+    EXPECT_LT(region.friction_n.norm(), 0.5 * std::pow(region.force_n.norm(), 0.8));
+    EXPECT_LT(with.equilibrium_rel[i], 1e-6);
+  }
+  // Pressed, friction holds the ball up; taken off, it holds it down.
+  for (std::size_t i = 2; i <= last / 2; ++i) {
+    const double gain = with.instants[i].force_n().z() / without.instants[i].force_n().z();
+    EXPECT_GT(gain, 1.0) << i;
+    EXPECT_LT(gain, 1.1) << i;
+    if (i == last / 2) continue;
+    EXPECT_LT(with.instants[last - i].force_n().z(), with.instants[i].force_n().z()) << i;
+  }
+  EXPECT_EQ(with.instants[last].displacement_m.cwiseAbs().maxCoeff(), 0.0);
+  const scene::Plan lines = plan(scene_);
+  EXPECT_TRUE(
+      std::any_of(lines.begin(), lines.end(), [](const auto& l) { return l.part == "friction" && l.modelled; }));
 }
 
 TEST_F(SolverTest, SecondRunAnswersFromTheStore) {

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -223,6 +225,20 @@ TEST(ToolSymmetry, IsTheShapesOwn) {
     tool.mass_center_m = Vec3(0.01, 0.0, 0.0);
     EXPECT_FALSE(maps_to_itself(tool, upright, mirror));
   }
+}
+
+TEST(RigidTool, IsEnteredWhereAWayCrossesItsSurface) {
+  const double R_m = 0.01;
+  const RigidTool<3> ball = ball_tool<3>(R_m, {0.02, -0.01, 0.03});
+  const scene::Vec3 outside_m(0.0012, 0.0007, -0.0111), inside_m(0.0025, -0.0003, -0.0081);
+  const scene::Vec3 entry_m = ball.entry_T_m(outside_m, inside_m), way_m = inside_m - outside_m;
+  EXPECT_NEAR(entry_m.norm(), R_m, 1e-12 * R_m);
+  EXPECT_LT((entry_m - outside_m).cross(way_m).norm(), 1e-12 * R_m * way_m.norm());
+  EXPECT_GT((entry_m - outside_m).dot(way_m), 0.0);
+  EXPECT_GT((inside_m - entry_m).dot(way_m), 0.0);
+  const scene::Vec3 nowhere = scene::Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_LT((ball.entry_T_m(nowhere, inside_m) - R_m * inside_m.normalized()).norm(), 1e-12 * R_m);
+  EXPECT_LT((ball.in_tool_frame(ball.in_world(inside_m)) - inside_m).norm(), 1e-16);
 }
 
 }  // namespace
