@@ -57,9 +57,9 @@ int main(int argc, char** argv) {
         ->excludes(levels);
     command
         ->add_option("--memory-gib", reference.memory_gib, "refine no further than fits (default 80 % of the memory)")
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Range(0.1, 1e6));
     command->add_option("--minutes", reference.minutes, "refine no further than can be done in this time")
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Range(0.01, 1e6));
   };
   add("plan", "what each side will model for a scene, what it leaves out and why", compare::plan);
   add_with_folder("fast", "the real-time pipeline over the scene's track in virtual time", compare::run_fast);

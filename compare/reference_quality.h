@@ -28,7 +28,8 @@ struct ReferenceQuality {
 /// The reference.* keys of summary.json that need no other side.
 [[nodiscard]] scene::Figures reference_figures(const reference::Result& result, const ReferenceQuality& quality);
 
-/// The same per instant, as columns of curve.csv: uncertainty, penetration, equilibrium, volume, the force on every level.
+/// The same per instant, as columns of curve.csv: uncertainty, penetration, equilibrium, volume, the force on every
+/// level.
 [[nodiscard]] std::vector<scene::Column> reference_quality_columns(const reference::Result& result,
                                                                    const std::string& prefix);
 

@@ -116,9 +116,9 @@ std::string reference_text(const reference::Result& result) {
       result.levels.back().unknowns);
   for (std::size_t level = 0; level < result.levels.size(); ++level) {
     const reference::LevelRecord& mesh = result.levels[level];
-    text += fmt::format("  mesh {}: {:.3g} mm, {} unknowns, {} Newton iterations, {:.3g} s, {:.6g} N\n", level + 1,
-                        1e3 * mesh.element_size_m, mesh.unknowns, mesh.newton_iterations, mesh.wall_s,
-                        mesh.force_n[at]);
+    text +=
+        fmt::format("  mesh {}: {:.3g} mm, {} unknowns, {} Newton iterations, {:.3g} s, {:.6g} N\n", level + 1,
+                    1e3 * mesh.element_size_m, mesh.unknowns, mesh.newton_iterations, mesh.wall_s, mesh.force_n[at]);
   }
   if (result.force_uncertainty_rel && result.shape_uncertainty_rel) {
     text += fmt::format("Uncertainty: {:.2g} of the force, {:.2g} of the displacement, from {} meshes\n",
