@@ -31,6 +31,17 @@ Json read_json(const std::filesystem::path& path) {
   return json.is_object() ? json : Json();
 }
 
+/// A text in it; empty when there is none.
+std::string text_in(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+double number_in(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_number() ? found->get<double>() : 0.0;
+}
+
 std::string host_name() {
   std::array<char, 256> name{};
   ::gethostname(name.data(), name.size() - 1);
@@ -73,9 +84,9 @@ class LastLine : public std::streambuf {
 };
 
 bool is_done(const StudyManifest& manifest, const ManifestCase& one, const Json& done) {
-  if (done.is_null() || done.value("id", "") != one.id) return false;
+  if (done.is_null() || text_in(done, "id") != one.id) return false;
   const std::optional<std::string> summary = scene::read_file(manifest.result_folder(one) / "summary.json");
-  return summary && done.value("summary", "") == scene::hash_text(*summary);
+  return summary && text_in(done, "summary") == scene::hash_text(*summary);
 }
 
 /// Runs the verb; every way of failing becomes an exit code and a message.
@@ -149,16 +160,16 @@ const char* state_name(CaseState state) {
 CaseStatus case_status(const StudyManifest& manifest, const ManifestCase& one) {
   const std::filesystem::path folder = manifest.result_folder(one);
   if (const Json done = read_json(folder / "done.json"); is_done(manifest, one, done)) {
-    return {CaseState::done, "", done.value("version", "") + " " + done.value("commit", ""), done.value("wall_s", 0.0)};
+    return {CaseState::done, "", text_in(done, "version") + " " + text_in(done, "commit"), number_in(done, "wall_s")};
   }
   const bool running = scene::FolderLock::held(folder);
   const Json failed = read_json(folder / "failed.json");
-  if (!running && !failed.is_null()) return {CaseState::failed, failed.value("why", ""), "", 0.0};
+  if (!running && !failed.is_null()) return {CaseState::failed, text_in(failed, "why"), "", 0.0};
   const Json attempt = read_json(folder / "attempt.json");
   if (attempt.is_null()) return {running ? CaseState::running : CaseState::waiting, "", "", 0.0};
   return {running ? CaseState::running : CaseState::interrupted,
-          fmt::format("begun {} on {} by process {}", attempt.value("began", "?"), attempt.value("host", "?"),
-                      attempt.value("process", 0)),
+          fmt::format("begun {} on {} by process {}", text_in(attempt, "began"), text_in(attempt, "host"),
+                      number_in(attempt, "process")),
           "", 0.0};
 }
 
@@ -207,7 +218,7 @@ int run_cases(const StudyManifest& manifest, const CaseRange& range, const CaseR
     if (case_status(manifest, one).state == CaseState::done) continue;
     const Json failed = failure(one);
     const bool tried = !failed.is_null() && failed != failed_before;
-    const int code = tried ? failed.value("exit_code", 1) : run_case(manifest, one, run, say);
+    const int code = tried ? static_cast<int>(number_in(failed, "exit_code")) : run_case(manifest, one, run, say);
     if (code == fast::interrupted) return code;
     if (code != fast::done) worst = single ? code : fast::answer_is_no;
   }

@@ -151,6 +151,27 @@ TEST(FastVerb, LeavesTheResultFolderOfTheContract) {
   }
 }
 
+TEST(FastVerb, AFullDiskIsOneMessageAndTheNextRunGoesOn) {
+  for (const std::string& verb : verbs()) {
+    if (!verb.ends_with(" fast")) continue;
+    const std::filesystem::path out = std::filesystem::path(testing::TempDir()) / "fast-verb-full";
+    std::filesystem::remove_all(out);
+    const std::string command = verb + " " + scene + " --quiet --out " + out.string();
+    // Files of more than 4 KiB do not fit.
+    const Answer full = run("trap '' XFSZ; ulimit -f 8; " + command);
+    EXPECT_EQ(full.exit_code, 2) << full.output;
+    EXPECT_THAT(full.output, HasSubstr("cannot write: File too large [" + out.string()));
+    EXPECT_EQ(std::count(full.output.begin(), full.output.end(), '\n'), 1) << full.output;
+    for (const auto& entry : std::filesystem::directory_iterator(out)) {
+      EXPECT_THAT(entry.path().string(), testing::Not(HasSubstr(".part-")));
+    }
+    EXPECT_FALSE(std::filesystem::exists(out / "curve.csv"));
+    EXPECT_EQ(run(command).exit_code, 0);
+    EXPECT_TRUE(std::filesystem::exists(out / "curve.csv"));
+    std::filesystem::remove_all(out);
+  }
+}
+
 /// The executable that solves references, or nothing in a build without.
 std::string full_program() {
   for (const std::string& verb : verbs()) {

@@ -164,6 +164,9 @@ TEST_F(StudyFolderTest, WhatIsDoneIsNotRunAgain) {
   EXPECT_THAT(states(more), ElementsAre("waiting", "done", "interrupted", "done"));
   EXPECT_EQ(run_all(more, counting_run()), fast::done);
   EXPECT_EQ(ledger().at(more.cases[2].id), 2);
+  // Nor is one whose mark somebody wrote over.
+  std::ofstream(more.result_folder(more.cases[2]) / "done.json") << "{\"id\": 3, \"summary\": []}";
+  EXPECT_THAT(states(more), ElementsAre("done", "done", "interrupted", "done"));
 }
 
 TEST_F(StudyFolderTest, AnIndexOutsideTheStudyIsRefused) {
