@@ -1,5 +1,6 @@
 // From displacements to nodal forces and the global matrix.
 #include "reference/contact_problem.h"
+#include "reference/contact_shares.h"
 
 #include <algorithm>
 #include <thread>
@@ -26,7 +27,9 @@ template <int dim>
 void ContactProblem<dim>::build_pattern() {
   std::vector<std::vector<int>> neighbours(mesh_.node_count());
   std::vector<int> together;
-  for (const int c : cells_) {
+  const std::vector<char> contact_cells = cells_of_nodes(mesh_, contact_nodes_);
+  for (int c = 0; c < mesh_.cell_count(); ++c) {
+    if (rank_of_cell_[c] != ranks::own() && !(ranks::first() && contact_cells[c])) continue;
     together.clear();
     for (const int node : mesh_.cells[c]) {
       if (hanging_[node] < 0) {
@@ -233,7 +236,7 @@ void ContactProblem<dim>::scatter_plain(const std::array<int, Mesh<dim>::nodes_p
 
 template <int dim>
 void ContactProblem<dim>::assemble(const State<dim>& state) {
-  in_lanes(threads_, static_cast<int>(cells_.size()), [&](int number, int begin, int end) {
+  in_lanes(threads_, static_cast<int>(tangent_cells_.size()), [&](int number, int begin, int end) {
     Lane& lane = lanes_[number];
     std::fill(lane.value.begin(), lane.value.end(), 0.0);
     std::fill(lane.right.begin(), lane.right.end(), 0.0);
@@ -243,7 +246,7 @@ void ContactProblem<dim>::assemble(const State<dim>& state) {
     typename Element<dim>::Nodal X, u;
     std::vector<std::pair<int, int>> places(CellResult<dim>::unknowns);
     for (int k = begin; k < end; ++k) {
-      const int c = cells_[k];
+      const int c = tangent_cells_[k];
       const auto& cell = mesh_.cells[c];
       bool plain = true;
       for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
@@ -326,6 +329,13 @@ Eigen::VectorXd ContactProblem<dim>::assemble_tangent(const State<dim>& state, b
   return jointly(Order::assemble, [&] {
     send(state);
     ranks::send(step_offset_m_);
+    std::vector<int> eliminated;
+    for (const int node : contact_nodes_) {
+      if (eliminated_[node] >= 0) eliminated.push_back(node);
+    }
+    const std::vector<char> in_contact = cells_of_nodes(mesh_, eliminated);
+    ranks::send(in_contact);
+    take_cells(in_contact);
     assemble(state);
     if (with_curvature) add_curvature();
     if (friction_) add_turning();
@@ -345,13 +355,14 @@ template <int dim>
 typename ContactProblem<dim>::Pressures ContactProblem<dim>::pressure_change_of_share(const Nodal& du_m) const {
   Pressures dp_pa = Pressures::Zero(dim + 1, mesh_.cell_count());
   typename CellResult<dim>::Vector du_cell_m;
-  for (std::size_t k = 0; k < cells_.size(); ++k) {
+  for (std::size_t k = 0; k < tangent_cells_.size(); ++k) {
     for (int i = 0; i < dim; ++i) {
       for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
-        du_cell_m[i * Mesh<dim>::nodes_per_cell + a] = du_m(i, mesh_.cells[cells_[k]][a]);
+        du_cell_m[i * Mesh<dim>::nodes_per_cell + a] = du_m(i, mesh_.cells[tangent_cells_[k]][a]);
       }
     }
-    dp_pa.col(cells_[k]) = pressure_offset_pa_.col(static_cast<Eigen::Index>(k)) + pressure_gain_[k] * du_cell_m;
+    dp_pa.col(tangent_cells_[k]) =
+        pressure_offset_pa_.col(static_cast<Eigen::Index>(k)) + pressure_gain_[k] * du_cell_m;
   }
   ranks::sum_on_first(dp_pa.data(), static_cast<std::size_t>(dp_pa.size()));
   return dp_pa;

@@ -116,9 +116,10 @@ ContactProblem<dim>::ContactProblem(Mesh<dim> mesh, const scene::Material& mater
     for (int i = 0; i < dim; ++i) all_fixed = all_fixed && prescribed_[node * dim + i];
     return hanging_[node] >= 0 || all_fixed;
   });
-  cells_ = cells_of_rank(mesh_, cells_of_nodes(mesh_, contact_nodes_), ranks::own(), ranks::count());
-  pressure_gain_.resize(cells_.size());
-  pressure_offset_pa_.resize(dim + 1, static_cast<Eigen::Index>(cells_.size()));
+  rank_of_cell_ = ranks_of_cells(mesh_, ranks::count());
+  for (int c = 0; c < mesh_.cell_count(); ++c) {
+    if (rank_of_cell_[c] == ranks::own()) cells_.push_back(c);
+  }
   number_unknowns();
 }
 

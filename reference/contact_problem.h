@@ -96,8 +96,8 @@ struct Observation {
 };
 
 /// The discrete problem. Not thread-safe; uses `threads` threads inside. Of several ranks the first one makes and uses
-/// it; each has a share of the cells and of the matrix. Every cell that contact can reach is the first one's, so that
-/// all of contact is.
+/// it; each has a share of the cells and of the matrix. The tangent of a cell that contact acts on is made by the first
+/// one wherever the cell belongs, so that contact is known to no other.
 template <int dim>
 class ContactProblem : public ranks::Part {
  public:
@@ -259,6 +259,8 @@ class ContactProblem : public ranks::Part {
   }
   static void send(const State<dim>& state);
   [[nodiscard]] State<dim> receive_state() const;
+  /// Which cells' tangents are this rank's. @param in_contact per cell
+  void take_cells(const std::vector<char>& in_contact);
 
   Mesh<dim> mesh_;
   scene::Material material_;
@@ -286,7 +288,8 @@ class ContactProblem : public ranks::Part {
   std::vector<int> unknown_;  // number or -1
   int unknowns_ = 0;
 
-  std::unique_ptr<ranks::Lead> lead_;     // on the first of several ranks
+  std::unique_ptr<ranks::Lead> lead_;  // on the first of several ranks
+  std::vector<int> rank_of_cell_;
   std::vector<int> cells_;                // this rank's, ascending
   std::unique_ptr<LinearSolver> solver_;  // after lead_
   SymmetricMatrix matrix_;                // this rank's part
@@ -298,7 +301,8 @@ class ContactProblem : public ranks::Part {
   std::vector<Gap<dim>> gaps_;    // per node
   std::vector<double> lambda_n_;  // per node
   std::vector<CellResult<dim>> scratch_;
-  std::vector<typename CellResult<dim>::Coupling> pressure_gain_;  // per cell of this rank
+  std::vector<int> tangent_cells_;                                 // whose tangents are this rank's, ascending
+  std::vector<typename CellResult<dim>::Coupling> pressure_gain_;  // per tangent cell
   Pressures pressure_offset_pa_;                                   // the same
 
   // Of the current increment and Newton iteration, with friction.

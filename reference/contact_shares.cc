@@ -6,7 +6,8 @@
 #include "reference/store.h"
 
 #include <algorithm>
-#include <cmath>
+#include <functional>
+#include <numeric>
 
 namespace touchstone::reference {
 namespace {
@@ -86,49 +87,35 @@ std::vector<char> cells_of_nodes(const Mesh<dim>& mesh, const std::vector<int>& 
 }
 
 template <int dim>
-std::vector<int> cells_of_rank(const Mesh<dim>& mesh, const std::vector<char>& of_the_first, int rank, int ranks) {
-  std::vector<int> own, open;
+std::vector<int> ranks_of_cells(const Mesh<dim>& mesh, int ranks) {
   std::vector<typename Mesh<dim>::Point> middle_m;
-  for (int c = 0; c < mesh.cell_count(); ++c) {
-    middle_m.push_back(mesh.points_m.col(mesh.cells[c][Mesh<dim>::nodes_per_cell / 2]));
-    (of_the_first[c] ? own : open).push_back(c);
-  }
-  if (rank > 0) own.clear();
-  // The first rank's share of the open cells is what it lacks, the others' are equal.
-  const double mean = static_cast<double>(mesh.cell_count()) / ranks;
-  const double already = static_cast<double>(mesh.cell_count()) - static_cast<double>(open.size());
-  const double first_share = std::max(0.0, mean - already);
-  const double other_share = ranks > 1 ? (static_cast<double>(open.size()) - first_share) / (ranks - 1) : 0.0;
-  const auto share_of = [&](int begin, int count) {
-    return begin == 0 ? first_share + (count - 1) * other_share : count * other_share;
-  };
-  for (int begin = 0, count = ranks; count > 1 && !open.empty();) {
-    typename Mesh<dim>::Point low = middle_m[open.front()], high = low;
-    for (const int c : open) {
-      low = low.cwiseMin(middle_m[c]);
-      high = high.cwiseMax(middle_m[c]);
+  for (const auto& cell : mesh.cells) middle_m.push_back(mesh.points_m.col(cell[Mesh<dim>::nodes_per_cell / 2]));
+  std::vector<int> cells(mesh.cells.size()), result(mesh.cells.size(), 0);
+  std::iota(cells.begin(), cells.end(), 0);
+  using Iterator = std::vector<int>::iterator;
+  const std::function<void(Iterator, Iterator, int, int)> cut = [&](Iterator begin, Iterator end, int rank, int count) {
+    if (begin == end) return;
+    if (count == 1) {
+      for (Iterator cell = begin; cell != end; ++cell) result[*cell] = rank;
+      return;
+    }
+    typename Mesh<dim>::Point low = middle_m[*begin], high = low;
+    for (Iterator cell = begin; cell != end; ++cell) {
+      low = low.cwiseMin(middle_m[*cell]);
+      high = high.cwiseMax(middle_m[*cell]);
     }
     int side = 0;
     (high - low).maxCoeff(&side);
     const int below = count / 2;
-    const double share_below = share_of(begin, below) / share_of(begin, count);
-    const auto cut = open.begin() + std::lround(static_cast<double>(open.size()) * share_below);
-    const auto before = [&](int a, int b) {
+    const Iterator middle = begin + (end - begin) * below / count;
+    std::nth_element(begin, middle, end, [&](int a, int b) {
       return middle_m[a][side] != middle_m[b][side] ? middle_m[a][side] < middle_m[b][side] : a < b;
-    };
-    if (cut != open.end()) std::nth_element(open.begin(), cut, open.end(), before);
-    if (rank < begin + below) {
-      open.erase(cut, open.end());
-      count = below;
-    } else {
-      open.erase(open.begin(), cut);
-      begin += below;
-      count -= below;
-    }
-  }
-  own.insert(own.end(), open.begin(), open.end());
-  std::sort(own.begin(), own.end());
-  return own;
+    });
+    cut(begin, middle, rank, below);
+    cut(middle, end, rank + below, count - below);
+  };
+  cut(cells.begin(), cells.end(), 0, ranks);
+  return result;
 }
 
 void follow_first_rank() { ranks::follow_orders({{2, receive_part<2>}, {3, receive_part<3>}}); }
@@ -165,6 +152,16 @@ State<dim> ContactProblem<dim>::receive_state() const {
 }
 
 template <int dim>
+void ContactProblem<dim>::take_cells(const std::vector<char>& in_contact) {
+  tangent_cells_.clear();
+  for (int c = 0; c < mesh_.cell_count(); ++c) {
+    if (in_contact[c] ? ranks::first() : rank_of_cell_[c] == ranks::own()) tangent_cells_.push_back(c);
+  }
+  pressure_gain_.resize(tangent_cells_.size());
+  pressure_offset_pa_.resize(dim + 1, static_cast<Eigen::Index>(tangent_cells_.size()));
+}
+
+template <int dim>
 void ContactProblem<dim>::follow(Order order) {
   switch (order) {
     case Order::forces:
@@ -178,6 +175,9 @@ void ContactProblem<dim>::follow(Order order) {
     case Order::assemble: {
       const State<dim> state = receive_state();
       ranks::receive(step_offset_m_);
+      std::vector<char> in_contact(mesh_.cells.size());
+      ranks::receive(in_contact);
+      take_cells(in_contact);
       assemble(state);
       (void)sum_of_lanes();
       break;
@@ -196,14 +196,16 @@ void ContactProblem<dim>::follow(Order order) {
 template std::unique_ptr<ranks::Lead> ContactProblem<2>::make_parts() const;
 template std::unique_ptr<LinearSolver> ContactProblem<2>::make_solver() const;
 template void ContactProblem<2>::send(const State<2>&);
+template void ContactProblem<2>::take_cells(const std::vector<char>&);
 template void ContactProblem<2>::follow(Order);
 template std::vector<char> cells_of_nodes<2>(const Mesh<2>&, const std::vector<int>&);
-template std::vector<int> cells_of_rank<2>(const Mesh<2>&, const std::vector<char>&, int, int);
+template std::vector<int> ranks_of_cells<2>(const Mesh<2>&, int);
 template std::unique_ptr<ranks::Lead> ContactProblem<3>::make_parts() const;
 template std::unique_ptr<LinearSolver> ContactProblem<3>::make_solver() const;
 template void ContactProblem<3>::send(const State<3>&);
+template void ContactProblem<3>::take_cells(const std::vector<char>&);
 template void ContactProblem<3>::follow(Order);
 template std::vector<char> cells_of_nodes<3>(const Mesh<3>&, const std::vector<int>&);
-template std::vector<int> cells_of_rank<3>(const Mesh<3>&, const std::vector<char>&, int, int);
+template std::vector<int> ranks_of_cells<3>(const Mesh<3>&, int);
 
 }  // namespace touchstone::reference
