@@ -2,6 +2,7 @@
 
 #include "compare/calculix.h"
 #include "compare/reference_run.h"
+#include "compare/time_to_error.h"
 #include "scene/results.h"
 
 #include <fmt/format.h>
@@ -50,14 +51,23 @@ int export_deck(const fast::VerbOptions& options, const ExportOptions& export_op
                 const ReferenceOptions& reference) {
   const scene::Scene scene = options.load();
   std::vector<scene::Fault> faults = reference::unsupported_in_deck(scene);
-  if (export_options.run) {
+  if (export_options.run || export_options.time_to_error > 0) {
     const std::vector<scene::Fault> more = reference::unsupported(scene);
     faults.insert(faults.end(), more.begin(), more.end());
   }
   if (!faults.empty()) throw scene::InputError(std::move(faults));
-  const reference::Deck deck = reference::calculix_deck(scene, export_options.deck);
   const std::filesystem::path folder = options.folder(scene, "export");
   scene::prepare_result_folder(folder);
+  if (export_options.time_to_error > 0) {
+    return with_reference_exits([&] {
+      const TimeToError times = time_to_error(scene, export_options.time_to_error, folder);
+      scene::write_csv(folder / "time-to-error.csv", time_to_error_columns(times));
+      scene::write_file(folder / "time-to-error.svg", time_to_error_svg(times, scene.title));
+      std::cout << time_to_error_text(times);
+      return fast::done;
+    });
+  }
+  const reference::Deck deck = reference::calculix_deck(scene, export_options.deck);
   const std::filesystem::path file = folder / (scene.name + ".inp");
   scene::write_file(file, deck.text);
   std::cout << fmt::format("Deck: {}, {} steps, {} nodes of the body in {}\n", deck.model, deck.instants.size(),
@@ -103,6 +113,9 @@ CLI::App* add_export_verb(CLI::App& app, fast::VerbOptions& options, ExportOptio
   verb->add_option("--contact-stiffness", export_options.deck.contact_stiffness_pa_per_m,
                    "contact pressure over overclosure [Pa/m] (default: costs about a thousandth of the force)")
       ->check(CLI::PositiveNumber);
+  verb->add_option("--time-to-error", export_options.time_to_error,
+                   "instead of one deck: solve this many meshes with both codes and print what a force error costs")
+      ->check(CLI::Range(2, 4));
   verb->add_flag("--run", export_options.run, "run ccx on it, solve the reference, and print both side by side");
   return verb;
 }

@@ -9,10 +9,11 @@ namespace touchstone::compare {
 
 struct ExportOptions {
   reference::DeckOptions deck;
-  bool run = false;  ///< run CalculiX on it, solve the reference, and print both
+  bool run = false;       ///< run CalculiX on it, solve the reference, and print both
+  int time_to_error = 0;  ///< instead: on this many meshes, what a force error costs with either
 };
 
-/// Writes the deck and, when asked, curve.csv with the forces of both codes.
+/// Writes the deck and, when asked, curve.csv with the forces of both codes, or time-to-error.csv and .svg.
 /// @returns exit code; @throws scene::InputError for bad input
 int export_deck(const fast::VerbOptions& options, const ExportOptions& export_options,
                 const ReferenceOptions& reference);

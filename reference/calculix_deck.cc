@@ -429,9 +429,9 @@ class Writer {
       } else {
         move(deck_tool_set, placed(Point::Zero(), pose) - placed(Point::Zero(), path_.start));
       }
-      text_ << "*NODE PRINT, NSET=" << deck_support_set << ", TOTALS=ONLY\nRF\n"
-            << "*NODE PRINT, NSET=" << deck_tool_set << ", TOTALS=ONLY\nRF\n"
-            << "*NODE PRINT, NSET=" << deck_surface_set << "\nU\n*END STEP\n";
+      text_ << "*NODE PRINT, NSET=" << deck_support_set << ", FREQUENCY=1000, TOTALS=ONLY\nRF\n"
+            << "*NODE PRINT, NSET=" << deck_tool_set << ", FREQUENCY=1000, TOTALS=ONLY\nRF\n"
+            << "*NODE PRINT, NSET=" << deck_surface_set << ", FREQUENCY=1000\nU\n*END STEP\n";
     }
   }
 

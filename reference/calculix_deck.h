@@ -16,7 +16,7 @@ namespace touchstone::reference {
 struct DeckOptions {
   int level = 0;  ///< of the refinement sequence, 0 the coarsest
   /// Contact pressure over overclosure; absent: what costs about a thousandth of the force.
-  std::optional<double> contact_stiffness_pa_per_m;
+  std::optional<double> contact_stiffness_pa_per_m{};
 };
 
 /// Names that the deck's output goes by.

@@ -1,6 +1,7 @@
 #include "reference/calculix_tool.h"
 
 #include "reference/tool_distance.h"
+#include "scene/mesh_checks.h"
 #include "scene/surface.h"
 
 #include <algorithm>
@@ -62,30 +63,6 @@ Meridian meridian(const scene::Tool& tool, const Eigen::Quaterniond& orientation
   }
 }
 
-/// Triangles with shared corners; a shape's patches have their own along their common edges.
-scene::TriangleMesh welded(const scene::Surface& surface) {
-  const double size_m = (surface.points_m.rowwise().maxCoeff() - surface.points_m.rowwise().minCoeff()).norm();
-  std::map<std::array<long, 3>, int> places;
-  scene::TriangleMesh mesh;
-  std::vector<int> number;
-  std::vector<Vec3> points_m;
-  for (const auto& p_m : surface.points_m.colwise()) {
-    const Vec3 cell = p_m / (1e-7 * size_m);
-    const auto [place, fresh] = places.try_emplace(
-        {std::lround(cell.x()), std::lround(cell.y()), std::lround(cell.z())}, static_cast<int>(points_m.size()));
-    if (fresh) points_m.push_back(p_m);
-    number.push_back(place->second);
-  }
-  for (const auto& t : surface.triangles) {
-    const std::array<std::int32_t, 3> corners{number[t[0]], number[t[1]], number[t[2]]};
-    if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0]) {
-      mesh.triangles.push_back(corners);
-    }
-  }
-  mesh.points_m = Eigen::Map<const Eigen::Matrix3Xd>(points_m.front().data(), 3, points_m.size());
-  return mesh;
-}
-
 }  // namespace
 
 ToolCoat<2> meridian_coat(const scene::Tool& tool, const Eigen::Quaterniond& orientation, const ModelChoice& choice) {
@@ -119,19 +96,25 @@ ToolCoat<2> meridian_coat(const scene::Tool& tool, const Eigen::Quaterniond& ori
 ToolCoat<3> surface_coat(const scene::Tool& tool, const ModelChoice& choice,
                          const std::function<bool(const Vec3& p_T_m)>& meets) {
   const bool flat = tool.shape == ToolShape::mesh;
-  scene::TriangleMesh mesh;
+  // A shape's patches have corners of their own along their common edges.
+  scene::RawMesh mesh;
   if (flat) {
-    mesh = scene::tool_mesh(tool);
+    const scene::TriangleMesh given = scene::tool_mesh(tool);
+    mesh.points.assign(given.points_m.colwise().begin(), given.points_m.colwise().end());
+    mesh.triangles = given.triangles;
   } else {
     constexpr int fewest = 500, most = 200000;
     const auto shape = scene::tool_shape(tool);
     const double side = side_m(choice), triangle_m2 = 0.25 * std::sqrt(3.0) * side * side;
-    mesh =
-        welded(scene::tessellate(*shape, std::clamp(static_cast<int>(shape->area_m2() / triangle_m2), fewest, most)));
-    for (auto point_m : mesh.points_m.colwise()) point_m = onto_surface_m(*choice.tool, point_m);
+    const scene::Surface surface =
+        scene::tessellate(*shape, std::clamp(static_cast<int>(shape->area_m2() / triangle_m2), fewest, most));
+    mesh.points.assign(surface.points_m.colwise().begin(), surface.points_m.colwise().end());
+    mesh.triangles = surface.triangles;
+    mesh = scene::welded(mesh);
+    for (Vec3& point_m : mesh.points) point_m = onto_surface_m(*choice.tool, point_m);
   }
-  std::vector<char> near(mesh.points_m.cols());
-  for (std::size_t v = 0; v < near.size(); ++v) near[v] = meets(mesh.points_m.col(v));
+  std::vector<char> near;
+  for (const Vec3& point_m : mesh.points) near.push_back(meets(point_m));
 
   ToolCoat<3> coat;
   std::vector<Vec3> points_m;
@@ -143,15 +126,15 @@ ToolCoat<3> surface_coat(const scene::Tool& tool, const ModelChoice& choice,
   const auto surface_node = [&](int v, int w) {
     const auto [place, fresh] = corners_and_middles.try_emplace(std::minmax(v, w), -1);
     if (fresh) {
-      const Vec3 middle_m = 0.5 * (mesh.points_m.col(v) + mesh.points_m.col(w));
+      const Vec3 middle_m = 0.5 * (mesh.points[v] + mesh.points[w]);
       place->second = add(flat || v == w ? middle_m : onto_surface_m(*choice.tool, middle_m));
     }
     return place->second;
   };
   for (const auto& t : mesh.triangles) {
     if (!near[t[0]] && !near[t[1]] && !near[t[2]]) continue;
-    const Vec3 across = (mesh.points_m.col(t[1]) - mesh.points_m.col(t[0]))
-                            .cross(Vec3(mesh.points_m.col(t[2]) - mesh.points_m.col(t[0])));
+    const Vec3& corner_m = mesh.points[t[0]];
+    const Vec3 across = (mesh.points[t[1]] - corner_m).cross(mesh.points[t[2]] - corner_m);
     // Every triangle's back is its own, straight behind it, so that no edge of the tool is too sharp for it.
     const Vec3 inward_m = -0.5 * across / std::sqrt(across.norm());
     std::array<int, ToolCoat<3>::nodes_per_element> element;
