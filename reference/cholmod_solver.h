@@ -1,6 +1,8 @@
 // Sparse direct solver for the symmetric tangent: CHOLMOD's supernodal Cholesky, UMFPACK when it is not definite.
 #pragma once
 
+#include <Eigen/Core>
+
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -32,11 +34,21 @@ class CholmodSolver {
   [[nodiscard]] bool factorise(const SymmetricMatrix& matrix);
 
   /// Solves with the last factor. @param x in: right-hand side; out: solution
-  void solve(std::vector<double>& x);
+  void solve(Eigen::VectorXd& x);
+
+  /// The two halves of solve(), for the matrix is P' L L' P: L^-1 P x, and P' L^-T x.
+  void solve_lower(Eigen::VectorXd& x);
+  void solve_upper(Eigen::VectorXd& x);
 
   /// One solve by unsymmetric LU for a matrix factorise() refused: much slower, but indifferent to sign.
   /// @returns false when singular
-  [[nodiscard]] static bool solve_indefinite(const SymmetricMatrix& matrix, std::vector<double>& x);
+  [[nodiscard]] static bool solve_indefinite(const SymmetricMatrix& matrix, Eigen::VectorXd& x);
+
+  /// Memory of the factor, known since analyse(): supernodes with their zeros.
+  [[nodiscard]] std::int64_t predicted_factor_bytes() const noexcept;
+
+  /// Operations of a factorisation over those of a solve, each weighed with the speed the processor has for it.
+  [[nodiscard]] double factor_cost_in_solves() const noexcept;
 
   /// "CHOLMOD 3.0.14 on OpenBLAS 0.3.21 ..., 2 threads"
   [[nodiscard]] std::string description() const;

@@ -11,10 +11,10 @@
 // Mech. Eng. 194 (2005) 3147-3166.
 #pragma once
 
-#include "reference/cholmod_solver.h"
 #include "reference/element.h"
 #include "reference/mesh.h"
 #include "reference/regions.h"
+#include "reference/tangent_solver.h"
 #include "reference/threads.h"
 #include "reference/tool_gap.h"
 #include "scene/frames.h"
@@ -42,7 +42,7 @@ struct NewtonReport {
   bool converged = false;
   int iterations = 0;
   double residual_rel = 0.0;  ///< out-of-balance force over the sum of contact and support forces
-  int indefinite = 0;         ///< iterations whose tangent needed the curvature term dropped or UMFPACK
+  int indefinite = 0;         ///< iterations whose tangent needed the curvature term dropped or LU
   std::string trouble;        ///< in words, when not converged
 };
 
@@ -95,6 +95,12 @@ class ContactProblem {
   [[nodiscard]] const Mesh<dim>& mesh() const noexcept { return mesh_; }
   [[nodiscard]] int unknowns() const noexcept { return unknowns_; }
   [[nodiscard]] std::string linear_solver() const { return solver_.description(); }
+  [[nodiscard]] const TangentWork& linear_work() const noexcept { return solver_.work(); }
+  /// Processor time of tangents and forces, all threads.
+  [[nodiscard]] double assembly_s() const noexcept { return assembly_s_; }
+
+  /// The next solve depends on its starting state only, not on what was solved before.
+  void forget() noexcept { solver_.forget(); }
 
   /// Newton stops when the out-of-balance force is below this share of the acting forces.
   static constexpr double force_tolerance = 1e-8;
@@ -164,7 +170,8 @@ class ContactProblem {
   std::vector<int> unknown_;  // number or -1
   int unknowns_ = 0;
 
-  CholmodSolver solver_;
+  TangentSolver solver_;
+  double assembly_s_ = 0.0;
   SymmetricMatrix matrix_;
   std::vector<Lane> lanes_;
 

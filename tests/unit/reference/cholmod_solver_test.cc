@@ -8,7 +8,7 @@ namespace {
 /// Lower triangle of [4 1 0; 1 d 2; 0 2 5].
 SymmetricMatrix three_by_three(double d) { return {{0, 2, 4, 5}, {0, 1, 1, 2, 2}, {4.0, 1.0, d, 2.0, 5.0}}; }
 
-void expect_solves(double d, const std::vector<double>& x) {
+void expect_solves(double d, const Eigen::VectorXd& x) {
   EXPECT_NEAR(4.0 * x[0] + x[1], 1.0, 1e-14);
   EXPECT_NEAR(x[0] + d * x[1] + 2.0 * x[2], 2.0, 1e-14);
   EXPECT_NEAR(2.0 * x[1] + 5.0 * x[2], 3.0, 1e-14);
@@ -19,7 +19,7 @@ TEST(CholmodSolver, SolvesSeveralMatricesOnOnePattern) {
   solver.analyse(three_by_three(6.0));
   for (const double d : {6.0, 3.0}) {
     ASSERT_TRUE(solver.factorise(three_by_three(d)));
-    std::vector<double> x{1.0, 2.0, 3.0};
+    Eigen::VectorXd x = Eigen::Vector3d(1.0, 2.0, 3.0);
     solver.solve(x);
     expect_solves(d, x);
   }
@@ -30,7 +30,7 @@ TEST(CholmodSolver, RefusesAnIndefiniteMatrixAndLeavesItToLu) {
   CholmodSolver solver(1);
   solver.analyse(three_by_three(-1.0));
   EXPECT_FALSE(solver.factorise(three_by_three(-1.0)));
-  std::vector<double> x{1.0, 2.0, 3.0};
+  Eigen::VectorXd x = Eigen::Vector3d(1.0, 2.0, 3.0);
   ASSERT_TRUE(CholmodSolver::solve_indefinite(three_by_three(-1.0), x));
   expect_solves(-1.0, x);
 }
