@@ -76,7 +76,7 @@ struct NewtonReport {
   bool converged = false;
   int iterations = 0;
   double residual_rel = 0.0;  ///< out-of-balance force over the sum of contact and support forces
-  int indefinite = 0;         ///< iterations whose tangent needed the curvature term dropped or UMFPACK
+  int indefinite = 0;         ///< iterations whose tangent needed the curvature term dropped or LU
   std::string trouble;        ///< in words, when not converged
 };
 
@@ -149,6 +149,12 @@ class ContactProblem : public ranks::Part {
   [[nodiscard]] const Mesh<dim>& mesh() const noexcept { return mesh_; }
   [[nodiscard]] int unknowns() const noexcept { return unknowns_; }
   [[nodiscard]] std::string linear_solver() const { return solver_->description(); }
+  [[nodiscard]] LinearWork linear_work() const noexcept { return solver_->work(); }
+  /// Processor time of tangents and forces, all threads.
+  [[nodiscard]] double assembly_s() const noexcept { return assembly_s_; }
+
+  /// The next solve depends on its starting state only, not on what was solved before.
+  void forget() noexcept { solver_->forget(); }
 
   /// On the other ranks: their shares of what the first one's methods do.
   void follow(Order order) override;
@@ -292,7 +298,8 @@ class ContactProblem : public ranks::Part {
   std::vector<int> rank_of_cell_;
   std::vector<int> cells_;                // this rank's, ascending
   std::unique_ptr<LinearSolver> solver_;  // after lead_
-  SymmetricMatrix matrix_;                // this rank's part
+  double assembly_s_ = 0.0;
+  SymmetricMatrix matrix_;  // this rank's part
   std::vector<Lane> lanes_;
 
   // Of the current Newton iteration.

@@ -1,9 +1,9 @@
 #include "reference/contact_shares.h"
 
-#include "reference/cholmod_solver.h"
 #include "reference/contact_problem.h"
 #include "reference/distributed_solver.h"
 #include "reference/store.h"
+#include "reference/tangent_solver.h"
 
 #include <algorithm>
 #include <functional>
@@ -133,7 +133,7 @@ std::unique_ptr<ranks::Lead> ContactProblem<dim>::make_parts() const {
 
 template <int dim>
 std::unique_ptr<LinearSolver> ContactProblem<dim>::make_solver() const {
-  if (ranks::count() == 1) return std::make_unique<CholmodSolver>(threads_);
+  if (ranks::count() == 1) return std::make_unique<TangentSolver>(threads_);
   return std::make_unique<DistributedSolver>(lead_.get(), threads_);
 }
 

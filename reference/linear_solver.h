@@ -17,6 +17,15 @@ struct SymmetricMatrix {
   [[nodiscard]] std::int64_t size() const noexcept { return static_cast<std::int64_t>(column_begin.size()) - 1; }
 };
 
+/// What a solver did.
+struct LinearWork {
+  int factorisations = 0;
+  int iterations = 0;       ///< of conjugate gradients, one application of a factor each
+  double analysis_s = 0.0;  ///< processor time of all threads, as the others
+  double factorisation_s = 0.0;
+  double iteration_s = 0.0;
+};
+
 /// Analyses a pattern once, then factorises any number of matrices on it.
 class LinearSolver {
  public:
@@ -31,7 +40,27 @@ class LinearSolver {
   /// Solves with the last factor. @param x in: right-hand side; out: solution
   virtual void solve(Eigen::VectorXd& x) = 0;
 
-  /// One solve with the matrix that factorise() has just refused. @returns false when singular
+  /// Solves for one right-hand side, by whatever is cheapest.
+  /// @param tolerance_rel  |L^-1 P (b - K x)| <= tolerance_rel |L^-1 P b| at least, P' L L' P the factor of K or of an
+  ///                       older one like it: the residual as an energy
+  /// @param x in: b; out: the solution, or still b when there is none
+  /// @returns false when K is not positive definite
+  [[nodiscard]] virtual bool solve(const SymmetricMatrix& K, double /*tolerance_rel*/, Eigen::VectorXd& x) {
+    if (!factorise(K)) return false;
+    solve(x);
+    return true;
+  }
+
+  /// Whether the K of the last call, given once more, is positive definite, where that call did not refuse it.
+  [[nodiscard]] virtual bool positive_definite(const SymmetricMatrix& /*K*/) { return true; }
+
+  /// What comes next does not depend on what was solved before.
+  virtual void forget() noexcept {}
+
+  /// What was done since this was made, where it is counted.
+  [[nodiscard]] virtual LinearWork work() const noexcept { return {}; }
+
+  /// One solve with the matrix that was just refused. @returns false when singular
   [[nodiscard]] virtual bool solve_indefinite(const SymmetricMatrix& matrix, Eigen::VectorXd& x) = 0;
 
   /// The library, its version and how much of the machine it uses.
