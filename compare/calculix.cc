@@ -39,11 +39,9 @@ std::vector<CalculixStep> read_calculix(const std::filesystem::path& dat, const 
     const auto says = [&](const std::string& what, const char* set) {
       return line.find(what) != std::string::npos && line.find(std::string(" set ") + set + " ") != std::string::npos;
     };
-    if (says("total force", reference::deck_support_set)) {
-      // The first of a step's three answers.
-      total = &steps.emplace_back().support_force_n;
-    } else if (!steps.empty() && says("total force", reference::deck_tool_set)) {
-      total = &steps.back().tool_force_n;
+    if (says("total force", reference::deck_tool_set)) {
+      // The first of a step's two answers.
+      total = &steps.emplace_back().force_n;
     } else if (!steps.empty() && says("displacements", reference::deck_surface_set)) {
       steps.back().displacement_m.resize(3, nodes);
       row = 0;
@@ -52,7 +50,7 @@ std::vector<CalculixStep> read_calculix(const std::filesystem::path& dat, const 
       scene::Vec3 components;
       int node = 0;
       if (total && numbers >> components.x() >> components.y() >> components.z()) {
-        *total = deck.whole_body.cwiseProduct(in_world(components, deck.axisymmetric));
+        *total = -deck.whole_body.cwiseProduct(in_world(components, deck.axisymmetric));
         total = nullptr;
       } else if (!total && row < nodes && numbers >> node >> components.x() >> components.y() >> components.z()) {
         if (node != deck.surface_nodes[row]) break;

@@ -12,9 +12,8 @@ namespace touchstone::compare {
 
 /// What CalculiX says at the end of one step of a deck, of the whole body in the world frame.
 struct CalculixStep {
-  scene::Vec3 support_force_n = scene::Vec3::Zero();  ///< of the support on the body: what acts on the tool
-  scene::Vec3 tool_force_n = scene::Vec3::Zero();     ///< that holds the tool in its place: minus what acts on it
-  Eigen::Matrix3Xd displacement_m;                    ///< one column per node of Deck::surface_nodes
+  scene::Vec3 force_n = scene::Vec3::Zero();  ///< on the tool
+  Eigen::Matrix3Xd displacement_m;            ///< one column per node of Deck::surface_nodes
 };
 
 /// Reads a .dat file: as many steps as are complete in it, none when there is no such file.

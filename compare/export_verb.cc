@@ -32,7 +32,7 @@ SideBySide side_by_side(const reference::Deck& deck, const CalculixRun& run, con
   for (std::size_t step = 0; step < run.steps.size(); ++step) {
     const int instant = deck.instants[step];
     const scene::InstantRecord& ours = result.instants[instant];
-    const double ours_n = ours.force_n().norm(), theirs_n = run.steps[step].support_force_n.norm();
+    const double ours_n = ours.force_n().norm(), theirs_n = run.steps[step].force_n.norm();
     const double force = theirs_n / ours_n - 1.0;
     const double surface =
         longest_m(run.steps[step].displacement_m - ours.displacement_m) / longest_m(ours.displacement_m);

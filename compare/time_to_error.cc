@@ -83,7 +83,7 @@ TimeToError time_to_error(const scene::Scene& scene, int meshes, const std::file
     if (run.steps.size() < deck.instants.size()) continue;
     std::vector<double> force_n(exact_n.size());
     for (std::size_t step = 0; step < run.steps.size(); ++step) {
-      force_n[deck.instants[step]] = run.steps[step].support_force_n.norm();
+      force_n[deck.instants[step]] = run.steps[step].force_n.norm();
     }
     times.calculix.push_back({level, largest_error(force_n, exact_n), run.wall_s, run.cpu_s});
   }

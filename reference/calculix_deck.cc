@@ -112,6 +112,8 @@ class ReducedMesh {
   std::map<int, Sum> ties_;
 };
 
+constexpr const char* support_set = "SUPPORT";
+
 /// Instants of the deck: from the first that touches, and the pose before it.
 struct Path {
   scene::Pose start;
@@ -195,9 +197,11 @@ class Writer {
     text_ << "** " << (scene_.title.empty() ? scene_.name : scene_.title) << "\n"
           << "** " << deck_.model << ", SI units, written by touchstone export\n**\n"
           << "** Run it as: ccx -i NAME, where this file is NAME.inp. The answers stand in NAME.dat.\n"
-          << "** Step k ends at the time its comment says. \"total force ... for set " << deck_support_set
-          << "\" is the support's force on\n"
-          << "** this model; " << images << " times as much acts on the whole body, and as much on the tool.\n";
+          << "** Step k ends at the time its comment says. \"total force ... for set " << deck_tool_set
+          << "\" holds the tool in its place\n"
+          << "** in this model; minus " << images
+          << " times as much acts on the tool from the whole body. (The sum of the "
+          << "support's reactions\n** lacks what tied nodes pass on to it.)\n";
     if (dim == 2) {
       text_ << "** (A sector of two degrees is solved. The second component is along the axis. The axis is a bore of "
             << bore_m_ << " m.)\n";
@@ -271,7 +275,7 @@ class Writer {
       }
     }
     const std::set<int>& held = nodes[Boundary::held];
-    set(deck_support_set, held);
+    set(support_set, held);
     for (const auto& [plane, name] :
          {std::pair(Boundary::plane_x, "PLANE_X"), std::pair(Boundary::plane_y, "PLANE_Y")}) {
       std::erase_if(nodes[plane], [&](int n) { return held.contains(n); });
@@ -286,7 +290,7 @@ class Writer {
       deck_.surface_points_m(2, k) = place_m[dim - 1];
       if constexpr (dim == 3) deck_.surface_points_m(1, k) = place_m[1];
     }
-    text_ << "*BOUNDARY\n" << deck_support_set << ", 1, " << dim << '\n';
+    text_ << "*BOUNDARY\n" << support_set << ", 1, " << dim << '\n';
     if (!nodes[Boundary::plane_x].empty()) text_ << "PLANE_X, 1, 1\n";
     if (!nodes[Boundary::plane_y].empty()) text_ << "PLANE_Y, 2, 2\n";
     contact_faces(mesh);
@@ -429,8 +433,7 @@ class Writer {
       } else {
         move(deck_tool_set, placed(Point::Zero(), pose) - placed(Point::Zero(), path_.start));
       }
-      text_ << "*NODE PRINT, NSET=" << deck_support_set << ", FREQUENCY=1000, TOTALS=ONLY\nRF\n"
-            << "*NODE PRINT, NSET=" << deck_tool_set << ", FREQUENCY=1000, TOTALS=ONLY\nRF\n"
+      text_ << "*NODE PRINT, NSET=" << deck_tool_set << ", FREQUENCY=1000, TOTALS=ONLY\nRF\n"
             << "*NODE PRINT, NSET=" << deck_surface_set << ", FREQUENCY=1000\nU\n*END STEP\n";
     }
   }

@@ -20,7 +20,6 @@ struct DeckOptions {
 };
 
 /// Names that the deck's output goes by.
-inline constexpr const char* deck_support_set = "SUPPORT";
 inline constexpr const char* deck_tool_set = "TOOL";
 inline constexpr const char* deck_surface_set = "SURFACE";
 
