@@ -39,9 +39,11 @@ int run_verb(const StudyOptions& options) {
   const StudyManifest manifest = read_manifest(options.study);
   const auto run = [&](const std::filesystem::path& scene_file, const std::filesystem::path& folder) {
     const fast::VerbOptions verb{.scene_file = scene_file, .out = folder, .overrides = {}, .quiet = options.quiet};
-    if (manifest.run == "fast") return run_fast(verb, options.store);
-    if (manifest.run == "reference") return run_reference(verb, options.store);
-    return run_compare(verb, options.store);
+    ReferenceOptions reference;
+    reference.store = options.store;
+    if (manifest.run == "fast") return run_fast(verb, reference);
+    if (manifest.run == "reference") return run_reference(verb, reference);
+    return run_compare(verb, reference);
   };
   const int count = static_cast<int>(manifest.cases.size());
   const CaseRange range =
