@@ -63,7 +63,7 @@ TimeToError time_to_error(const scene::Scene& scene, int meshes, const std::file
   std::filesystem::remove_all(store);
   scene::Scene finer = scene;
   finer.reference.levels = meshes + finer_levels;
-  LevelWatch watch(finer.reference.levels);
+  LevelWatch watch(meshes + finer_levels);
   reference::Options options;
   options.store = store;
   options.progress = [&](const reference::Progress& progress) { watch.at(progress.level); };
