@@ -176,7 +176,7 @@ double ContactProblem<dim>::update_slipping(State<dim>& state, const std::vector
     const double c_n_per_m = c_pa_per_m * area_m2_[node];
     const double limit_n = contact.coefficient * std::max(contact.normal_n, 0.0);
     const Point trial_n = contact.friction_n - c_n_per_m * contact.slip_m;
-    // At the edge of the contact, where nodes come to touch, there is next to no friction to hold them.
+    // A node that comes to touch has no normal force yet: for one iteration it has no friction either.
     contact.slips = state.slipping[node] != 0 || !before[node];
     if (iteration > 0 && before[node]) {
       contact.slips = contact.slips ? trial_n.norm() > limit_n
@@ -184,13 +184,14 @@ double ContactProblem<dim>::update_slipping(State<dim>& state, const std::vector
     }
     next[node] = contact.slips ? 1 : 0;
     Slip slip;
-    if (contact.slips) {
-      slip_row_[node] = slip_rows_++;
+    if (contact.slips) slip_row_[node] = slip_rows_++;
+    if (contact.slips && before[node]) {
       slip.direction = trial_n / std::max(trial_n.norm(), std::numeric_limits<double>::min());
       slip.turning_n_per_m =
           c_n_per_m * limit_n /
           std::max(trial_n.norm() - limit_n, limit_n / steepest_turning + std::numeric_limits<double>::min());
-    } else {
+    }
+    if (!contact.slips) {
       if (kinematics_ == scene::Kinematics::small) {
         to_anchor_m = -contact.slip_m - gaps_[node].value_m * contact.normal;
       }
