@@ -202,20 +202,20 @@ std::string verify_html(const std::vector<ProblemRecord>& records, const scene::
   return page(title, out + "</table></div>\n");
 }
 
-int verify(const VerifyOptions& options, const std::string& command) {
+int verify(const VerifyOptions& options, const std::string& command, const std::vector<Problem>& all) {
   if (options.list) {
-    for (const Problem& problem : verification::problems()) {
+    for (const Problem& problem : all) {
       std::cout << fmt::format("{:<20}{} [{}]\n", problem.name, problem.title, problem.source);
     }
     return fast::done;
   }
-  static_cast<void>(chosen(verification::problems(), options.names));
+  static_cast<void>(chosen(all, options.names));
   scene::prepare_result_folder(options.out);
   scene::Manifest manifest = scene::make_manifest(scene::Scene{}, command);
   manifest.scene_hash = "none: the problems are the program's own";
   manifest.resolved_scene.clear();
   manifest.entries.emplace_back("effort", options.quick ? "quick" : "full");
-  const std::vector<ProblemRecord> records = run_problems(verification::problems(), options);
+  const std::vector<ProblemRecord> records = run_problems(all, options);
   for (const ProblemRecord& record : records) manifest.times.push_back(record.time);
   const std::string text = verify_text(records);
   scene::write_file(options.out / "table.txt", text);

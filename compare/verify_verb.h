@@ -44,8 +44,9 @@ struct ProblemRecord {
 /// The same as a page.
 [[nodiscard]] std::string verify_html(const std::vector<ProblemRecord>& records, const scene::Manifest& manifest);
 
-/// @returns exit code: answer_is_no when a check misses
-int verify(const VerifyOptions& options, const std::string& command);
+/// @returns exit code: answer_is_no when a problem misses
+int verify(const VerifyOptions& options, const std::string& command,
+           const std::vector<verification::Problem>& all = verification::problems());
 
 void add_verify_verb(CLI::App& app, VerifyOptions& options, int& exit_code);
 

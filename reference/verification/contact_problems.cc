@@ -1,5 +1,6 @@
 // A rigid tool on an elastic body.
 #include "reference/model_choice.h"
+#include "reference/shifted_ball.h"
 #include "reference/solver.h"
 #include "reference/tool_distance.h"
 #include "reference/verification/closed_forms.h"
@@ -225,6 +226,8 @@ Findings flat(const Effort& effort) {
     }
     findings.notes.push_back(domain_note(problem, effort, at));
   }
+  findings.notes.emplace_back(
+      "What the end takes from the surface's settlement is that share of the depth, everywhere.");
   findings.notes.push_back(mesh_note(meshes) + " At the sharp rim, where the pressure is unbounded, 16 times finer.");
   return findings;
 }
@@ -351,10 +354,85 @@ Findings pressed_ball(const Effort& effort) {
     }
     findings.checks.push_back(from_levels(what, "", 1.0, limit, limits));
   }
+  // Both kinematics have one limit; in small strain the gap is taken along the ball's own normals.
+  const double d_m = depth_m / 16.0;
+  effort.tell("small strain");
+  findings.checks.push_back({"force in small over finite strain, a/R = 0.05",
+                             "",
+                             1.0,
+                             press_half_ball(radius_m, material, d_m, Kinematics::small, meshes - 1).force_n /
+                                 press_half_ball(radius_m, material, d_m, Kinematics::finite, meshes - 1).force_n,
+                             limit_of_table,
+                             0.0,
+                             {},
+                             {}});
   findings.notes.emplace_back(
       "The printed 2798.3 MPa at 2 mm is Hertz's half space in small strain; the half ball of "
       "the same test is neither. Its share goes to zero with a/R.");
   return findings;
+}
+
+/// A ball moved along the half space on which it was pressed: Cattaneo's and Mindlin's partial slip. Their solution
+/// takes pressure and friction not to disturb each other, which beside a rigid tool is so at nu = 0.5 only.
+Findings cattaneo(const Effort& effort) {
+  Findings findings;
+  reference::ShiftedBall problem{{E_pa, 0.5}, R_m, 1e-6, 0.3};
+  const double slides_m = 1.5 * problem.friction * problem.depth_m;
+  problem.shift_m = 0.9 * slides_m;
+  problem.steps = 3;
+  std::vector<std::vector<double>> shares(problem.steps);
+  std::vector<double> shifts_m(problem.steps);
+  problem.cells_per_radius = 2.0;
+  effort.tell("two cells to the contact's radius");
+  const std::vector<reference::ShiftedBallStep> steps = reference::shift_ball(problem);
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    shares[k].push_back(steps[k].tangential_n / (problem.friction * steps[k].normal_n));
+    shifts_m[k] = steps[k].shift_m;
+  }
+  for (std::size_t k = 0; k < shifts_m.size(); ++k) {
+    findings.checks.push_back(
+        from_levels("Q / (mu P) at " + text_of(shifts_m[k] / slides_m) + " of the gross-slip shift", "",
+                    reference::mindlin_force(problem, shifts_m[k]), limit_of_table, shares[k]));
+  }
+  findings.notes.emplace_back(
+      "nu = 0.5, in space, on one half of a block of 300 contact radii to each side, two cells to the contact's "
+      "radius. At smaller nu pressure and "
+      "friction "
+      "disturb each other, and the closed form is another model's.");
+  return findings;
+}
+
+/// The half space above z = 0 of its own frame.
+class FlatTool final : public reference::ToolDistance {
+ public:
+  [[nodiscard]] reference::Gap<3> at(const Vec3& p_T_m) const override {
+    return {-p_T_m.z(), -Vec3::UnitZ(), scene::Mat3::Zero()};
+  }
+  [[nodiscard]] scene::Bounds bounds() const override { return {{-1.0, -1.0, 0.0}, {1.0, 1.0, 1.0}}; }
+  [[nodiscard]] double half_width_m() const override { return 0.01; }
+};
+
+/// A rigid wedge drawn along the block it presses on: horizontal over vertical force once all of it slips.
+Findings wedge(const Effort& effort) {
+  effort.tell("a slope of 0.1 drawn along a block");
+  constexpr double slope = 0.1, mu = 0.3;
+  reference::BlockSpec spec{{-0.02, 0.0, -0.02}, {0.02, 0.02, 0.0}, false, true, {{}, 0.9, 0.01}};
+  ContactProblem<3> body(reference::block_mesh(spec), {E_pa, 0.3}, Kinematics::finite, false, true);
+  body.set_friction({mu, 1.0, mu}, 1.0);
+  const auto flat = std::make_shared<FlatTool>();
+  const Eigen::Quaterniond tilted(Eigen::AngleAxisd(-std::atan(slope), Vec3::UnitY()));
+  State<3> state = body.rest();
+  const auto move = [&](const Vec3& place_m) {
+    body.set_tool({flat, {place_m, tilted}});
+    advance(body, state, "wedge");
+  };
+  const Vec3 pressed_m(0.0, 0.0, -0.0005), along = tilted * Vec3::UnitX();
+  for (const double share : {-2.0, -0.5, 1.0}) move(share * pressed_m);
+  for (const double way_m : {0.001, 0.004, 0.008}) move(pressed_m + way_m * along);
+  const Vec3 force_n = body.observe(state, 1.0).force_n;
+  return {
+      {{"F / G", "", (slope + mu) / (1.0 - mu * slope), -force_n.x() / force_n.z(), limit_of_closed_form, 0.0, {}, {}}},
+      {}};
 }
 
 /// Hertz as a scene, through the call that `touchstone reference` makes: the force at every instant and its own band.
@@ -415,6 +493,9 @@ std::vector<Problem> contact_problems() {
       {"flat-punch", "Flat punch with a sharp rim on a half space, small strain", sneddons, flat},
       {"rounded-punch", "Flat punch with a fillet on a half space, small strain", sneddons, rounded},
       {"cone", "Cone on a half space, small strain", sneddons, cones},
+      {"friction-wedge", "A wedge drawn along a block, with friction", "NAFEMS CGS-4", wedge},
+      {"cattaneo-mindlin", "Ball moved along a half space with friction: partial slip, small strain",
+       "Mindlin, J. Appl. Mech. 16 (1949) 259-268", cattaneo},
   };
 }
 

@@ -116,6 +116,21 @@ TEST(VerifyVerb, LeavesAFolderAndAnExitCode) {
   EXPECT_EQ(nlohmann::json::parse(read("manifest.json"))["effort"], "full");
 }
 
+TEST(VerifyVerb, AMissIsExitCodeOne) {
+  const testing::TemporaryFolder folder;
+  VerifyOptions options = silent();
+  options.out = folder.path();
+  const auto exit_code = [&](const std::vector<Problem>& all) {
+    ::testing::internal::CaptureStdout();
+    const int code = verify(options, "touchstone verify", all);
+    static_cast<void>(::testing::internal::GetCapturedStdout());
+    return code;
+  };
+  EXPECT_EQ(exit_code({off_by("good", 0.9)}), fast::done);
+  EXPECT_EQ(exit_code({off_by("good", 0.9), off_by("bad", 1.1)}), fast::answer_is_no);
+  EXPECT_EQ(exit_code({stuck("stuck")}), fast::answer_is_no);
+}
+
 TEST(VerifyVerb, PageEscapesAndSaysTheMiss) {
   const std::string html = verify_html(run_problems({off_by("bad", -3.0)}, silent()), {});
   EXPECT_THAT(html, HasSubstr("source &lt;of&gt; bad"));
