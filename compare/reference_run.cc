@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <iostream>
 
@@ -120,7 +121,7 @@ std::string reference_text(const reference::Result& result) {
         fmt::format("  mesh {}: {:.3g} mm, {} unknowns, {} Newton iterations, {:.3g} s, {:.6g} N\n", level + 1,
                     1e3 * mesh.element_size_m, mesh.unknowns, mesh.newton_iterations, mesh.wall_s, mesh.force_n[at]);
   }
-  if (result.force_uncertainty_rel && result.shape_uncertainty_rel) {
+  if (std::isfinite(result.force_uncertainty_rel.value_or(INFINITY)) && result.shape_uncertainty_rel) {
     text += fmt::format("Uncertainty: {:.2g} of the force, {:.2g} of the displacement, from {} meshes\n",
                         *result.force_uncertainty_rel, *result.shape_uncertainty_rel, result.levels.size());
   }

@@ -4,6 +4,7 @@
 #include "reference/identity.h"
 #include "reference/load_path.h"
 #include "reference/prolongation.h"
+#include "reference/records.h"
 #include "reference/sampling.h"
 #include "reference/sensitivity.h"
 #include "reference/step_record.h"
@@ -14,7 +15,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -42,41 +42,6 @@ double work_of(double unknowns) { return std::pow(unknowns, 1.7); }
 
 double physical_memory_bytes() {
   return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
-}
-
-/// The depth of each region: of the one, the tool's; of several, that of the mesh's triangles nearest to each.
-std::vector<double> region_depths_m(const Scene& scene, const scene::Shape& body, const scene::Pose& pose,
-                                    const std::vector<ContactRegion>& regions) {
-  const scene::Tool& tool = scene.tool;
-  if (regions.size() < 2 || tool.shape != scene::ToolShape::mesh) {
-    return std::vector<double>(regions.size(), scene::rest_depth_m(body, tool, pose));
-  }
-  const scene::TriangleMesh mesh = scene::tool_mesh(tool);
-  std::vector<std::vector<std::array<std::int32_t, 3>>> parts(regions.size());
-  for (const auto& t : mesh.triangles) {
-    const scene::Vec3 middle_T_m = (mesh.points_m.col(t[0]) + mesh.points_m.col(t[1]) + mesh.points_m.col(t[2])) / 3.0;
-    const scene::Vec3 middle_m = pose.orientation * middle_T_m + pose.position_m;
-    const auto nearest = std::min_element(regions.begin(), regions.end(), [&](const auto& a, const auto& b) {
-      return (a.center_m - middle_m).squaredNorm() < (b.center_m - middle_m).squaredNorm();
-    });
-    parts[nearest - regions.begin()].push_back(t);
-  }
-  std::vector<double> depths_m;
-  for (const auto& part : parts) {
-    // Loose triangles, so that no vertex is without one.
-    scene::TriangleMesh piece;
-    piece.points_m.resize(3, 3 * static_cast<Eigen::Index>(part.size()));
-    for (const auto& t : part) {
-      const auto first = static_cast<std::int32_t>(3 * piece.triangles.size());
-      for (int k = 0; k < 3; ++k) piece.points_m.col(first + k) = mesh.points_m.col(t[k]);
-      piece.triangles.push_back({first, first + 1, first + 2});
-    }
-    scene::Tool one = tool;
-    one.mesh = std::make_shared<scene::TriangleMesh>(std::move(piece));
-    one.mass_center_m = scene::Vec3::Zero();
-    depths_m.push_back(scene::rest_depth_m(body, one, pose));
-  }
-  return depths_m;
 }
 
 /// One scene being answered. Levels and instants count from zero here, from one in everything shown.
@@ -226,7 +191,7 @@ class Run {
       if (!step.linear_solver.empty()) result_.linear_solver = step.linear_solver;
     }
     result_.levels.push_back(std::move(record));
-    finish(answer.steps, answer.shapes, result_);
+    fill_records(scene_, times_s_, answer.steps, answer.shapes, result_);
     shapes_.push_back(std::move(answer.shapes));
   }
 
@@ -439,64 +404,6 @@ class Run {
          << ". Finished steps are kept. Try a smaller reference.element_size_m (now "
          << element_size_m(scene_, choice_, 0) << " m on the coarsest level), more instants, or less depth.";
     return text.str();
-  }
-
-  /// The finest level's records so far.
-  void finish(const std::vector<Step>& steps, const std::vector<Eigen::Matrix3Xd>& shapes, Result& result) const {
-    result.instants.clear();
-    result.region_middles_m.clear();
-    for (auto* column : {&result.residual_penetration_m, &result.between_nodes_penetration_m, &result.equilibrium_rel,
-                         &result.volume_change_rel}) {
-      column->clear();
-    }
-    int indefinite = 0;
-    RegionIds ids;
-    for (int instant = 0; instant < count(); ++instant) {
-      const Observation& seen = steps[instant].seen;
-      scene::InstantRecord record;
-      record.time_s = times_s_[instant];
-      record.tool = scene::pose_at(scene_.track, record.time_s);
-      record.depth_m = depth_m(record.time_s);
-      record.support_force_n = seen.support_force_n;
-      record.displacement_m = shapes[instant];
-      add_regions(seen.regions, instant, ids, record);
-      result.instants.push_back(std::move(record));
-      std::vector<scene::Vec3>& middles_m = result.region_middles_m.emplace_back();
-      for (const ContactRegion& region : seen.regions) middles_m.push_back(region.center_m);
-      result.residual_penetration_m.push_back(seen.node_penetration_m);
-      result.between_nodes_penetration_m.push_back(seen.between_nodes_penetration_m);
-      result.equilibrium_rel.push_back(seen.equilibrium_rel);
-      result.volume_change_rel.push_back(seen.volume_change_rel);
-      indefinite += steps[instant].indefinite;
-    }
-    if (indefinite > 0) {
-      result.linear_solver +=
-          "; " + std::to_string(indefinite) +
-          " tangents were not positive definite and went without the tool's curvature or to UMFPACK";
-    }
-  }
-
-  /// A region's centre moves no farther than the tool there, and a little.
-  void add_regions(const std::vector<ContactRegion>& regions, int instant, RegionIds& ids,
-                   scene::InstantRecord& record) const {
-    double reach_m = scene_.fast.r_th_m;
-    if (instant > 0) {
-      const scene::Pose before = scene::pose_at(scene_.track, times_s_[instant - 1]);
-      double lever_m = 0.0;
-      for (const ContactRegion& region : regions) {
-        lever_m = std::max(lever_m, (region.center_m - record.tool.position_m).norm());
-      }
-      reach_m += (record.tool.position_m - before.position_m).norm() +
-                 lever_m * record.tool.orientation.angularDistance(before.orientation);
-    }
-    const std::vector<double> depths_m = region_depths_m(scene_, *body_, record.tool, regions);
-    for (const RegionIds::Place& place : ids.follow(regions, reach_m)) {
-      const ContactRegion& region = regions[place.region];
-      record.regions.push_back({depths_m[place.region], region.force_n, region.torque_nm, region.area_m2, place.id,
-                                region.friction_n, scene_.contact.friction && region.stuck_share == 0.0});
-    }
-    // The tool may dip in between the nodes.
-    if (regions.empty() && record.depth_m > 0.0) record.regions.push_back({.depth_m = record.depth_m});
   }
 
   const Scene& scene_;

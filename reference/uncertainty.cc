@@ -10,7 +10,7 @@ namespace {
 
 constexpr double safety = 1.25;
 constexpr double closest_pair = 1.49;
-constexpr double lowest_order = 1.0, highest_order = 2.0;
+constexpr double first_order = 1.0, lowest_order = 0.5, highest_order = 2.0;
 
 /// Two levels and what the difference between them is worth at the finest one.
 struct Pair {
@@ -60,7 +60,7 @@ std::vector<double> force_band(const std::vector<std::vector<double>>& levels, c
   const std::size_t instants = levels.empty() ? 0 : levels.back().size();
   if (levels.size() < 3) return std::vector<double>(instants, std::numeric_limits<double>::infinity());
   std::vector<double> own(instants, 0.0), band(instants);
-  for (const Pair& pair : pairs(finer, lowest_order)) {
+  for (const Pair& pair : pairs(finer, first_order)) {
     for (std::size_t i = 0; i < instants; ++i) {
       own[i] = std::max(own[i], safety * pair.weight * std::abs(levels[pair.fine][i] - levels[pair.coarse][i]));
     }
@@ -77,7 +77,7 @@ std::vector<Eigen::VectorXd> displacement_band(const std::vector<std::vector<Eig
                                                const std::vector<double>& finer) {
   const std::size_t instants = levels.empty() ? 0 : levels.back().size();
   std::vector<Eigen::VectorXd> own(instants), band(instants);
-  const double order = levels.size() < 3 ? lowest_order : observed_order(levels, finer);
+  const double order = levels.size() < 3 ? first_order : observed_order(levels, finer);
   for (std::size_t i = 0; i < instants; ++i) {
     const Eigen::Index points = levels.back()[i].cols();
     if (levels.size() < 3) {
