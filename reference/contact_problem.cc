@@ -333,14 +333,14 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     // iteration; a body that is itself unstable is left to an indifferent but slow solver.
     Eigen::VectorXd solution = assemble_tangent(state, true);
     // The step is solved for no more exactly than it is worth, nor than the last one must be: S. C. Eisenstat, H. F.
-    // Walker, SIAM J. Sci. Comput. 17 (1996) 16-32. Once the contact area changes, an old factor takes longer to
-    // correct than a new one to make.
+    // Walker, SIAM J. Sci. Comput. 17 (1996) 16-32. In a new load step, and once the contact area changes, an old
+    // factor takes longer to correct than a new one to make.
     const double away_rel = std::max(
         {report.residual_rel, open_m / length_m, still_to_move_m / largest_extent_m_, current.volume_error_rel});
     const double last_step_rel =
         std::min(force_tolerance / report.residual_rel, volume_tolerance / current.volume_error_rel);
     const double tolerance_rel = std::clamp(std::max(0.1 * away_rel, 0.01 * last_step_rel), 1e-10, 1e-2);
-    if (changed) solver_->forget();
+    if (changed || iteration == 0) solver_->forget();
     // With slip one tangent is solved several times.
     const bool slips = slip_rows_ > 0;
     const auto solve = [&] {

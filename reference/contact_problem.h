@@ -153,9 +153,6 @@ class ContactProblem : public ranks::Part {
   /// Processor time of tangents and forces, all threads.
   [[nodiscard]] double assembly_s() const noexcept { return assembly_s_; }
 
-  /// The next solve depends on its starting state only, not on what was solved before.
-  void forget() noexcept { solver_->forget(); }
-
   /// On the other ranks: their shares of what the first one's methods do.
   void follow(Order order) override;
 

@@ -64,7 +64,7 @@ void add_regions(const Scene& scene, const scene::Shape& body, const std::vector
   for (const RegionIds::Place& place : ids.follow(regions, reach_m)) {
     const ContactRegion& region = regions[place.region];
     record.regions.push_back({depths_m[place.region], region.force_n, region.torque_nm, region.area_m2, place.id,
-                              region.friction_n, scene_.contact.friction && region.stuck_share == 0.0});
+                              region.friction_n, scene.contact.friction && region.stuck_share == 0.0});
   }
   // The tool may dip in between the nodes.
   if (regions.empty() && record.depth_m > 0.0) record.regions.push_back({.depth_m = record.depth_m});

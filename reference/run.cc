@@ -315,7 +315,6 @@ class Run {
     bool converged = false;
     if (start && tool) {
       problem.set_tool(*tool);
-      problem.forget();
       solved.state = std::move(*start);
       const NewtonReport report = problem.solve(solved.state, watch);
       step.newton_iterations += report.iterations;
