@@ -20,8 +20,14 @@ class CholmodSolver : public LinearSolver {
   void analyse(const SymmetricMatrix& matrix) override;
   [[nodiscard]] bool factorise(const SymmetricMatrix& matrix) override;
   void solve(Eigen::VectorXd& x) override;
+  /// L^-1 P x and P' L^-T x, for the matrix is P' L L' P.
+  void solve_lower(Eigen::VectorXd& x) override;
+  void solve_upper(Eigen::VectorXd& x) override;
   /// By unsymmetric LU: much slower, but indifferent to sign.
   [[nodiscard]] bool solve_indefinite(const SymmetricMatrix& matrix, Eigen::VectorXd& x) override;
+  /// Of the supernodes with their zeros.
+  [[nodiscard]] std::int64_t predicted_factor_bytes() const noexcept override;
+  [[nodiscard]] double factor_cost_in_solves() const noexcept override;
   /// "CHOLMOD 3.0.14 on OpenBLAS 0.3.21 ..., 2 threads"
   [[nodiscard]] std::string description() const override;
 

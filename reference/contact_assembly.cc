@@ -1,6 +1,7 @@
 // From displacements to nodal forces and the global matrix.
 #include "reference/contact_problem.h"
 #include "reference/contact_shares.h"
+#include "reference/stopwatch.h"
 
 #include <algorithm>
 #include <thread>
@@ -296,12 +297,13 @@ Eigen::VectorXd ContactProblem<dim>::sum_of_lanes() {
 
 template <int dim>
 Eigen::VectorXd ContactProblem<dim>::assemble_tangent(const State<dim>& state, bool with_curvature) {
+  const Stopwatch watch_assembly(assembly_s_);
   if (matrix_.column_begin.empty()) {
     jointly(Order::pattern, [&] {
       ranks::send(prescribed_);
       build_pattern();
     });
-    solver_->analyse(matrix_);
+    solver_.analyse(matrix_);
   }
   return jointly(Order::assemble, [&] {
     send(state);

@@ -1,6 +1,7 @@
 #include "reference/contact_problem.h"
 
 #include "reference/contact_shares.h"
+#include "reference/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +33,8 @@ ContactProblem<dim>::ContactProblem(Mesh<dim> mesh, const scene::Material& mater
       threads_(threads),
       element_(MixedMaterial(material, kinematics), mixed(mesh_.inclusion_materials, kinematics)),
       lead_(make_parts()),
-      solver_(make_solver()) {
+      direct_(make_solver()),
+      solver_(*direct_) {
   const int n = mesh_.node_count();
   hanging_.assign(n, -1);
   for (std::size_t k = 0; k < mesh_.hanging.size(); ++k) hanging_[mesh_.hanging[k].node] = static_cast<int>(k);
@@ -260,8 +262,8 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
         current.volume_error_rel < volume_tolerance && still_to_move_m <= place_tolerance * largest_extent_m_) {
       // A balance whose tangent is indefinite is one the body would leave: a large step can end there, small ones do
       // not.
-      report.converged = last_definite;
-      if (!last_definite) report.trouble = "the balance found is not stable";
+      report.converged = last_definite && (iteration == 0 || solver_.positive_definite(matrix_));
+      if (!report.converged) report.trouble = "the balance found is not stable";
       return report;
     }
     if (report.indefinite > most_indefinite) {
@@ -286,15 +288,22 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     // The curvature of the tool lowers the tangent. Where that makes it indefinite, Newton does without for one
     // iteration; a body that is itself unstable is left to an indifferent but slow solver.
     Eigen::VectorXd solution = assemble_tangent(state, true);
-    bool definite = last_definite = solver_->factorise(matrix_);
+    // The step is solved for no more exactly than it is worth, nor than the last one must be: S. C. Eisenstat, H. F.
+    // Walker, SIAM J. Sci. Comput. 17 (1996) 16-32. Once the contact area changes, an old factor takes longer to
+    // correct than a new one to make.
+    const double away_rel = std::max(
+        {report.residual_rel, open_m / length_m, still_to_move_m / largest_extent_m_, current.volume_error_rel});
+    const double last_step_rel =
+        std::min(force_tolerance / report.residual_rel, volume_tolerance / current.volume_error_rel);
+    const double tolerance_rel = std::clamp(std::max(0.1 * away_rel, 0.01 * last_step_rel), 1e-10, 1e-2);
+    if (changed) solver_.forget();
+    bool definite = last_definite = solver_.solve(matrix_, nullptr, tolerance_rel, solution);
     if (!definite) {
       ++report.indefinite;
       solution = assemble_tangent(state, false);
-      definite = solver_->factorise(matrix_);
+      definite = solver_.solve(matrix_, nullptr, tolerance_rel, solution);
     }
-    if (definite) {
-      solver_->solve(solution);
-    } else if (!solver_->solve_indefinite(matrix_, solution)) {
+    if (!definite && !direct_->solve_indefinite(matrix_, solution)) {
       report.trouble = "the tangent is singular";
       return report;
     }
@@ -320,7 +329,10 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     for (int halvings = 0;; ++halvings, share *= 0.5) {
       state.u_m = before.u_m + share * du_m;
       state.p_pa = before.p_pa + share * dp_pa;
-      current = forces(state);
+      {
+        const Stopwatch watch_forces(assembly_s_);
+        current = forces(state);
+      }
       if (current.admissible) break;
       if (halvings == 6) {
         report.trouble = "an element turns inside out";

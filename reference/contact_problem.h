@@ -16,6 +16,7 @@
 #include "reference/mesh.h"
 #include "reference/ranks.h"
 #include "reference/regions.h"
+#include "reference/tangent_solver.h"
 #include "reference/tool_gap.h"
 #include "scene/frames.h"
 #include "scene/scene.h"
@@ -43,7 +44,7 @@ struct NewtonReport {
   bool converged = false;
   int iterations = 0;
   double residual_rel = 0.0;  ///< out-of-balance force over the sum of contact and support forces
-  int indefinite = 0;         ///< iterations whose tangent needed the curvature term dropped or UMFPACK
+  int indefinite = 0;         ///< iterations whose tangent needed the curvature term dropped or LU
   std::string trouble;        ///< in words, when not converged
 };
 
@@ -100,7 +101,13 @@ class ContactProblem : public ranks::Part {
 
   [[nodiscard]] const Mesh<dim>& mesh() const noexcept { return mesh_; }
   [[nodiscard]] int unknowns() const noexcept { return unknowns_; }
-  [[nodiscard]] std::string linear_solver() const { return solver_->description(); }
+  [[nodiscard]] std::string linear_solver() const { return solver_.description(); }
+  [[nodiscard]] const TangentWork& linear_work() const noexcept { return solver_.work(); }
+  /// Processor time of tangents and forces, all threads.
+  [[nodiscard]] double assembly_s() const noexcept { return assembly_s_; }
+
+  /// The next solve depends on its starting state only, not on what was solved before.
+  void forget() noexcept { solver_.forget(); }
 
   /// On the other ranks: their shares of what the first one's methods do.
   void follow(Order order) override;
@@ -196,9 +203,11 @@ class ContactProblem : public ranks::Part {
 
   std::unique_ptr<ranks::Lead> lead_;  // on the first of several ranks
   std::vector<int> rank_of_cell_;
-  std::vector<int> cells_;                // this rank's, ascending
-  std::unique_ptr<LinearSolver> solver_;  // after lead_
-  SymmetricMatrix matrix_;                // this rank's part
+  std::vector<int> cells_;  // this rank's, ascending
+  std::unique_ptr<LinearSolver> direct_;
+  TangentSolver solver_;
+  double assembly_s_ = 0.0;
+  SymmetricMatrix matrix_;  // this rank's part
   std::vector<Lane> lanes_;
 
   // Of the current Newton iteration.

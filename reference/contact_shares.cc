@@ -189,7 +189,7 @@ void ContactProblem<dim>::follow(Order order) {
       break;
     }
     default:
-      dynamic_cast<DistributedSolver&>(*solver_).follow(order, matrix_);
+      dynamic_cast<DistributedSolver&>(*direct_).follow(order, matrix_);
   }
 }
 

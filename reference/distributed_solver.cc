@@ -132,13 +132,34 @@ void DistributedSolver::follow(Order order, const SymmetricMatrix& own_part) {
     state_->analyse_share(own_part);
   } else if (order == Order::factorise) {
     state_->factorise_share(own_part);
-  } else {
+  } else if (order == Order::solve) {
     state_->call(solution);
+  } else {
+    Eigen::VectorXd x(own_part.size());
+    ranks::receive(x);
+    (void)multiply_share(own_part, x);
   }
 }
 
-double DistributedSolver::predicted_bytes_of_largest_rank() const noexcept { return 1e6 * state_->infog(16); }
-double DistributedSolver::predicted_bytes() const noexcept { return 1e6 * state_->infog(17); }
+Eigen::VectorXd DistributedSolver::multiply(const SymmetricMatrix& own_part, const Eigen::VectorXd& x) const {
+  Eigen::VectorXd product;
+  state_->jointly(Order::multiply, [&] {
+    ranks::send(x);
+    product = multiply_share(own_part, x);
+  });
+  return product;
+}
+
+Eigen::VectorXd DistributedSolver::multiply_share(const SymmetricMatrix& own_part, const Eigen::VectorXd& x) const {
+  Eigen::VectorXd product = LinearSolver::multiply(own_part, x);
+  ranks::sum_on_first(product.data(), static_cast<std::size_t>(product.size()));
+  return product;
+}
+
+std::int64_t DistributedSolver::predicted_factor_bytes() const noexcept {
+  constexpr std::int64_t megabyte = 1'000'000;  // in which MUMPS counts
+  return megabyte * (state_->infog(16) + 1) * ranks::on_this_machine();
+}
 
 std::string DistributedSolver::description() const {
   return "MUMPS " + std::string(state_->mumps.version_number) + " on " + std::to_string(ranks::count()) +

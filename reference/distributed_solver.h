@@ -25,17 +25,22 @@ class DistributedSolver : public LinearSolver {
   void analyse(const SymmetricMatrix& own_part) override;
   [[nodiscard]] bool factorise(const SymmetricMatrix& own_part) override;
   void solve(Eigen::VectorXd& x) override;
+  /// MUMPS does not halve a solve: all of it, and nothing. Both serve GMRES, not conjugate gradients.
+  void solve_lower(Eigen::VectorXd& x) override { solve(x); }
+  void solve_upper(Eigen::VectorXd&) override {}
   [[nodiscard]] bool solve_indefinite(const SymmetricMatrix& own_part, Eigen::VectorXd& x) override;
+  [[nodiscard]] Eigen::VectorXd multiply(const SymmetricMatrix& own_part, const Eigen::VectorXd& x) const override;
+  /// Of all ranks on this machine, were each the one that needs most, with workspace.
+  [[nodiscard]] std::int64_t predicted_factor_bytes() const noexcept override;
+  [[nodiscard]] double factor_cost_in_solves() const noexcept override { return 0.0; }
   [[nodiscard]] std::string description() const override;
 
-  /// The other ranks' side of analyse, factorise and solve.
+  /// The other ranks' side of analyse, factorise, solve and multiply.
   void follow(Order order, const SymmetricMatrix& own_part);
 
-  /// Memory for factorising, of the rank that needs most and of all together, known since analyse() [bytes].
-  [[nodiscard]] double predicted_bytes_of_largest_rank() const noexcept;
-  [[nodiscard]] double predicted_bytes() const noexcept;
-
  private:
+  [[nodiscard]] Eigen::VectorXd multiply_share(const SymmetricMatrix& own_part, const Eigen::VectorXd& x) const;
+
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -31,8 +31,22 @@ class LinearSolver {
   /// Solves with the last factor. @param x in: right-hand side; out: solution
   virtual void solve(Eigen::VectorXd& x) = 0;
 
+  /// The two halves of solve(), one after the other.
+  virtual void solve_lower(Eigen::VectorXd& x) = 0;
+  virtual void solve_upper(Eigen::VectorXd& x) = 0;
+
   /// One solve with the matrix that factorise() has just refused. @returns false when singular
   [[nodiscard]] virtual bool solve_indefinite(const SymmetricMatrix& matrix, Eigen::VectorXd& x) = 0;
+
+  /// The matrix, symmetric as it is meant, times x.
+  [[nodiscard]] virtual Eigen::VectorXd multiply(const SymmetricMatrix& matrix, const Eigen::VectorXd& x) const;
+
+  /// Memory of the factor, known since analyse().
+  [[nodiscard]] virtual std::int64_t predicted_factor_bytes() const noexcept = 0;
+
+  /// Operations of a factorisation over those of a solve, each weighed with the speed the processor has for it. Zero
+  /// when the factor serves its own matrix only.
+  [[nodiscard]] virtual double factor_cost_in_solves() const noexcept = 0;
 
   /// The library, its version and how much of the machine it uses.
   [[nodiscard]] virtual std::string description() const = 0;

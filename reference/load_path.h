@@ -52,6 +52,7 @@ class LoadPath {
       to = {time_s, problem_.rest(), false};
       return report;
     }
+    problem_.forget();
     std::optional<Solved<dim>> previous;
     if (before) previous = *before;
     Solved<dim> current = from;

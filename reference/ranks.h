@@ -21,6 +21,7 @@ enum class Order {
   analyse,    ///< of the linear solver, as the following
   factorise,
   solve,
+  multiply,
 };
 
 namespace ranks {

@@ -2,6 +2,7 @@
 #include "reference/ranks.h"
 
 #include "reference/distributed_solver.h"
+#include "reference/tangent_solver.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -141,9 +142,12 @@ TEST(DistributedSolver, SolvesTheSumOfAllParts) {
     ASSERT_TRUE(spread.factorise());
     const Eigen::VectorXd expected = wave();
     Eigen::VectorXd x = Laplacian{shift}.times(expected);
+    EXPECT_LT((spread.solver().multiply(spread.part(), expected) - x).norm(), 1e-14 * x.norm());
     spread.solver().solve(x);
     EXPECT_LT((x - expected).norm(), 1e-12 * expected.norm());
   }
+  // At least the band of a narrower matrix of as many unknowns.
+  EXPECT_GT(spread.solver().predicted_factor_bytes(), unknowns * static_cast<int>(sizeof(double)));
   EXPECT_THAT(spread.solver().description(),
               testing::HasSubstr(" on " + std::to_string(ranks::count()) + " processes"));
 }
@@ -178,6 +182,30 @@ TEST(DistributedSolver, RefusesASingularMatrix) {
   // And goes on with the next.
   spread.set({});
   EXPECT_TRUE(spread.factorise());
+}
+
+TEST(DistributedSolver, MakesTheFactorsOfATangentSolver) {
+  SpreadLaplacian spread;
+  TangentSolver tangent(spread.solver());
+  spread.set({});
+  tangent.analyse(spread.part());
+  Eigen::SparseMatrix<double> C(unknowns, unknowns);
+  for (int j = 0; j < unknowns; j += 7) C.insert((3 * j + 5) % unknowns, j) = 0.3;
+  C.makeCompressed();
+  const Eigen::VectorXd expected = wave();
+  for (const double shift : {0.0, -0.1}) {
+    spread.set({shift});
+    const Eigen::VectorXd right = Laplacian{shift}.times(expected);
+    for (const Eigen::SparseMatrix<double>* unsymmetric : {static_cast<Eigen::SparseMatrix<double>*>(nullptr), &C}) {
+      Eigen::VectorXd x = unsymmetric ? Eigen::VectorXd(right + C * expected) : right;
+      ASSERT_TRUE(tangent.solve(spread.part(), unsymmetric, 1e-10, x));
+      EXPECT_LT((x - expected).norm(), 1e-7 * expected.norm()) << shift;
+    }
+    EXPECT_TRUE(tangent.positive_definite(spread.part()));
+  }
+  spread.set({Laplacian::eigenvalue(0) * 1.01});
+  Eigen::VectorXd x = expected;
+  EXPECT_FALSE(tangent.solve(spread.part(), nullptr, 1e-10, x));
 }
 
 TEST(DistributedSolver, SeveralLiveSideBySide) {
