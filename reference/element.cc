@@ -132,6 +132,16 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
   alignas(64) double g[dim][padded] = {}, h[dim][padded] = {}, t[dim][padded] = {}, s[dim][padded] = {};
   alignas(64) double v[dim][padded] = {}, e[padded] = {}, x[3][padded] = {}, y[padded] = {};
 
+  const auto add = [](double* to, const double* x0, const double* y0, const double* x1, const double* y1,
+                      const double* x2, const double* y2) {
+    if constexpr (dim == 3) {
+      add_three_products_28(to, x0, y0, x1, y1, x2, y2);
+    } else {
+      add_three_products_12(to, x0, y0, x1, y1, x2, y2);
+    }
+  };
+  static constexpr double none[padded] = {};
+
   // The pressure unknowns are the least compressible material's. Points of softer bulk have a pressure of their own,
   // kappa (J - 1), and are only tied to the unknowns so weakly that these stay determined in a sliver.
   const MixedMaterial* least_compressible = &materials_[materials ? (*materials)[0] : 0];
@@ -145,12 +155,13 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
     const Q2<dim>& shape = shapes_[q];
     const MixedMaterial& material = materials_[materials ? (*materials)[q] : 0];
     const bool own_pressure = material.inverse_kappa_per_pa > least_compressible->inverse_kappa_per_pa;
-    const Eigen::Matrix<double, dim, dim> jacobian_m = X_m * shape.gradient;
-    const Eigen::Matrix<double, nodes, dim> G = shape.gradient * jacobian_m.inverse();  // dN/dX
+    // Lazy, or Eigen takes its path for large matrices.
+    const Eigen::Matrix<double, dim, dim> jacobian_m = X_m.lazyProduct(shape.gradient);
+    const Eigen::Matrix<double, nodes, dim> G = shape.gradient.lazyProduct(jacobian_m.inverse());  // dN/dX
     double W_m3 = rule_.weights[q] * jacobian_m.determinant();
     const Eigen::Matrix<double, dim, 1> place_m = X_m * shape.value;
     Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
-    H.template topLeftCorner<dim, dim>() = u_m * G;
+    H.template topLeftCorner<dim, dim>() = u_m.lazyProduct(G);
     double radius_m = 0.0;
     if constexpr (dim == 2) {
       radius_m = place_m[0];
@@ -204,14 +215,6 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
     for (int i = 0; i < dim; ++i) {
       for (int a = 0; a < nodes; ++a) v[i][a] = law.V_pa * t[i][a] - 2.0 / 3.0 * s[i][a];
     }
-    const auto add = [](double* to, const double* x0, const double* y0, const double* x1, const double* y1,
-                        const double* x2, const double* y2) {
-      if constexpr (dim == 3) {
-        add_three_products_28(to, x0, y0, x1, y1, x2, y2);
-      } else {
-        add_three_products_12(to, x0, y0, x1, y1, x2, y2);
-      }
-    };
     for (int i = 0, block = 0; i < dim; ++i) {
       for (int j = i; j < dim; ++j, ++block) {
         for (int a = 0; a < nodes; ++a) {
@@ -223,7 +226,6 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
       }
     }
     // The diagonal part: l_a : l_b and l_a : (l_b tau_0), summed over directions; a plane cell has room for a zero.
-    static constexpr double none[padded] = {};
     alignas(64) double z[3][padded] = {};
     for (int m = 0; m < dim; ++m) {
       for (int a = 0; a < nodes; ++a) {
@@ -247,6 +249,26 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
   }
   if (!with_tangent) return true;
 
+  // Condense: dp = compliance^-1 (volume + coupling du).
+  const Eigen::Matrix<double, pressures, pressures> inverse = compliance.inverse();
+  out.pressure_gain = inverse * coupling;
+  out.pressure_offset_pa = inverse * out.volume_m3;
+  out.condensed_force_n = out.force_n + out.pressure_gain.transpose() * out.volume_m3;
+  alignas(64) double coupled[4][dim][padded] = {}, gain[4][dim][padded] = {};
+  for (int m = 0; m < pressures; ++m) {
+    for (int i = 0; i < dim; ++i) {
+      for (int a = 0; a < nodes; ++a) {
+        coupled[m][i][a] = coupling(m, i * nodes + a);
+        gain[m][i][a] = out.pressure_gain(m, i * nodes + a);
+      }
+    }
+  }
+  for (int i = 0, block = 0; i < dim; ++i) {
+    for (int j = i; j < dim; ++j, ++block) {
+      add(K[block], coupled[0][i], gain[0][j], coupled[1][i], gain[1][j], coupled[2][i], gain[2][j]);
+      if (pressures == 4) add(K[block], coupled[3][i], gain[3][j], none, none, none, none);
+    }
+  }
   for (int i = 0, block = 0; i < dim; ++i) {
     for (int j = i; j < dim; ++j, ++block) {
       for (int a = 0; a < nodes; ++a) {
@@ -258,12 +280,6 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
       }
     }
   }
-  // Condense: dp = compliance^-1 (volume + coupling du).
-  const Eigen::Matrix<double, pressures, pressures> inverse = compliance.inverse();
-  out.pressure_gain = inverse * coupling;
-  out.pressure_offset_pa = inverse * out.volume_m3;
-  out.stiffness.noalias() += coupling.transpose() * out.pressure_gain;
-  out.condensed_force_n = out.force_n + out.pressure_gain.transpose() * out.volume_m3;
   return true;
 }
 
