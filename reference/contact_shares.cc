@@ -14,7 +14,8 @@ namespace {
 
 /// Everything of a mesh and its materials, as one run of bytes.
 template <int dim>
-Record to_record(const Mesh<dim>& mesh, const scene::Material& material, scene::Kinematics kinematics) {
+Record to_record(const Mesh<dim>& mesh, const scene::Material& material, scene::Kinematics kinematics,
+                 const Numerics& numerics) {
   Record record;
   record.put(mesh.node_count());
   record.put(mesh.points_m.data(), static_cast<std::size_t>(mesh.points_m.size()));
@@ -33,6 +34,7 @@ Record to_record(const Mesh<dim>& mesh, const scene::Material& material, scene::
   put_all(mesh.inclusion_materials);
   record.put(&material, 1);
   record.put(&kinematics, 1);
+  record.put(&numerics, 1);
   return record;
 }
 
@@ -58,7 +60,10 @@ std::unique_ptr<ranks::Part> from_record(Record record) {
   scene::Kinematics kinematics;
   record.take(&material, 1);
   record.take(&kinematics, 1);
-  return std::make_unique<ContactProblem<dim>>(std::move(mesh), material, kinematics, false, false);
+  Numerics numerics;
+  record.take(&numerics, 1);
+  return std::make_unique<ContactProblem<dim>>(std::move(mesh), material, kinematics, false, false, ranks::threads(),
+                                               numerics);
 }
 
 template <int dim>
@@ -123,7 +128,7 @@ void follow_first_rank() { ranks::follow_orders({{2, receive_part<2>}, {3, recei
 template <int dim>
 std::unique_ptr<ranks::Lead> ContactProblem<dim>::make_parts() const {
   if (ranks::count() == 1 || !ranks::first()) return nullptr;
-  const Record record = to_record(mesh_, material_, kinematics_);
+  const Record record = to_record(mesh_, material_, kinematics_, numerics_);
   const std::size_t size = record.bytes().size();
   auto lead = std::make_unique<ranks::Lead>(dim);
   ranks::send(&size, sizeof size);
