@@ -40,16 +40,11 @@ TEST(SlipCoupling, SolvesTheUnsymmetricSystem) {
   slip.row = row.sparseView();
   slip.normal_n = normal_n;
   slip.guess_n = matrix(slips, 1);
-  std::vector<double> x(b.data(), b.data() + unknowns);
+  Eigen::VectorXd x = b;
   const int solutions = solve_with_slip(
-      slip,
-      [&](std::vector<double>& v) {
-        const Eigen::VectorXd solved = K.llt().solve(Eigen::VectorXd::Map(v.data(), unknowns));
-        Eigen::VectorXd::Map(v.data(), unknowns) = solved;
-      },
-      x);
+      slip, [&](Eigen::VectorXd& v) { v = K.llt().solve(v).eval(); }, x);
   const Eigen::VectorXd exact = (K + column * row).lu().solve(b - column * normal_n);
-  EXPECT_LT((Eigen::VectorXd::Map(x.data(), unknowns) - exact).norm(), 1e-5 * exact.norm());
+  EXPECT_LT((x - exact).norm(), 1e-5 * exact.norm());
   EXPECT_LE(solutions, slips + 2);  // one a dimension, and the first and the last
 }
 
