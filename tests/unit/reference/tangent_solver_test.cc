@@ -1,7 +1,7 @@
 #include "reference/tangent_solver.h"
 
 #include <gtest/gtest.h>
-#include <Eigen/Dense>
+#include <Eigen/SparseCore>
 
 #include <cmath>
 #include <numbers>
@@ -48,16 +48,6 @@ Eigen::SparseMatrix<double> whole(const SymmetricMatrix& K) {
 
 Eigen::VectorXd load(int n) {
   return Eigen::VectorXd::NullaryExpr(n, [](Eigen::Index i) { return std::cos(0.1 * i); });
-}
-
-/// A sparse addition on the rows of a few unknowns, as sliding nodes make it: far from symmetric.
-Eigen::SparseMatrix<double> sliding(int n) {
-  Eigen::SparseMatrix<double> C(n, n);
-  for (int k = 0; k < 40; ++k) {
-    C.insert(50 * k, 50 * k + 1) = 0.15;
-    C.insert(50 * k, 50 * k + 3) = -0.08;
-  }
-  return C;
 }
 
 TEST(TangentSolver, OneFactorServesMatricesNearIt) {
