@@ -50,32 +50,25 @@ TEST(Uncertainty, UnknownWithFewerThanThreeLevels) {
   EXPECT_TRUE(std::isinf(shape[0][1]));
 }
 
-/// Errors of a whole surface that fall with first order are held with the safety factor to spare, point by point, and
-/// those of higher order with more.
-TEST(Uncertainty, ShapeHoldsErrorsOfFirstOrderAndHigher) {
+/// Errors of a whole surface that fall with one order are held with the safety factor to spare, point by point; orders
+/// beyond 2 are taken for 2.
+TEST(Uncertainty, ShapeHoldsAnErrorOfTheOrderItShows) {
   Eigen::Matrix3Xd error = Eigen::Matrix3Xd::Zero(3, 2);
   error.col(1) << 0.3, 0.4, 0.0;
   for (const std::vector<double>& finer : {std::vector<double>{1.0, 1.5, 2.0}, {1.5, 2.0, 3.0}, {1.0, 2.0, 4.0}}) {
-    for (const double order : {1.0, 1.7, 3.0}) {
+    for (const double order : {1.0, 1.7, 2.0, 3.0}) {
       std::vector<std::vector<Eigen::Matrix3Xd>> levels;
       for (const double f : finer) levels.push_back({Eigen::Matrix3Xd::Ones(3, 2) + std::pow(f, -order) * error});
       const Eigen::VectorXd band = displacement_band(levels, finer)[0];
       EXPECT_EQ(band[0], 0.0);
       const double left = 0.5 * std::pow(finer.back(), -order);
-      if (order == 1.0) {
-        EXPECT_NEAR(band[1] / (1.25 * left), 1.0, 1e-9);
+      if (order <= 2.0) {
+        EXPECT_NEAR(band[1] / (1.25 * left), 1.0, 1e-9) << order;
       } else {
-        EXPECT_GT(band[1], 1.25 * left) << order;
+        EXPECT_GT(band[1], 1.5 * left) << order;
       }
     }
   }
-}
-
-/// A mesh of another coarse grid in between tells nothing about the shape.
-TEST(Uncertainty, ShapeComparesMeshesOfOneCoarseGrid) {
-  const Eigen::Matrix3Xd u = Eigen::Matrix3Xd::Ones(3, 1);
-  EXPECT_EQ(displacement_band({{u}, {9.0 * u}, {u}}, {1.0, 1.5, 2.0})[0][0], 0.0);
-  EXPECT_GT(displacement_band({{u}, {9.0 * u}, {u}}, {1.0, 2.0, 4.0})[0][0], 1.0);
 }
 
 /// Three instants: apart, shallow, deep.
