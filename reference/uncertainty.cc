@@ -10,7 +10,7 @@ namespace {
 
 constexpr double safety = 1.25;
 constexpr double closest_pair = 1.49;
-constexpr double first_order = 1.0, lowest_order = 0.5, highest_order = 2.0;
+constexpr double first_order = 1.0, lowest_order = 1.0, highest_order = 2.0;
 
 /// Two levels and what the difference between them is worth at the finest one.
 struct Pair {

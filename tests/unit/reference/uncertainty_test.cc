@@ -56,7 +56,7 @@ TEST(Uncertainty, ShapeHoldsAnErrorOfTheOrderItShows) {
   Eigen::Matrix3Xd error = Eigen::Matrix3Xd::Zero(3, 2);
   error.col(1) << 0.3, 0.4, 0.0;
   for (const std::vector<double>& finer : {std::vector<double>{1.0, 1.5, 2.0}, {1.5, 2.0, 3.0}, {1.0, 2.0, 4.0}}) {
-    for (const double order : {0.5, 1.0, 1.7, 2.0, 3.0}) {
+    for (const double order : {1.0, 1.7, 2.0, 3.0}) {
       std::vector<std::vector<Eigen::Matrix3Xd>> levels;
       for (const double f : finer) levels.push_back({Eigen::Matrix3Xd::Ones(3, 2) + std::pow(f, -order) * error});
       const Eigen::VectorXd band = displacement_band(levels, finer)[0];
