@@ -78,7 +78,7 @@ reference::Result solve_with_progress(const scene::Scene& scene, const scene::Su
   solve_options.stop = &stop_requested;
   solve_options.rest_area_m2 = surface.vertex_area_m2;
   if (options.memory_gib) solve_options.memory_limit_bytes = *options.memory_gib * gibibyte;
-  if (options.minutes) solve_options.seconds_limit = 60.0 * *options.minutes;
+  solve_options.seconds_limit = 60.0 * options.minutes;
   solve_options.progress = [&](const reference::Progress& p) {
     line.show(progress_text(p), p.step_finished || !p.note.empty());
   };

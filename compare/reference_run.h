@@ -6,8 +6,8 @@
 #include "scene/surface.h"
 
 #include <filesystem>
-#include <optional>
 #include <functional>
+#include <optional>
 
 namespace touchstone::compare {
 
@@ -16,7 +16,8 @@ struct ReferenceOptions {
   std::filesystem::path store = "out/reference-store";  ///< content-addressed results, shared by all runs
   std::optional<int> levels;                            ///< in place of the scene's levels or error
   std::optional<double> error;                          ///< in place of the scene's levels or error
-  std::optional<double> memory_gib, minutes;            ///< limits of a refinement towards an error
+  std::optional<double> memory_gib;                     ///< limit of a refinement towards an error, as the next
+  double minutes = 60.0;
 };
 
 /// The scene with the levels or the error that the command line asks for.

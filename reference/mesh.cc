@@ -14,9 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
-#include <utility>
 
 namespace touchstone::reference {
 namespace {
@@ -115,15 +113,13 @@ void refine(dealii::Triangulation<dim>& grid, const Grading<dim>& grading, const
   }
 }
 
-/// Cells along each edge of a block's coarse grid. Without a number of cuts: edges of the largest dyadic multiple of
-/// the smallest size that still resolves the body.
+/// Cells along each edge of a block's coarse grid.
 template <int dim>
 std::vector<unsigned int> coarse_cells(const std::vector<double>& lengths, const Grading<dim>& grading) {
   std::vector<unsigned int> cells;
-  if (grading.cuts > 0) {
+  if (grading.halves_the_block) {
     const double shortest = *std::min_element(lengths.begin(), lengths.end());
-    for (const double length : lengths)
-      cells.push_back(static_cast<unsigned int>(grading.cuts * std::lround(length / shortest)));
+    for (const double length : lengths) cells.push_back(static_cast<unsigned int>(std::lround(length / shortest)));
     return cells;
   }
   double edge = grading.largest_m;
@@ -132,35 +128,6 @@ std::vector<unsigned int> coarse_cells(const std::vector<double>& lengths, const
   for (const double length : lengths)
     cells.push_back(std::max(1u, static_cast<unsigned int>(std::ceil(length / edge - 1e-6))));
   return cells;
-}
-
-/// Every cell of a coarse grid in cuts^dim cells, their corners by multilinear interpolation.
-template <int dim>
-void cut_cells(int cuts, std::vector<dealii::Point<dim>>& vertices, std::vector<dealii::CellData<dim>>& cells) {
-  constexpr int corners = 1 << dim;
-  const std::vector<dealii::Point<dim>> old_vertices = std::exchange(vertices, {});
-  const std::vector<dealii::CellData<dim>> old_cells = std::exchange(cells, {});
-  const int children = dim == 3 ? cuts * cuts * cuts : cuts * cuts;
-  std::map<std::array<long, dim>, unsigned int> numbers;
-  for (const dealii::CellData<dim>& old : old_cells) {
-    for (int child = 0; child < children; ++child) {
-      dealii::CellData<dim>& cell = cells.emplace_back();
-      for (int corner = 0; corner < corners; ++corner) {
-        dealii::Point<dim> unit, place;
-        for (int d = 0, rest = child; d < dim; ++d, rest /= cuts) {
-          unit[d] = static_cast<double>(rest % cuts + (corner >> d & 1)) / cuts;
-        }
-        for (int v = 0; v < corners; ++v) {
-          place += dealii::GeometryInfo<dim>::d_linear_shape_function(unit, v) * old_vertices[old.vertices[v]];
-        }
-        std::array<long, dim> key;
-        for (int d = 0; d < dim; ++d) key[d] = std::lround(1e9 * place[d]);
-        const auto [entry, fresh] = numbers.try_emplace(key, static_cast<unsigned int>(vertices.size()));
-        if (fresh) vertices.push_back(place);
-        cell.vertices[corner] = entry->second;
-      }
-    }
-  }
 }
 
 /// Plain arrays from a finished grid: one quadratic scalar degree of freedom is one node.
@@ -262,7 +229,6 @@ Mesh<dim> mapped_mesh(const MappedSpec<dim>& spec) {
   }
   std::vector<dealii::CellData<dim>> cells(spec.cells.size());
   for (std::size_t c = 0; c < cells.size(); ++c) cells[c].vertices.assign(spec.cells[c].begin(), spec.cells[c].end());
-  if (spec.grading.cuts > 1) cut_cells(spec.grading.cuts, vertices, cells);
   // Refinement in the plane relies on both cells at an edge running it the same way.
   if constexpr (dim == 2) dealii::GridTools::consistently_order_cells(cells);
   dealii::Triangulation<dim> grid;

@@ -80,11 +80,9 @@ struct Grading {
   double growth = 0.5;
   double largest_m = 0.0;
   std::vector<FineSet<dim>> sets = {};
-  /// Each cell is the coarse grid's, halved a number of times. With 1 or 3 the coarse grid does not depend on the sizes
-  /// above, so that meshes of one family have cells of exactly 1, 1/2, 1/4, ... or 2/3, 1/3, ... of a common size: a
-  /// block's shortest edge, or every cell of a grid that is mapped, is cut into so many. 0: a block takes the most that
-  /// the sizes allow.
-  int cuts = 0;
+  /// A block's cells are its shortest edge halved a number of times, so that meshes of one family have cells of exactly
+  /// 1, 1/2, 1/4, ... of a common size. Otherwise they are the largest that the sizes above allow.
+  bool halves_the_block = false;
 };
 
 /// Box [lower, upper]; its z = lower face is held. With symmetric_x the box is the half x >= 0 of the body and

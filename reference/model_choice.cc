@@ -57,7 +57,7 @@ Grading<dim> level_grading(const Scene& scene, const ModelChoice& choice, int le
   constexpr double coarsest_cells = dim == 2 ? 8.0 : 2.0;  // to the radius of an inclusion
   const double finer = refinement(level);
   Grading<dim> grading;
-  grading.cuts = level % 2 == 0 ? 1 : 3;
+  grading.halves_the_block = true;
   const double base_m = element_size_m(scene, choice, level);
   const auto add = [&](const Vec3& center_m, const Vec3& normal, double radius_m, double size_m) {
     if constexpr (dim == 3) {
@@ -250,7 +250,7 @@ double element_size_m(const Scene& scene, const ModelChoice& choice, int level) 
   return scene.reference.element_size_m.value_or(choice.half_width_m / cells_per_radius) / refinement(level);
 }
 
-double refinement(int level) { return std::ldexp(level % 2 == 0 ? 1.0 : 1.5, level / 2); }
+double refinement(int level) { return std::exp2(level); }
 
 template <int dim>
 Mesh<dim> level_mesh(const Scene& scene, const ModelChoice& choice, int level, const MeshChange& change) {

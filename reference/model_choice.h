@@ -37,16 +37,15 @@ inline constexpr double smallest_fillet_share = 0.25;
 /// needed. 1/R is the sum of the curvatures of tool and body.
 [[nodiscard]] double expected_contact_radius_m(const scene::Scene& scene, double depth_m);
 
-/// How much smaller the cells under the tool are on a level than on level 0: 1, 1.5, 2, 3, 4, 6, ... Every second level
-/// halves them, and a level in between tells whether two agree by chance.
+/// How much smaller the cells under the tool are on a level than on level 0: 1, 2, 4, ... Ratios in between would need
+/// another coarse grid, and so another far field, which the differences of the levels would show as if it were theirs.
 [[nodiscard]] double refinement(int level);
 
 /// Edge of the cells at the rim of the deepest contact on a level, 0 the coarsest, as wished: octree cells are up to
-/// half of it, by the same share on every level. Cells are
-/// smaller towards the middle, so that shallower contacts are resolved by as many cells as the deepest, down to a
-/// tenth of its depth; and smaller where the tool bends tightly: rim_share of the bend's radius on the coarsest level,
-/// but at least a sixteenth of the others. From scene.reference.element_size_m; automatic: a / 1.5 in three dimensions,
-/// a / 4 in two.
+/// half of it, by the same share on every level. Cells are smaller towards the middle, so that shallower contacts are
+/// resolved by as many cells as the deepest, down to a tenth of its depth; and smaller where the tool bends tightly:
+/// rim_share of the bend's radius on the coarsest level, but at least a sixteenth of the others. From
+/// scene.reference.element_size_m; automatic: a / 1.5 in three dimensions, a / 4 in two.
 [[nodiscard]] double element_size_m(const scene::Scene& scene, const ModelChoice& choice, int level);
 inline constexpr double rim_share = 0.4;
 

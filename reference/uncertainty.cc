@@ -10,7 +10,6 @@ namespace {
 
 constexpr double safety = 1.25;
 constexpr double closest_pair = 1.49;
-constexpr double first_order = 1.0, lowest_order = 1.0, highest_order = 2.0;
 
 /// Two levels and what the difference between them is worth at the finest one.
 struct Pair {
@@ -18,40 +17,14 @@ struct Pair {
   double weight;
 };
 
-/// @param order  of the error in the cell size
-std::vector<Pair> pairs(const std::vector<double>& finer, double order) {
+std::vector<Pair> pairs(const std::vector<double>& finer) {
   const std::size_t last = finer.size() - 1;
-  const auto error = [&](std::size_t level) { return std::pow(finer[last] / finer[level], order); };
   std::vector<Pair> list;
   for (const auto [coarse, fine] : {std::array{last - 1, last}, {last - 2, last}, {last - 2, last - 1}}) {
     if (finer[fine] < closest_pair * finer[coarse]) continue;
-    list.push_back({coarse, fine, 1.0 / (error(coarse) - error(fine))});
+    list.push_back({coarse, fine, 1.0 / (finer[last] / finer[coarse] - finer[last] / finer[fine])});
   }
   return list;
-}
-
-/// The order at which the last three levels approach each other, all points and instants together.
-double observed_order(const std::vector<std::vector<Eigen::Matrix3Xd>>& levels, const std::vector<double>& finer) {
-  const std::size_t last = finer.size() - 1;
-  const auto change2 = [&](std::size_t level) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < levels[level].size(); ++i)
-      sum += (levels[level + 1][i] - levels[level][i]).squaredNorm();
-    return sum;
-  };
-  const double before2 = change2(last - 2), after2 = change2(last - 1);
-  if (after2 == 0.0) return highest_order;
-  const double ratio = std::sqrt(before2 / after2);
-  const auto ratio_at = [&](double order) {
-    const auto error = [&](std::size_t level) { return std::pow(finer[level], -order); };
-    return (error(last - 2) - error(last - 1)) / (error(last - 1) - error(last));
-  };
-  double low = lowest_order, high = highest_order;
-  for (int step = 0; step < 40; ++step) {
-    const double middle = 0.5 * (low + high);
-    (ratio_at(middle) < ratio ? low : high) = middle;
-  }
-  return low;
 }
 
 }  // namespace
@@ -60,7 +33,7 @@ std::vector<double> force_band(const std::vector<std::vector<double>>& levels, c
   const std::size_t instants = levels.empty() ? 0 : levels.back().size();
   if (levels.size() < 3) return std::vector<double>(instants, std::numeric_limits<double>::infinity());
   std::vector<double> own(instants, 0.0), band(instants);
-  for (const Pair& pair : pairs(finer, first_order)) {
+  for (const Pair& pair : pairs(finer)) {
     for (std::size_t i = 0; i < instants; ++i) {
       own[i] = std::max(own[i], safety * pair.weight * std::abs(levels[pair.fine][i] - levels[pair.coarse][i]));
     }
@@ -77,7 +50,6 @@ std::vector<Eigen::VectorXd> displacement_band(const std::vector<std::vector<Eig
                                                const std::vector<double>& finer) {
   const std::size_t instants = levels.empty() ? 0 : levels.back().size();
   std::vector<Eigen::VectorXd> own(instants), band(instants);
-  const double order = levels.size() < 3 ? first_order : observed_order(levels, finer);
   for (std::size_t i = 0; i < instants; ++i) {
     const Eigen::Index points = levels.back()[i].cols();
     if (levels.size() < 3) {
@@ -85,7 +57,7 @@ std::vector<Eigen::VectorXd> displacement_band(const std::vector<std::vector<Eig
       continue;
     }
     own[i].setZero(points);
-    for (const Pair& pair : pairs(finer, order)) {
+    for (const Pair& pair : pairs(finer)) {
       const Eigen::Matrix3Xd change_m = levels[pair.fine][i] - levels[pair.coarse][i];
       own[i] = own[i].cwiseMax(safety * pair.weight * change_m.colwise().norm().transpose());
     }

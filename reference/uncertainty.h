@@ -26,11 +26,8 @@ namespace touchstone::reference {
 [[nodiscard]] std::vector<double> force_band(const std::vector<std::vector<double>>& levels,
                                              const std::vector<double>& finer);
 
-/// The same per rest point, with the length of the difference of two displacement vectors, and the quotients for an
-/// error of the order p that the three levels show together, at least 1 and at most 2:
-///   |Fk - Fj| / ((f2 / fj)^p - (f2 / fk)^p),  p from the root mean square changes over all points and instants.
-/// A whole surface does not jump with the contact's edge: its changes fall steadily, and Roache's band with the
-/// observed order is meant for that. Quadratic cells give 3 where the displacement is smooth, 2 at the contact's edge.
+/// The same per rest point, with the length of the difference of two displacement vectors. Quadratic cells do better than
+/// first order, but the far field is refined less than the contact.
 /// @param levels  [level][instant], each 3 x points
 /// @returns per instant, per point
 [[nodiscard]] std::vector<Eigen::VectorXd> displacement_band(const std::vector<std::vector<Eigen::Matrix3Xd>>& levels,

@@ -38,16 +38,12 @@ std::string text_of(double value, const char* format = "%.3g") {
 
 double E_star_pa(double nu) { return contact_modulus_pa(E_pa, nu); }
 
-/// Every second level halves the cells.
-int halving_level(int mesh) { return 2 * mesh; }
-
 /// The answers on successive meshes, coarsest first.
 std::vector<HalfSpaceAnswer> on_meshes(HalfSpaceProblem problem, int meshes, const Effort& effort,
                                        const std::string& what) {
   std::vector<HalfSpaceAnswer> answers;
-  for (int mesh = 0; mesh < meshes; ++mesh) {
-    problem.level = halving_level(mesh);
-    effort.tell(what + ", mesh " + std::to_string(mesh + 1) + " of " + std::to_string(meshes));
+  for (problem.level = 0; problem.level < meshes; ++problem.level) {
+    effort.tell(what + ", mesh " + std::to_string(problem.level + 1) + " of " + std::to_string(meshes));
     answers.push_back(indent_half_space(problem));
   }
   return answers;
@@ -65,7 +61,7 @@ double peak_of(const HalfSpaceAnswer& answer) { return answer.peak_pressure_pa; 
 
 /// What the cylinder's end adds to the force: half of what it adds at half the size, on the second mesh.
 double domain_part(HalfSpaceProblem problem) {
-  problem.level = halving_level(1);
+  problem.level = 1;
   const double whole_n = indent_half_space(problem).force_n;
   problem.domain_over_patch *= 0.5;
   return indent_half_space(problem).force_n / whole_n - 1.0;
@@ -198,10 +194,9 @@ Findings hertz_finite(const Effort& effort) {
                                           values_of(answers, radius_of)));
     effort.tell(at + ", small strain");
     problem.kinematics = Kinematics::small;
-    const int mesh = meshes - 2;
-    problem.level = halving_level(mesh);
+    problem.level = meshes - 2;
     const double small_n = indent_half_space(problem).force_n;
-    findings.notes.push_back(at + ": finite strain is " + text_of(100.0 * (answers[mesh].force_n / small_n - 1.0)) +
+    findings.notes.push_back(at + ": finite strain is " + text_of(100.0 * (answers[problem.level].force_n / small_n - 1.0)) +
                              " % of the small-strain force on the same mesh, at a/R = " + text_of(a_over_R) + ".");
   }
   findings.notes.push_back(mesh_note(meshes));
@@ -334,7 +329,7 @@ Findings pressed_ball(const Effort& effort) {
     PressedBall finest;
     for (int mesh = 0; mesh < meshes; ++mesh) {
       effort.tell("depth " + text_of(1e3 * d_m) + " mm, mesh " + std::to_string(mesh + 1));
-      finest = press_half_ball(radius_m, material, d_m, Kinematics::finite, halving_level(mesh));
+      finest = press_half_ball(radius_m, material, d_m, Kinematics::finite, mesh);
       peak[k].push_back(finest.peak_pa / hertz_peak_pressure_pa(exact));
       radius[k].push_back(finest.contact_radius_m / exact.contact_radius_m);
     }
@@ -447,7 +442,7 @@ Findings scene_problem(const Effort& effort) {
   scene.track = {{0.0, {{0.0, 0.0, half_space_m + R_m}, Eigen::Quaterniond::Identity()}},
                  {1.0, {{0.0, 0.0, half_space_m + R_m - deepest_m}, Eigen::Quaterniond::Identity()}}};
   scene.reference.kinematics = Kinematics::small;
-  scene.reference.levels = 1 + halving_level(effort.quick ? 3 : 4);
+  scene.reference.levels = effort.quick ? 4 : 5;
   scene.compare.instants = effort.quick ? 3 : 5;
   const auto store = std::filesystem::temp_directory_path() / ("touchstone-verify-" + std::to_string(::getpid()));
   reference::Options options;

@@ -40,7 +40,7 @@ struct HalfSpaceProblem {
   Punch punch;
   double depth_m = 0.0;
   scene::Kinematics kinematics = scene::Kinematics::small;
-  int level = 6;  ///< mesh of level_mesh(): 4, 6, 8, 12, 16, ... cells to the patch's radius
+  int level = 3;  ///< mesh of level_mesh(): 4, 8, 16, 32, ... cells to the patch's radius
   /// Cylinder's radius and height over the patch's radius. The far end adds about 1.13 / this to the force.
   double domain_over_patch = 3000.0;
   Eigen::VectorXd radii_m = {};  ///< where on the surface the displacement is wanted

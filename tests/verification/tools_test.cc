@@ -181,7 +181,8 @@ TEST(Tools, TwoPinsFarApart) {
   EXPECT_NEAR(both.instants[2].regions[1].depth_m, depth_m - apart_m * std::sin(0.25 * angle), 2e-5);
   // Upright, the right pin's force pulls the tool about -y.
   const scene::RegionRecord &right = both.instants[3].regions[0], &left = both.instants[3].regions[1];
-  EXPECT_NEAR(left.force_n.z() / right.force_n.z(), 1.0, 1e-4);
+  // The cells under the two are not quite mirror images.
+  EXPECT_NEAR(left.force_n.z() / right.force_n.z(), 1.0, 0.01);
   EXPECT_NEAR(right.torque_nm.y() / (-0.5 * apart_m * right.force_n.z()), 1.0, 0.02);
   EXPECT_NEAR(left.torque_nm.y() / (0.5 * apart_m * left.force_n.z()), 1.0, 0.02);
   EXPECT_NEAR(right.depth_m, depth_m, 2e-5);
