@@ -137,9 +137,6 @@ void DistributedSolver::follow(Order order, const SymmetricMatrix& own_part) {
   }
 }
 
-double DistributedSolver::predicted_bytes_of_largest_rank() const noexcept { return 1e6 * state_->infog(16); }
-double DistributedSolver::predicted_bytes() const noexcept { return 1e6 * state_->infog(17); }
-
 std::string DistributedSolver::description() const {
   return "MUMPS " + std::string(state_->mumps.version_number) + " on " + std::to_string(ranks::count()) +
          (ranks::count() == 1 ? " process and " : " processes and ") + blas_description(state_->threads) + " each";

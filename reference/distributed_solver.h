@@ -31,10 +31,6 @@ class DistributedSolver : public LinearSolver {
   /// The other ranks' side of analyse, factorise and solve.
   void follow(Order order, const SymmetricMatrix& own_part);
 
-  /// Memory for factorising, of the rank that needs most and of all together, known since analyse() [bytes].
-  [[nodiscard]] double predicted_bytes_of_largest_rank() const noexcept;
-  [[nodiscard]] double predicted_bytes() const noexcept;
-
  private:
   struct State;
   std::unique_ptr<State> state_;

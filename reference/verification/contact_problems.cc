@@ -1,11 +1,11 @@
 // A rigid tool on an elastic body.
 #include "reference/model_choice.h"
-#include "reference/shifted_ball.h"
 #include "reference/solver.h"
 #include "reference/tool_distance.h"
 #include "reference/verification/closed_forms.h"
 #include "reference/verification/half_space.h"
 #include "reference/verification/problem.h"
+#include "reference/verification/shifted_ball.h"
 #include "reference/verification/solids.h"
 
 #include <unistd.h>
@@ -196,7 +196,8 @@ Findings hertz_finite(const Effort& effort) {
     problem.kinematics = Kinematics::small;
     problem.level = meshes - 2;
     const double small_n = indent_half_space(problem).force_n;
-    findings.notes.push_back(at + ": finite strain is " + text_of(100.0 * (answers[problem.level].force_n / small_n - 1.0)) +
+    findings.notes.push_back(at + ": finite strain is " +
+                             text_of(100.0 * (answers[problem.level].force_n / small_n - 1.0)) +
                              " % of the small-strain force on the same mesh, at a/R = " + text_of(a_over_R) + ".");
   }
   findings.notes.push_back(mesh_note(meshes));

@@ -2,9 +2,9 @@
 #include "reference/contact_problem.h"
 #include "reference/load_path.h"
 #include "reference/mesh.h"
-#include "reference/shifted_ball.h"
 #include "reference/tool_distance.h"
 #include "reference/verification/closed_forms.h"
+#include "reference/verification/shifted_ball.h"
 
 #include <gtest/gtest.h>
 

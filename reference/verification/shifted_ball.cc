@@ -1,4 +1,4 @@
-#include "reference/shifted_ball.h"
+#include "reference/verification/shifted_ball.h"
 
 #include "reference/contact_problem.h"
 #include "reference/mesh.h"
