@@ -12,7 +12,6 @@
 #include <iterator>
 #include <system_error>
 #include <thread>
-#include <utility>
 
 namespace touchstone::scene {
 namespace {
@@ -33,7 +32,6 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   [[nodiscard]] int number() const noexcept { return number_; }
-  [[nodiscard]] int release() noexcept { return std::exchange(number_, -1); }
 
  private:
   int number_;
@@ -67,15 +65,18 @@ int sync(int file) {
   return ::fsync(file) == 0 || errno == EINVAL ? 0 : errno;
 }
 
-/// @returns false when another run took the temporary file for a dead run's
+/// @returns false when another run removed the temporary file before it was locked, or no locks can be had
 bool try_write(const std::filesystem::path& path, std::string_view content) {
   std::filesystem::path temporary;
-  Descriptor file(open_temporary(path, temporary));
+  const Descriptor file(open_temporary(path, temporary));
   if (file.number() < 0) fail("cannot write", path, errno);
+  // Tells remove_unfinished() that this run lives, until the file has its name.
+  ::flock(file.number(), LOCK_EX);
   int error = write_all(file.number(), content);
   if (error == 0) error = sync(file.number());
-  // A network file system may report a full disk only here.
-  if (::close(file.release()) != 0 && error == 0) error = errno;
+  // A network file system may report a full disk only at a close; a copy's keeps the lock.
+  const int copy = ::dup(file.number());
+  if ((copy < 0 || ::close(copy) != 0) && error == 0) error = errno;
   if (error == 0 && ::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
   if (error == ENOENT) return false;
   if (error != 0) {
@@ -108,9 +109,11 @@ std::optional<std::string> read_file(const std::filesystem::path& path) {
 
 void remove_unfinished(const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().filename().string().find(unfinished_mark) != std::string::npos) {
-      std::filesystem::remove(entry.path());
-    }
+    if (entry.path().filename().string().find(unfinished_mark) == std::string::npos) continue;
+    const Descriptor file(::open(entry.path().c_str(), O_RDONLY | O_CLOEXEC));
+    const bool of_a_live_run =
+        file.number() >= 0 && ::flock(file.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    if (!of_a_live_run) std::filesystem::remove(entry.path());
   }
 }
 

@@ -17,8 +17,9 @@ void write_file(const std::filesystem::path& path, std::string_view content);
 /// The bytes of a file, or nothing when there is none that can be read.
 [[nodiscard]] std::optional<std::string> read_file(const std::filesystem::path& path);
 
-/// Removes the temporary files that killed runs left in a folder, not in those below it. A live run whose temporary
-/// file goes with them writes it again. @throws std::filesystem::filesystem_error
+/// Removes the temporary files that killed runs left in a folder, not in those below it. A live run holds a lock on its
+/// own; on a file system that knows no locks it may lose it here and writes it again.
+/// @throws std::filesystem::filesystem_error
 void remove_unfinished(const std::filesystem::path& folder);
 
 /// Makes the folder and writes to it as a trial.
