@@ -1,6 +1,6 @@
 #include "compare/calculix.h"
 
-#include "reference/threads.h"
+#include "reference/linear/threads.h"
 #include "scene/error.h"
 
 #include <fcntl.h>

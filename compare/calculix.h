@@ -1,7 +1,7 @@
 // Runs CalculiX on an exported deck and reads its answer.
 #pragma once
 
-#include "reference/calculix_deck.h"
+#include "reference/calculix/deck.h"
 #include "scene/frames.h"
 
 #include <filesystem>

@@ -1,7 +1,7 @@
 #include "compare/errors.h"
 
 #include "compare/moved_surface.h"
-#include "reference/tool_distance.h"
+#include "reference/tool/tool_distance.h"
 
 #include <fmt/format.h>
 

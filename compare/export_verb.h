@@ -3,7 +3,7 @@
 
 #include "compare/reference_run.h"
 #include "fast/command_line.h"
-#include "reference/calculix_deck.h"
+#include "reference/calculix/deck.h"
 
 namespace touchstone::compare {
 

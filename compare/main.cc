@@ -5,8 +5,8 @@
 #include "compare/verify_verb.h"
 #include "fast/command_line.h"
 #include "fast/live/live_verb.h"
-#include "reference/contact_shares.h"
-#include "reference/ranks.h"
+#include "reference/contact/contact_shares.h"
+#include "reference/linear/ranks.h"
 #include "scene/fields.h"
 
 #include <iostream>

@@ -1,7 +1,7 @@
 // Measures of a rest surface moved by one displacement per rest point.
 #pragma once
 
-#include "reference/tool_gap.h"
+#include "reference/tool/tool_gap.h"
 #include "scene/scene.h"
 #include "scene/surface.h"
 

@@ -1,8 +1,8 @@
 // How far one reference result can be trusted, in a few figures.
 #pragma once
 
+#include "reference/run/uncertainty.h"
 #include "reference/solver.h"
-#include "reference/uncertainty.h"
 #include "scene/results.h"
 
 #include <optional>

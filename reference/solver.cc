@@ -1,11 +1,11 @@
 #include "reference/solver.h"
 
-#include "reference/distance_grid.h"
-#include "reference/identity.h"
-#include "reference/model_choice.h"
-#include "reference/run.h"
-#include "reference/store.h"
-#include "reference/tool_distance.h"
+#include "reference/run/identity.h"
+#include "reference/run/model_choice.h"
+#include "reference/run/run.h"
+#include "reference/run/store.h"
+#include "reference/tool/distance_grid.h"
+#include "reference/tool/tool_distance.h"
 #include "scene/files.h"
 
 #include <iomanip>

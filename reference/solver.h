@@ -8,7 +8,6 @@
 #include "scene/scene.h"
 
 #include <atomic>
-#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -56,19 +55,21 @@ struct LevelRecord {
   std::vector<double> force_n;  ///< magnitude of the contact force per instant
 };
 
-/// What one choice of the method, that refinement does not touch, changes on the coarsest level at the deepest instant.
+/// How far a sensitivity measured on the coarsest level holds on the finer ones.
+enum class Carries {
+  wholly,         ///< refinement does not touch it
+  far_field,      ///< it shrinks with the far field's cells
+  in_the_levels,  ///< the differences between the levels show it already
+};
+
+/// What one choice of the method changes on the coarsest level at the deepest instant.
 struct Sensitivity {
   std::string part;                       ///< "far_field"
   std::string change;                     ///< "cells half as large"
   double force_rel = 0.0;                 ///< |F' - F| / |F|
   double shape_rel = 0.0;                 ///< sqrt(sum A |u' - u|^2 / sum A |u|^2) over the rest points
   Eigen::VectorXd displacement_change_m;  ///< |u' - u| per rest point
-  /// The bands hold it, falling with the refinement to the power of minus this; absent: the differences between the
-  /// levels show it already.
-  std::optional<double> order;
-
-  /// The part of it that the bands hold on a level whose cells are this much smaller than the coarsest's.
-  [[nodiscard]] double share_at(double refinement) const { return order ? std::pow(refinement, -*order) : 0.0; }
+  Carries carries = Carries::wholly;
 };
 
 /// How far the refinement came.

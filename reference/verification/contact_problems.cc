@@ -1,7 +1,7 @@
 // A rigid tool on an elastic body.
-#include "reference/model_choice.h"
+#include "reference/run/model_choice.h"
 #include "reference/solver.h"
-#include "reference/tool_distance.h"
+#include "reference/tool/tool_distance.h"
 #include "reference/verification/closed_forms.h"
 #include "reference/verification/half_space.h"
 #include "reference/verification/problem.h"

@@ -1,11 +1,11 @@
 #include "reference/verification/half_space.h"
 
-#include "reference/contact_problem.h"
-#include "reference/load_path.h"
-#include "reference/model_choice.h"
-#include "reference/sampling.h"
+#include "reference/contact/contact_problem.h"
+#include "reference/contact/load_path.h"
+#include "reference/mesh/sampling.h"
+#include "reference/run/model_choice.h"
 #include "reference/solver.h"
-#include "reference/tool_distance.h"
+#include "reference/tool/tool_distance.h"
 #include "reference/verification/solids.h"
 #include "scene/revolution.h"
 

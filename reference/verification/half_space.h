@@ -2,8 +2,8 @@
 // meshes that the solver takes for a scene.
 #pragma once
 
-#include "reference/contact_patch.h"
-#include "reference/tool_gap.h"
+#include "reference/run/contact_patch.h"
+#include "reference/tool/tool_gap.h"
 #include "scene/scene.h"
 
 #include <Eigen/Core>

@@ -1,6 +1,6 @@
 #include "reference/verification/problem.h"
 
-#include "reference/uncertainty.h"
+#include "reference/run/uncertainty.h"
 
 #include <algorithm>
 #include <cmath>

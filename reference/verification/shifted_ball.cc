@@ -1,7 +1,7 @@
 #include "reference/verification/shifted_ball.h"
 
-#include "reference/contact_problem.h"
-#include "reference/mesh.h"
+#include "reference/contact/contact_problem.h"
+#include "reference/mesh/mesh.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Solids under given displacements and dead loads.
-#include "reference/inclusions.h"
+#include "reference/mesh/inclusions.h"
 #include "reference/verification/closed_forms.h"
 #include "reference/verification/problem.h"
 #include "reference/verification/solids.h"

@@ -1,8 +1,8 @@
 // Bodies without contact, made for verification: lattices of cells, dead loads, prescribed displacements in steps.
 #pragma once
 
-#include "reference/contact_problem.h"
-#include "reference/mesh.h"
+#include "reference/contact/contact_problem.h"
+#include "reference/mesh/mesh.h"
 #include "scene/scene.h"
 
 #include <Eigen/Core>

@@ -1,9 +1,9 @@
 // Where the processor time of a reference solve goes: reference_speed SCENE LEVEL INSTANTS
 // LEVEL counts from 1; of the track's instants the first INSTANTS in which the tool is in the body at rest are solved.
-#include "reference/contact_problem.h"
-#include "reference/load_path.h"
-#include "reference/model_choice.h"
-#include "reference/stopwatch.h"
+#include "reference/contact/contact_problem.h"
+#include "reference/contact/load_path.h"
+#include "reference/linear/stopwatch.h"
+#include "reference/run/model_choice.h"
 #include "scene/scene_io.h"
 
 #include <cstdio>

@@ -1,7 +1,7 @@
 // The deck's text without the code that reads it: equations of hanging nodes, the tool's coat, materials, refusals.
-#include "reference/calculix_deck.h"
-#include "reference/calculix_tool.h"
-#include "reference/tool_distance.h"
+#include "reference/calculix/deck.h"
+#include "reference/calculix/tool.h"
+#include "reference/tool/tool_distance.h"
 #include "second_code/pressed_scene.h"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 // One body meshed in two ways gives one force.
-#include "reference/contact_problem.h"
-#include "reference/model_choice.h"
-#include "reference/round_mesh.h"
+#include "reference/contact/contact_problem.h"
+#include "reference/mesh/round_mesh.h"
+#include "reference/run/model_choice.h"
 #include "reference/verification/closed_forms.h"
 
 #include <gtest/gtest.h>

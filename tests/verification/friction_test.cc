@@ -1,8 +1,8 @@
 // Friction against closed forms, its own laws, and energy.
-#include "reference/contact_problem.h"
-#include "reference/load_path.h"
-#include "reference/mesh.h"
-#include "reference/tool_distance.h"
+#include "reference/contact/contact_problem.h"
+#include "reference/contact/load_path.h"
+#include "reference/mesh/mesh.h"
+#include "reference/tool/tool_distance.h"
 #include "reference/verification/closed_forms.h"
 #include "reference/verification/shifted_ball.h"
 

@@ -1,7 +1,7 @@
 // States of uniform strain, which the element must hold to round-off on any mesh: patch tests and the uniaxial bar.
-#include "reference/contact_problem.h"
-#include "reference/mesh.h"
-#include "reference/round_mesh.h"
+#include "reference/contact/contact_problem.h"
+#include "reference/mesh/mesh.h"
+#include "reference/mesh/round_mesh.h"
 #include "reference/verification/closed_forms.h"
 #include "reference/verification/solids.h"
 

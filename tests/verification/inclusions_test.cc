@@ -1,7 +1,7 @@
 // Inclusions against closed forms, and the limit in which there is none.
-#include "reference/inclusions.h"
-#include "reference/contact_problem.h"
-#include "reference/round_mesh.h"
+#include "reference/contact/contact_problem.h"
+#include "reference/mesh/inclusions.h"
+#include "reference/mesh/round_mesh.h"
 #include "reference/verification/closed_forms.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Reduced models against fuller ones on the same cells: equal to the solver's tolerance.
-#include "reference/contact_problem.h"
-#include "reference/mesh.h"
+#include "reference/contact/contact_problem.h"
+#include "reference/mesh/mesh.h"
 
 #include <gtest/gtest.h>
 

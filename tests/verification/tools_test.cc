@@ -1,9 +1,9 @@
 // Tools of every shape against closed forms, against each other and against their own symmetry.
-#include "reference/contact_problem.h"
-#include "reference/load_path.h"
-#include "reference/mesh.h"
+#include "reference/contact/contact_problem.h"
+#include "reference/contact/load_path.h"
+#include "reference/mesh/mesh.h"
 #include "reference/solver.h"
-#include "reference/tool_distance.h"
+#include "reference/tool/tool_distance.h"
 #include "reference/verification/closed_forms.h"
 #include "reference/verification/half_space.h"
 #include "scene/surface.h"

@@ -1,10 +1,10 @@
 // The reported band must hold the true error, taken from a much finer mesh: in the meridian plane, and in space for a
 // scene that the meridian plane can answer, too.
-#include "reference/contact_problem.h"
-#include "reference/load_path.h"
-#include "reference/model_choice.h"
-#include "reference/run.h"
-#include "reference/sampling.h"
+#include "reference/contact/contact_problem.h"
+#include "reference/contact/load_path.h"
+#include "reference/mesh/sampling.h"
+#include "reference/run/model_choice.h"
+#include "reference/run/run.h"
 #include "reference/solver.h"
 
 #include "scene/surface.h"

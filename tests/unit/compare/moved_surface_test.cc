@@ -1,6 +1,6 @@
 #include "compare/moved_surface.h"
 
-#include "reference/tool_distance.h"
+#include "reference/tool/tool_distance.h"
 
 #include "synthetic.h"
 

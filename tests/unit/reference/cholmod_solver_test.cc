@@ -1,4 +1,4 @@
-#include "reference/cholmod_solver.h"
+#include "reference/linear/cholmod_solver.h"
 
 #include <gtest/gtest.h>
 

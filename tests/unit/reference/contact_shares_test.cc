@@ -1,4 +1,4 @@
-#include "reference/contact_shares.h"
+#include "reference/contact/contact_shares.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // `mpirun -np N touchstone reference SCENE` against the same solve by one process.
-#include "reference/ranks.h"
+#include "reference/linear/ranks.h"
 #include "reference/solver.h"
 #include "scene/scene_io.h"
 #include "scene/surface.h"

@@ -1,5 +1,5 @@
 // Stress is the slope of the energy, the tangent is the slope of the force: by central differences.
-#include "reference/element.h"
+#include "reference/contact/element.h"
 
 #include <gtest/gtest.h>
 

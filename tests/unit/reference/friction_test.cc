@@ -1,4 +1,4 @@
-#include "reference/friction.h"
+#include "reference/contact/friction.h"
 
 #include <gtest/gtest.h>
 

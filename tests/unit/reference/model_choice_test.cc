@@ -1,8 +1,8 @@
-#include "reference/model_choice.h"
+#include "reference/run/model_choice.h"
 
-#include "reference/element.h"
-#include "reference/sampling.h"
-#include "reference/tool_distance.h"
+#include "reference/contact/element.h"
+#include "reference/mesh/sampling.h"
+#include "reference/tool/tool_distance.h"
 #include "scene/surface.h"
 #include "unit/reference/mesh_tools.h"
 

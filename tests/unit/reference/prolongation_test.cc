@@ -1,7 +1,7 @@
-#include "reference/prolongation.h"
+#include "reference/mesh/prolongation.h"
 
-#include "reference/model_choice.h"
-#include "reference/round_mesh.h"
+#include "reference/mesh/round_mesh.h"
+#include "reference/run/model_choice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Run by mpirun: the first rank runs the tests, the others follow.
-#include "reference/ranks.h"
+#include "reference/linear/ranks.h"
 
-#include "reference/distributed_solver.h"
+#include "reference/linear/distributed_solver.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "reference/regions.h"
+#include "reference/contact/regions.h"
 
 #include <gtest/gtest.h>
 

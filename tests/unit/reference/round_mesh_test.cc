@@ -1,7 +1,7 @@
 // The meshes of round bodies: right in size, closed, on the surface, regular.
-#include "reference/round_mesh.h"
+#include "reference/mesh/round_mesh.h"
 
-#include "reference/element.h"
+#include "reference/contact/element.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The store under kill -9 at any instant, full disks and rivals. Every solve runs in a process of its own; what it
 // answers comes back as a file of bits.
+#include "reference/run/store.h"
 #include "reference/solver.h"
-#include "reference/store.h"
 #include "scene/files.h"
 #include "scene/surface.h"
 

@@ -1,4 +1,4 @@
-#include "reference/store.h"
+#include "reference/run/store.h"
 
 #include "scene/error.h"
 #include "scene/hash.h"

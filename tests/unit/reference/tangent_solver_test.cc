@@ -1,4 +1,4 @@
-#include "reference/tangent_solver.h"
+#include "reference/linear/tangent_solver.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/SparseCore>

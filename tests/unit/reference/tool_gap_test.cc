@@ -1,9 +1,9 @@
 // Every tool's gap function: the slopes Newton uses, signs, places, and the spline of a mesh against exact shapes.
-#include "reference/tool_gap.h"
+#include "reference/tool/tool_gap.h"
 
-#include "reference/distance_grid.h"
-#include "reference/tool_distance.h"
-#include "reference/tool_symmetry.h"
+#include "reference/tool/distance_grid.h"
+#include "reference/tool/tool_distance.h"
+#include "reference/tool/tool_symmetry.h"
 #include "scene/surface.h"
 #include "unit/reference/mesh_tools.h"
 

@@ -1,4 +1,4 @@
-#include "reference/uncertainty.h"
+#include "reference/run/uncertainty.h"
 
 #include <gtest/gtest.h>
 

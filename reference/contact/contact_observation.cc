@@ -1,0 +1,217 @@
+// What a solved state says.
+#include "reference/contact/contact_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace touchstone::reference {
+
+template <int dim>
+Observation ContactProblem<dim>::observe(const State<dim>& state, double region_gap_m) const {
+  Observation seen;
+  const Nodal F = forces(state).nodal_n;
+  const double images = (mirror_x_ ? 2.0 : 1.0) * (mirror_y_ ? 2.0 : 1.0);
+  // A mirror image doubles what lies in the mirror's plane and cancels what does not.
+  const auto with_images = [&](Point part) {
+    scene::Vec3 whole = scene::Vec3::Zero();
+    if constexpr (dim == 2) {
+      whole.z() = part[1];
+    } else {
+      whole = images * part;
+      if (mirror_x_) whole.x() = 0.0;
+      if (mirror_y_) whole.y() = 0.0;
+    }
+    return whole;
+  };
+
+  Point support = Point::Zero();
+  std::vector<char> held(mesh_.node_count(), 0);
+  for (const auto& face : mesh_.faces) {
+    if (face.boundary != Boundary::held) continue;
+    for (const int node : face.nodes) held[node] = 1;
+  }
+  for (int node = 0; node < mesh_.node_count(); ++node) {
+    if (held[node]) support += F.col(node);
+  }
+  seen.support_force_n = with_images(support);
+
+  double change_m3 = 0.0, rest_m3 = 0.0;
+  {
+    CellResult<dim> result;
+    typename Element<dim>::Nodal X, u;
+    for (int c = 0; c < mesh_.cell_count(); ++c) {
+      for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
+        X.col(a) = mesh_.points_m.col(mesh_.cells[c][a]);
+        u.col(a) = state.u_m.col(mesh_.cells[c][a]);
+      }
+      element_.evaluate(X, u, state.p_pa.col(c), false, result, mesh_.materials_of(c));
+      change_m3 += result.volume_change_m3;
+      rest_m3 += result.rest_volume_m3;
+    }
+  }
+  seen.volume_change_rel = change_m3 / rest_m3;
+  if (!tool_) return seen;
+
+  // Contact forces lambda grad g act on the body; the tool gets their opposite.
+  std::vector<double> pressure_pa(mesh_.node_count(), 0.0);
+  std::vector<double> opening_m(mesh_.node_count(), std::numeric_limits<double>::infinity());
+  std::vector<char> inside = state.touching;
+  std::vector<int> touching_index(mesh_.node_count(), -1);
+  std::vector<Point> on_tool_n;
+  for (const int node : contact_nodes_) {
+    const Gap<dim> g = gap(state, node);
+    opening_m[node] = g.value_m;
+    seen.node_penetration_m = std::max(seen.node_penetration_m, -g.value_m);
+    if (!state.touching[node]) continue;
+    Point normal = g.gradient;
+    for (int i = 0; i < dim; ++i) {
+      if (prescribed_[node * dim + i]) normal[i] = 0.0;
+    }
+    touching_index[node] = static_cast<int>(on_tool_n.size());
+    on_tool_n.push_back(-F.col(node).dot(normal) / normal.squaredNorm() * g.gradient);
+    if (area_m2_[node] > 0.0) pressure_pa[node] = -on_tool_n.back().dot(g.gradient.normalized()) / area_m2_[node];
+  }
+  for (const auto& hanging : mesh_.hanging) {
+    if (surface_normal_.col(hanging.node).isZero(0.0)) continue;
+    opening_m[hanging.node] = gap(state, hanging.node).value_m;
+    seen.between_nodes_penetration_m = std::max(seen.between_nodes_penetration_m, -opening_m[hanging.node]);
+    double share = 0.0;
+    for (const auto& [master, weight] : hanging.masters) {
+      pressure_pa[hanging.node] += weight * pressure_pa[master];
+      share += weight * inside[master];
+    }
+    inside[hanging.node] = share > 0.5 ? 1 : 0;
+  }
+  if constexpr (dim == 2) {
+    for (const int node : contact_nodes_) {
+      if (axis_partner_[node] >= 0) pressure_pa[node] = pressure_pa[axis_partner_[node]];
+    }
+  }
+
+  const Touching touched = touching_points(state, region_gap_m);
+  const std::vector<scene::Vec3>& mirrors = touched.mirrors;
+  const std::vector<int>& region_of = touched.region_of;
+  const int touching_count = static_cast<int>(touched.nodes.size());
+  const auto place = [&](int node) { return contact_place_m(state, node); };
+  // Friction, which the weights by pressure below go without.
+  std::vector<Point> friction_on_tool_n(touching_count, Point::Zero());
+  if (friction_) {
+    for (const NodeContact<dim>& contact : contacts_of(state, F, touched)) {
+      friction_on_tool_n[touching_index[contact.node]] = -contact.friction_n;
+    }
+    seen.dissipated_j = state.dissipated_j;
+  }
+  std::vector<double> weights_n, stuck_n;
+  for (std::size_t point = 0; point < region_of.size(); ++point) {
+    const int i = static_cast<int>(point) % touching_count;
+    if (region_of[point] == static_cast<int>(seen.regions.size())) {
+      seen.regions.emplace_back();
+      weights_n.push_back(0.0);
+      stuck_n.push_back(0.0);
+    }
+    ContactRegion& region = seen.regions[region_of[point]];
+    const double weight_n = on_tool_n[i].norm();
+    weights_n[region_of[point]] += weight_n;
+    if (friction_ && !state.slipping[touched.nodes[i]]) stuck_n[region_of[point]] += weight_n;
+    if constexpr (dim == 3) {
+      const scene::Vec3& mirror = mirrors[point / touching_count];
+      const scene::Vec3 at_m = mirror.cwiseProduct(place(touched.nodes[i]));
+      const scene::Vec3 friction_n = mirror.cwiseProduct(friction_on_tool_n[i]);
+      const scene::Vec3 force_n = mirror.cwiseProduct(on_tool_n[i]) + friction_n;
+      region.friction_n += friction_n;
+      region.force_n += force_n;
+      region.torque_nm += (at_m - tool_->mass_center_m()).cross(force_n);
+      region.center_m += weight_n * at_m;
+    } else {
+      region.friction_n.z() += friction_on_tool_n[i][1];
+      region.force_n.z() += on_tool_n[i][1] + friction_on_tool_n[i][1];
+      region.center_m.z() += weight_n * place(touched.nodes[i])[1];
+    }
+  }
+  for (std::size_t r = 0; r < seen.regions.size(); ++r) {
+    if (friction_) seen.regions[r].stuck_share = weights_n[r] > 0.0 ? stuck_n[r] / weights_n[r] : 0.0;
+    seen.regions[r].center_m /= std::max(weights_n[r], std::numeric_limits<double>::min());
+    seen.force_n += seen.regions[r].force_n;
+    seen.torque_nm += seen.regions[r].torque_nm;
+  }
+  const double force_n = seen.force_n.norm();
+  seen.equilibrium_rel = force_n > 0.0 ? (seen.support_force_n - seen.force_n).norm() / force_n : 0.0;
+
+  // Contact area: what lies inside the contact's edge on the deformed surface. On a side from a touching node to an
+  // open one the edge is placed with the field that any frictionless contact has there: pressure A sqrt(s) at a
+  // distance s inside, opening (4 A / 3 E*) s^(3/2) outside (the half-plane solution; K. L. Johnson, Contact Mechanics
+  // (1985), 5.1). Pressure, opening and the side's length determine A and the place: with t the share of the side
+  // inside, (1 - t)^3 = q^2 t, q = 3 E* opening / (4 pressure length).
+  const double E_star_pa = material_.contact_modulus_pa();
+  const auto edge_between = [&](int touching, int open) -> Point {
+    const Point from = place(touching), to = place(open);
+    const double q = 0.75 * E_star_pa * std::max(opening_m[open], 0.0) / (pressure_pa[touching] * (to - from).norm());
+    if (!(pressure_pa[touching] > 0.0) || !std::isfinite(q)) return from;
+    double t = 0.0;  // left of the root of a convex falling function: Newton's method climbs to it
+    for (int k = 0; k < 30; ++k)
+      t += ((1.0 - t) * (1.0 - t) * (1.0 - t) - q * q * t) / (3.0 * (1.0 - t) * (1.0 - t) + q * q);
+    return from + std::min(t, 1.0) * (to - from);
+  };
+  const GaussRule<dim - 1> rule;
+  for (const auto& face : mesh_.faces) {
+    if (face.boundary != Boundary::free) continue;
+    const auto first =
+        std::find_if(face.nodes.begin(), face.nodes.end(), [&](int n) { return touching_index[n] >= 0; });
+    if (first == face.nodes.end()) continue;
+    double area_m2 = 0.0;
+    if constexpr (dim == 2) {
+      for (int k = 0; k < 2; ++k) {
+        const int n0 = face.nodes[k], n1 = face.nodes[k + 1];
+        if (!inside[n0] && !inside[n1]) continue;
+        const Point x0 = inside[n0] ? place(n0) : edge_between(n1, n0);
+        const Point x1 = inside[n1] ? place(n1) : edge_between(n0, n1);
+        area_m2 += std::numbers::pi * (x0[0] + x1[0]) * (x1 - x0).norm();
+        seen.contact_radius_m = std::max({seen.contact_radius_m, x0[0], x1[0]});
+      }
+    } else {
+      // Four quarters, each cut along either diagonal and averaged, which keeps mirror images equal.
+      for (const int corner : {0, 1, 3, 4}) {
+        const int c00 = corner, c10 = corner + 1, c01 = corner + 3, c11 = corner + 4;
+        const int triangles[4][3] = {{c00, c10, c11}, {c00, c11, c01}, {c00, c10, c01}, {c10, c11, c01}};
+        for (const auto& triangle : triangles) {
+          std::vector<Point> polygon;
+          for (int k = 0; k < 3; ++k) {
+            const int from = face.nodes[triangle[k]], to = face.nodes[triangle[(k + 1) % 3]];
+            if (inside[from]) polygon.push_back(place(from));
+            if (inside[from] != inside[to])
+              polygon.push_back(inside[from] ? edge_between(from, to) : edge_between(to, from));
+          }
+          for (std::size_t k = 2; k < polygon.size(); ++k) {
+            const Eigen::Vector3d side1 = polygon[k - 1] - polygon[0], side2 = polygon[k] - polygon[0];
+            area_m2 += 0.5 * 0.5 * side1.cross(side2).norm();
+          }
+        }
+      }
+    }
+    for (std::size_t m = 0; m < mirrors.size(); ++m) {
+      seen.area_m2 += area_m2;
+      seen.regions[region_of[m * touching_count + touching_index[*first]]].area_m2 += area_m2;
+    }
+    // Penetration where nothing enforces contact.
+    for (int q = 0; q < GaussRule<dim - 1>::size; ++q) {
+      const Q2<dim - 1> shape(rule.points[q]);
+      Point X = Point::Zero(), u = Point::Zero(), N = Point::Zero();
+      for (int a = 0; a < Mesh<dim>::nodes_per_face; ++a) {
+        X += shape.value[a] * mesh_.points_m.col(face.nodes[a]);
+        u += shape.value[a] * state.u_m.col(face.nodes[a]);
+        N += shape.value[a] * surface_normal_.col(face.nodes[a]);
+      }
+      const Gap<dim> g =
+          kinematics_ == scene::Kinematics::finite ? tool_->gap(X + u) : tool_->gap_along(X, N.normalized(), u);
+      seen.between_nodes_penetration_m = std::max(seen.between_nodes_penetration_m, -g.value_m);
+    }
+  }
+  return seen;
+}
+
+template Observation ContactProblem<2>::observe(const State<2>&, double) const;
+template Observation ContactProblem<3>::observe(const State<3>&, double) const;
+
+}  // namespace touchstone::reference

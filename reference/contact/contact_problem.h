@@ -1,0 +1,328 @@
+// One elastic body on one mesh against a rigid tool, with or without friction: assembly, active sets, Newton.
+//
+// Unknowns are nodal displacements u and per-cell pressures p. Equilibrium with contact forces lambda_n >= 0 on the
+// surface nodes n,
+//   F_int(u, p) = sum_n lambda_n grad g_n,   g_n >= 0,   lambda_n g_n = 0,
+// is solved by the primal-dual active set method: in every iteration a touching node's displacement along grad g_n is
+// eliminated exactly (n . du = -g), and lambda_n is read from the internal force. A node stays touching while
+// lambda_n / w_n - c g_n > 0 (w_n its area, c = E over the tool's half width) and starts to touch when g_n < 0. At the
+// end the gap of every touching node is zero to round-off and no other node penetrates. Source: M. Hintermueller, K.
+// Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865-888; for contact S. Hueeber, B. I. Wohlmuth, Comput. Methods Appl.
+// Mech. Eng. 194 (2005) 3147-3166.
+//
+// With friction a touching node has a force t along the surface besides N n, |t| <= m N, and a slip s: its way over the
+// tool since the last solved state, along the surface. It sticks (s = 0; its displacement is eliminated) or slips,
+//   t = m N tau / |tau|,  tau = t - c w_n s,
+// and is taken to slip when |tau| > m N. Newton's method on this is that of S. Hueeber, G. Stadler, B. I. Wohlmuth,
+// SIAM J. Sci. Comput. 30 (2008) 572-596; the part of its tangent that is not symmetric is in friction.h. One solve is
+// one increment of the backward Euler rule: t opposes the whole slip, so that no increment gives energy back.
+#pragma once
+
+#include "reference/contact/element.h"
+#include "reference/contact/friction.h"
+#include "reference/contact/regions.h"
+#include "reference/linear/linear_solver.h"
+#include "reference/linear/ranks.h"
+#include "reference/mesh/mesh.h"
+#include "reference/tool/tool_gap.h"
+#include "scene/frames.h"
+#include "scene/scene.h"
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchstone::reference {
+
+/// Everything a load step needs to go on from.
+template <int dim>
+struct State {
+  Eigen::Matrix<double, dim, Eigen::Dynamic> u_m;       ///< one column per node, hanging ones included
+  Eigen::Matrix<double, dim + 1, Eigen::Dynamic> p_pa;  ///< one column per cell: coefficients of 1, (X - Xc) / h
+  std::vector<char> touching;                           ///< per node
+  // What friction remembers; empty without friction, and at rest.
+  std::vector<char> slipping{};  ///< per node: touches and slips
+  std::vector<char> sliding{};   ///< per node: touches in a region that has begun to slide as a whole
+  Eigen::Matrix3Xd on_tool_m{};  ///< per node of the free surface: its place in the tool frame
+  double dissipated_j = 0.0;     ///< by friction since the body was at rest, of the whole body
+};
+
+/// The force of the tool on the body at one touching node.
+template <int dim>
+struct NodeContact {
+  using Point = Eigen::Matrix<double, dim, 1>;
+  int node = 0;
+  Point normal = Point::Zero();      ///< unit length, out of the tool
+  double normal_n = 0.0;             ///< N
+  Point friction_n = Point::Zero();  ///< t
+  Point slip_m = Point::Zero();      ///< s; zero once the state is solved
+  double coefficient = 0.0;          ///< m
+  bool slips = false;
+  int region = 0;
+};
+
+/// Choices of the method that should not matter, as factors on the usual ones.
+struct Numerics {
+  double contact_parameter = 1.0;  ///< c of the active set
+  double numerical_bulk = 1.0;     ///< bulk modulus that an incompressible material has in the tangent
+};
+
+/// How a Newton solve went.
+struct NewtonReport {
+  bool converged = false;
+  int iterations = 0;
+  double residual_rel = 0.0;  ///< out-of-balance force over the sum of contact and support forces
+  int indefinite = 0;         ///< iterations whose tangent needed the curvature term dropped or LU
+  std::string trouble;        ///< in words, when not converged
+};
+
+/// What a solved state says, of the whole body: mirror images are counted.
+struct Observation {
+  scene::Vec3 force_n = scene::Vec3::Zero();          ///< on the tool, sum over the regions
+  scene::Vec3 torque_nm = scene::Vec3::Zero();        ///< on the tool, about its mass centre
+  scene::Vec3 support_force_n = scene::Vec3::Zero();  ///< of the support on the body
+  double area_m2 = 0.0;                               ///< of contact, on the deformed surface
+  double contact_radius_m = 0.0;                      ///< bodies of revolution only: of the contact's edge
+  double node_penetration_m = 0.0;                    ///< largest over the nodes where contact is enforced
+  double between_nodes_penetration_m = 0.0;           ///< largest over face quadrature points and hanging nodes
+  double equilibrium_rel = 0.0;                       ///< |contact + support| / |contact|
+  double volume_change_rel = 0.0;
+  double dissipated_j = 0.0;  ///< by friction since the body was at rest
+  std::vector<ContactRegion> regions;
+};
+
+/// The discrete problem. Not thread-safe; uses `threads` threads inside. Of several ranks the first one makes and uses
+/// it; each has a share of the cells and of the matrix. The tangent of a cell that contact acts on is made by the first
+/// one wherever the cell belongs, so that contact is known to no other.
+template <int dim>
+class ContactProblem : public ranks::Part {
+ public:
+  /// Called after every Newton iteration; may throw to stop.
+  using Watch = std::function<void(int iteration, double residual_rel)>;
+
+  /// @param mirror_x, mirror_y  dim = 3: the mesh is one half of the body on that side
+  ContactProblem(Mesh<dim> mesh, const scene::Material& material, scene::Kinematics kinematics, bool mirror_x,
+                 bool mirror_y, int threads = ranks::threads(), const Numerics& numerics = {});
+  ~ContactProblem() override;
+  ContactProblem(const ContactProblem&) = delete;
+  ContactProblem& operator=(const ContactProblem&) = delete;
+
+  /// Prescribes one displacement component from the next solve on; the support and symmetry planes are there already.
+  /// New places are fixed only before the first solve.
+  void prescribe(int node, int direction, double displacement_m);
+
+  /// Dead forces on the nodes from the next solve on, one column per node [N]; hanging nodes pass theirs on.
+  void load(Eigen::Matrix<double, dim, Eigen::Dynamic> force_n);
+
+  /// The tool's place for the next solve; without a tool nothing touches.
+  void set_tool(const RigidTool<dim>& tool) { tool_ = tool; }
+
+  /// Friction from the next solve on. Regions are told apart as by observe().
+  void set_friction(const scene::Friction& friction, double region_gap_m);
+  [[nodiscard]] bool has_friction() const noexcept { return friction_.has_value(); }
+
+  /// Lets friction know where on a tool the body's surface is: of a state that nothing touches.
+  void note_places(const RigidTool<dim>& tool, State<dim>& state) const;
+
+  [[nodiscard]] State<dim> rest() const;
+
+  /// Newton from the given state, which is left unfinished when it does not converge. Only stable balances count as
+  /// converged: the last tangent was positive definite.
+  NewtonReport solve(State<dim>& state, const Watch& watch = {});
+
+  /// @param region_gap_m  touching nodes of one cell face, or nearer to each other than this, are of one region; in two
+  ///                      dimensions all are
+  [[nodiscard]] Observation observe(const State<dim>& state, double region_gap_m = 0.0) const;
+
+  /// Forces at the nodes that touch and can move along the surface; normal forces only without friction. The
+  /// coefficient is that of the node's region.
+  [[nodiscard]] std::vector<NodeContact<dim>> node_contacts(const State<dim>& state, double region_gap_m = 0.0) const;
+
+  /// Internal nodal forces of a state less the dead forces, hanging nodes' passed on to their masters [N]: the
+  /// support's force where displacement is prescribed, zero elsewhere but for contact.
+  [[nodiscard]] Eigen::Matrix<double, dim, Eigen::Dynamic> internal_forces(const State<dim>& state) const;
+
+  [[nodiscard]] const Mesh<dim>& mesh() const noexcept { return mesh_; }
+  [[nodiscard]] int unknowns() const noexcept { return unknowns_; }
+  [[nodiscard]] std::string linear_solver() const { return solver_->description(); }
+  [[nodiscard]] LinearWork linear_work() const noexcept { return solver_->work(); }
+  /// Processor time of tangents and forces, all threads.
+  [[nodiscard]] double assembly_s() const noexcept { return assembly_s_; }
+
+  /// On the other ranks: their shares of what the first one's methods do.
+  void follow(Order order) override;
+
+  /// Newton stops when the out-of-balance force is below this share of the acting forces.
+  static constexpr double force_tolerance = 1e-8;
+  static constexpr int largest_iterations = 25;
+  static constexpr int largest_iterations_with_friction = 40;
+
+ private:
+  using Nodal = Eigen::Matrix<double, dim, Eigen::Dynamic>;
+  using Point = Eigen::Matrix<double, dim, 1>;
+  using Pressures = Eigen::Matrix<double, dim + 1, Eigen::Dynamic>;
+  /// du(node, direction) = offset + sum of weight * du(unknown).
+  struct Expansion {
+    double offset_m = 0.0;
+    std::vector<std::pair<int, double>> terms;
+    void clear() {
+      offset_m = 0.0;
+      terms.clear();
+    }
+  };
+  /// One thread's share of a global matrix and right-hand side.
+  struct Lane {
+    std::vector<double> value;
+    std::vector<double> right;
+    std::vector<Eigen::Triplet<double>> slip_rows{};  // of SlipCoupling
+    std::vector<double> slip_normal_n{};
+  };
+  /// Touching nodes and their regions on the whole body: node i of mirror image k is point i + k * nodes.size().
+  struct Touching {
+    std::vector<int> nodes;
+    std::vector<scene::Vec3> mirrors;
+    std::vector<int> region_of;  // per point
+  };
+  struct Forces {
+    Nodal nodal_n;
+    double volume_error_rel = 0.0;  // largest over cells of |integral psi (J - 1 - p / kappa)| / volume
+    bool admissible = true;         // no cell turned inside out
+  };
+
+  void number_unknowns();
+  void build_pattern();
+  [[nodiscard]] Forces forces(const State<dim>& state) const;
+  [[nodiscard]] Forces forces_of_share(const State<dim>& state) const;
+  [[nodiscard]] Gap<dim> gap(const State<dim>& state, int node) const;
+  void expand(int node, int direction, double weight, Expansion& out) const;
+  /// Adds a symmetric matrix and force on (node, direction) places, all constraints resolved.
+  /// @param with_slip  the slipping nodes' rows of SlipCoupling as well
+  void scatter(const std::vector<std::pair<int, int>>& places, const double* K, const double* f, Lane& lane,
+               bool with_slip = false) const;
+  void add_slip_rows(const std::vector<std::pair<int, int>>& places, const std::vector<int>& unknowns,
+                     const Eigen::MatrixXd& KT, const Eigen::VectorXd& out_of_balance_n, Lane& lane) const;
+  /// The same for a cell without hanging, touching or moving prescribed nodes, which is most of them.
+  void scatter_plain(const std::array<int, Mesh<dim>::nodes_per_cell>& cell, const CellResult<dim>& result,
+                     Lane& lane) const;
+  /// Adds a symmetric matrix given by columns, of which the lower triangle is read; unknowns ascending.
+  void add_sorted(const int* unknowns, int count, const double* K, Lane& lane) const;
+  void assemble(const State<dim>& state);
+  void add_dead_forces();
+  void add_curvature();
+  void add_turning();
+  [[nodiscard]] SlipCoupling slip_coupling() const;
+  /// The tangent in matrix_ and what it is to be solved for.
+  [[nodiscard]] Eigen::VectorXd assemble_tangent(const State<dim>& state, bool with_curvature);
+  /// Sums the lanes into matrix_ and the result.
+  [[nodiscard]] Eigen::VectorXd sum_of_lanes();
+  /// What the pressures do with a displacement, all cells'.
+  [[nodiscard]] Pressures pressure_change(const Nodal& du_m) const;
+  [[nodiscard]] Pressures pressure_change_of_share(const Nodal& du_m) const;
+  /// Next active set; late in a solve it changes less easily. Returns the largest |gap| over touching nodes [m].
+  double update_touching(State<dim>& state, bool late, bool& changed) const;
+  [[nodiscard]] Touching touching_points(const State<dim>& state, double region_gap_m) const;
+  /// Where contact is looked at: in small strain at rest.
+  [[nodiscard]] Point contact_place_m(const State<dim>& state, int node) const;
+  /// Of all touching nodes, also those without freedom along the surface.
+  [[nodiscard]] std::vector<NodeContact<dim>> contacts_of(const State<dim>& state, const Nodal& forces_n,
+                                                          const Touching& touching) const;
+  /// Of a vector, what lies along the surface at a node and is free to move.
+  [[nodiscard]] Point along_surface(int node, const Point& normal, Point vector) const;
+  [[nodiscard]] bool can_slip(int node) const;
+  void begin_increment(State<dim>& state);
+  /// Which touching nodes slip next, and how; returns how far those that stick are from their places [m].
+  /// @param before  touching in the last iteration
+  double update_slipping(State<dim>& state, const std::vector<char>& before, const Nodal& forces_n, int iteration,
+                         bool& changed);
+  /// Friction of a region, of the whole body.
+  struct RegionFriction {
+    double normal_n = 0.0, slipping_normal_n = 0.0, limit_n = 0.0;
+    scene::Vec3 friction_n = scene::Vec3::Zero();
+    bool sticks_somewhere = false, slides = false;
+  };
+  [[nodiscard]] std::vector<RegionFriction> region_frictions(const State<dim>& state) const;
+  /// Regions of which every node slips, all to one side, begin to slide. @returns whether that changes the coefficient
+  /// of one
+  bool begin_sliding(State<dim>& state) const;
+  /// Makes the solved state the start of the next increment. A region slides on until half of its normal force sticks.
+  void keep_history(State<dim>& state) const;
+  /// Out-of-balance force and sum of the acting forces [N].
+  [[nodiscard]] std::array<double, 2> residual(const State<dim>& state, const Nodal& forces_n) const;
+
+  // Between the ranks.
+  [[nodiscard]] std::unique_ptr<ranks::Lead> make_parts() const;
+  [[nodiscard]] std::unique_ptr<LinearSolver> make_solver() const;
+  template <class Share>
+  auto jointly(Order order, const Share& share) const {
+    return lead_ ? lead_->jointly(order, share) : share();
+  }
+  static void send(const State<dim>& state);
+  [[nodiscard]] State<dim> receive_state() const;
+  /// Which cells' tangents are this rank's. @param in_contact per cell
+  void take_cells(const std::vector<char>& in_contact);
+
+  Mesh<dim> mesh_;
+  scene::Material material_;
+  scene::Kinematics kinematics_;
+  bool mirror_x_, mirror_y_;
+  int threads_;
+  Numerics numerics_;
+  Element<dim> element_;
+  std::optional<RigidTool<dim>> tool_;
+  std::optional<FrictionLaw> friction_;
+  double region_gap_m_ = 0.0;
+
+  // Per node.
+  std::vector<int> hanging_;       // index into mesh_.hanging or -1
+  Nodal surface_normal_;           // outward at rest, zero away from the free surface
+  std::vector<double> area_m2_;    // share of the free surface; zero: never touches
+  std::vector<int> axis_partner_;  // dim = 2: a node on the axis follows this one in touching; else -1
+  std::vector<int> contact_nodes_;
+  double largest_extent_m_ = 0.0;
+
+  // Per node and direction.
+  std::vector<char> prescribed_;
+  Nodal prescribed_m_;
+  Nodal dead_force_n_;        // no columns without any
+  std::vector<int> unknown_;  // number or -1
+  int unknowns_ = 0;
+
+  std::unique_ptr<ranks::Lead> lead_;  // on the first of several ranks
+  std::vector<int> rank_of_cell_;
+  std::vector<int> cells_;                // this rank's, ascending
+  std::unique_ptr<LinearSolver> solver_;  // after lead_
+  double assembly_s_ = 0.0;
+  SymmetricMatrix matrix_;  // this rank's part
+  std::vector<Lane> lanes_;
+
+  // Of the current Newton iteration.
+  Nodal step_offset_m_;           // what prescribed components still have to move
+  std::vector<int> eliminated_;   // per node: direction expressed by the others, `all_directions`, or -1
+  std::vector<Gap<dim>> gaps_;    // per node
+  std::vector<double> lambda_n_;  // per node
+  std::vector<CellResult<dim>> scratch_;
+  std::vector<int> tangent_cells_;                                 // whose tangents are this rank's, ascending
+  std::vector<typename CellResult<dim>::Coupling> pressure_gain_;  // per tangent cell
+  Pressures pressure_offset_pa_;                                   // the same
+
+  // Of the current increment and Newton iteration, with friction.
+  static constexpr int all_directions = dim;
+  /// How a touching node's friction enters the tangent.
+  struct Slip {
+    Point direction = Point::Zero();  // tau / |tau|
+    double turning_n_per_m = 0.0;     // resists slip across it
+  };
+  Eigen::Matrix3Xd anchors_m_;  // per node: where on the tool its slip is measured from; NaN: nowhere yet
+  std::vector<NodeContact<dim>> contacts_;
+  std::vector<Slip> slips_;      // per contact
+  std::vector<int> contact_of_;  // per node: index into contacts_, or -1
+  std::vector<int> slip_row_;    // per node: row of SlipCoupling, or -1
+  int slip_rows_ = 0;
+  Nodal stick_m_;  // what sticking nodes still have to move
+};
+
+}  // namespace touchstone::reference

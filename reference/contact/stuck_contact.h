@@ -1,0 +1,55 @@
+// Where a load step that does not converge is stuck, in words for the user.
+#pragma once
+
+#include "reference/contact/contact_problem.h"
+
+#include <sstream>
+#include <string>
+
+namespace touchstone::reference {
+
+/// The contact regions of an unfinished state, and which of them lies nearest to the place that is farthest from
+/// balance: "contact region 2 of 2, around (0.012, 0, 0.058) m with 3.4 N, next to the largest out-of-balance force at
+/// (...) m".
+/// @param region_gap_m  as for ContactProblem::observe
+template <int dim>
+std::string stuck_contact_text(const ContactProblem<dim>& problem, const State<dim>& state, double region_gap_m) {
+  const Mesh<dim>& mesh = problem.mesh();
+  const auto F = problem.internal_forces(state);
+  std::vector<char> bound = state.touching;
+  for (const auto& face : mesh.faces) {
+    if (face.boundary == Boundary::free) continue;
+    for (const int node : face.nodes) bound[node] = 1;
+  }
+  // Nodes bound by nothing: all the internal force there is out of balance.
+  int worst = -1;
+  double worst_n = 0.0;
+  for (int node = 0; node < mesh.node_count(); ++node) {
+    if (bound[node] || !(F.col(node).norm() > worst_n)) continue;
+    worst = node;
+    worst_n = F.col(node).norm();
+  }
+  std::ostringstream text;
+  text.precision(3);
+  const auto add_place = [&](const scene::Vec3& at_m) {
+    text << '(' << at_m.x() << ", " << at_m.y() << ", " << at_m.z() << ") m";
+  };
+  const std::vector<ContactRegion> regions = problem.observe(state, region_gap_m).regions;
+  if (worst < 0 || regions.empty()) return "no contact region has formed";
+  scene::Vec3 worst_m = scene::Vec3::Zero();
+  const Eigen::Matrix<double, dim, 1> place_m = mesh.points_m.col(worst) + state.u_m.col(worst);
+  worst_m[0] = place_m[0];
+  worst_m[2] = place_m[dim - 1];
+  if constexpr (dim == 3) worst_m[1] = place_m[1];
+  std::size_t nearest = 0;
+  for (std::size_t r = 1; r < regions.size(); ++r) {
+    if ((regions[r].center_m - worst_m).norm() < (regions[nearest].center_m - worst_m).norm()) nearest = r;
+  }
+  text << "contact region " << nearest + 1 << " of " << regions.size() << ", around ";
+  add_place(regions[nearest].center_m);
+  text << " with " << regions[nearest].force_n.norm() << " N, next to the largest out-of-balance force at ";
+  add_place(worst_m);
+  return text.str();
+}
+
+}  // namespace touchstone::reference

@@ -1,0 +1,92 @@
+#include "reference/mesh/inclusions.h"
+
+#include "reference/contact/element.h"
+
+#include <algorithm>
+#include <memory>
+#include <tuple>
+
+namespace touchstone::reference {
+namespace {
+
+using scene::BodyShape;
+using scene::Inclusion;
+using scene::Vec3;
+
+template <int dim>
+Vec3 in_space(const Eigen::Matrix<double, dim, 1>& x_m) {
+  if constexpr (dim == 3) return x_m;
+  return Vec3(x_m[0], 0.0, x_m[dim - 1]);
+}
+
+bool revolved_about_own_axis(const scene::Solid& solid) {
+  return solid.shape == BodyShape::sphere || solid.shape == BodyShape::revolution ||
+         (solid.shape == BodyShape::ellipsoid && solid.semi_axes_m.x() == solid.semi_axes_m.y());
+}
+
+bool alike(const Inclusion& a, const Inclusion& b) {
+  const auto key = [](const Inclusion& i) {
+    return std::tie(i.shape, i.radius_m, i.profile.arc_radius_m, i.material.youngs_modulus_pa,
+                    i.material.poissons_ratio);
+  };
+  return key(a) == key(b) && a.size_m == b.size_m && a.semi_axes_m == b.semi_axes_m && a.profile.rz_m == b.profile.rz_m;
+}
+
+}  // namespace
+
+template <int dim>
+void embed_inclusions(const scene::Body& body, Mesh<dim>& mesh) {
+  if (body.inclusions.empty()) return;
+  std::vector<std::unique_ptr<const scene::Shape>> shapes;
+  for (const Inclusion& inclusion : body.inclusions) {
+    shapes.push_back(solid_shape(inclusion, inclusion.center_m));
+    mesh.inclusion_materials.push_back(inclusion.material);
+  }
+  std::vector<Q2<dim>> at_points;
+  for (const auto& point : GaussRule<dim>().points) at_points.emplace_back(point);
+  for (const auto& cell : mesh.cells) {
+    Eigen::Matrix<double, dim, Mesh<dim>::nodes_per_cell> X_m;
+    for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) X_m.col(a) = mesh.points_m.col(cell[a]);
+    auto& materials = mesh.materials.emplace_back();
+    for (std::size_t q = 0; q < at_points.size(); ++q) {
+      const Vec3 place_m = in_space<dim>(X_m * at_points[q].value);
+      const auto inside = std::find_if(shapes.begin(), shapes.end(),
+                                       [&](const auto& shape) { return shape->signed_distance_m(place_m) < 0.0; });
+      materials[q] = inside == shapes.end() ? 0 : static_cast<std::uint8_t>(inside - shapes.begin() + 1);
+    }
+  }
+}
+
+template <int dim>
+void refine_at_inclusions(const scene::Body& body, double cells, Grading<dim>& grading) {
+  for (const Inclusion& inclusion : body.inclusions) {
+    const std::shared_ptr<const scene::Shape> shape = solid_shape(inclusion, inclusion.center_m);
+    grading.sets.push_back(
+        {[shape](const Eigen::Matrix<double, dim, 1>& x_m) { return shape->signed_distance_m(in_space<dim>(x_m)); },
+         -shape->signed_distance_m(inclusion.center_m) / cells});
+  }
+}
+
+bool revolved(const scene::Body& body) {
+  return revolved_about_own_axis(body) &&
+         std::all_of(body.inclusions.begin(), body.inclusions.end(), [](const Inclusion& inclusion) {
+           return inclusion.center_m.x() == 0.0 && inclusion.center_m.y() == 0.0 && revolved_about_own_axis(inclusion);
+         });
+}
+
+bool mirrored(const std::vector<Inclusion>& inclusions, int axis) {
+  return std::all_of(inclusions.begin(), inclusions.end(), [&](const Inclusion& one) {
+    return std::any_of(inclusions.begin(), inclusions.end(), [&](const Inclusion& other) {
+      Vec3 image_m = other.center_m;
+      image_m[axis] *= -1.0;
+      return image_m == one.center_m && alike(one, other);
+    });
+  });
+}
+
+template void embed_inclusions(const scene::Body&, Mesh<2>&);
+template void embed_inclusions(const scene::Body&, Mesh<3>&);
+template void refine_at_inclusions(const scene::Body&, double, Grading<2>&);
+template void refine_at_inclusions(const scene::Body&, double, Grading<3>&);
+
+}  // namespace touchstone::reference

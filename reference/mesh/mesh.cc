@@ -1,0 +1,249 @@
+#include "reference/mesh/mesh.h"
+
+#include <deal.II/base/geometry_info.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_tools.h>
+#include <deal.II/fe/mapping_q.h>
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/tria.h>
+#include <deal.II/lac/affine_constraints.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace touchstone::reference {
+namespace {
+
+constexpr dealii::types::boundary_id id_of(Boundary boundary) {
+  return static_cast<dealii::types::boundary_id>(boundary);
+}
+
+template <int dim>
+Eigen::Matrix<double, dim, 1> to_eigen(const dealii::Point<dim>& p) {
+  Eigen::Matrix<double, dim, 1> x;
+  for (int d = 0; d < dim; ++d) x[d] = p[d];
+  return x;
+}
+
+template <int dim>
+double distance_to(const FineDisc<dim>& disc, const Eigen::Matrix<double, dim, 1>& x) {
+  const Eigen::Matrix<double, dim, 1> from = x - disc.center_m;
+  const double above = from.dot(disc.normal);
+  const double beyond = std::max(0.0, (from - above * disc.normal).norm() - disc.radius_m);
+  return std::hypot(above, beyond);
+}
+
+template <int dim>
+using Corners = Eigen::Matrix<double, dim, 1 << dim>;
+
+/// Distance from a cell to a disc: from the nearest point of the cell's bounding box.
+template <int dim>
+double distance_to(const FineDisc<dim>& disc, const Corners<dim>& corners_m) {
+  const Eigen::Matrix<double, dim, 1> low = corners_m.rowwise().minCoeff(), high = corners_m.rowwise().maxCoeff();
+  // The box point nearest to the disc's centre is not nearest to the disc, but one projection towards it is.
+  Eigen::Matrix<double, dim, 1> near = disc.center_m.cwiseMax(low).cwiseMin(high);
+  const Eigen::Matrix<double, dim, 1> from = near - disc.center_m;
+  const Eigen::Matrix<double, dim, 1> flat = from - from.dot(disc.normal) * disc.normal;
+  const double length = flat.norm();
+  if (length > disc.radius_m) {
+    const Eigen::Matrix<double, dim, 1> edge = disc.center_m + flat * (disc.radius_m / length);
+    near = edge.cwiseMax(low).cwiseMin(high);
+  }
+  return distance_to(disc, near);
+}
+
+/// Distance from a cell to a set: zero where it changes sign, else of the nearest corner. With growth < 1 no set is so
+/// small that it hides between the corners.
+template <int dim>
+double distance_to(const FineSet<dim>& set, const Corners<dim>& corners_m) {
+  double low_m = std::numeric_limits<double>::infinity(), high_m = -low_m;
+  for (const auto& corner_m : corners_m.colwise()) {
+    const double distance_m = set.distance_m(corner_m);
+    low_m = std::min(low_m, distance_m);
+    high_m = std::max(high_m, distance_m);
+  }
+  return std::max({0.0, low_m, -high_m});
+}
+
+template <int dim>
+Eigen::Matrix<double, dim, 1> unmapped(const Eigen::Matrix<double, dim, 1>& x) {
+  return x;
+}
+
+template <int dim>
+using Map = std::function<Eigen::Matrix<double, dim, 1>(const Eigen::Matrix<double, dim, 1>&)>;
+
+template <int dim>
+void refine(dealii::Triangulation<dim>& grid, const Grading<dim>& grading, const Map<dim>& place_m = unmapped<dim>) {
+  // A cell a hair above the wished size is small enough.
+  constexpr double slack = 1.0 + 1e-6;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto& cell : grid.active_cell_iterators()) {
+      Corners<dim> corners_m;
+      for (const unsigned int v : cell->vertex_indices()) corners_m.col(v) = place_m(to_eigen<dim>(cell->vertex(v)));
+      // The longest edge of each direction, on average.
+      std::array<double, dim> longest{};
+      for (unsigned int line = 0; line < dealii::GeometryInfo<dim>::lines_per_cell; ++line) {
+        const unsigned int from = dealii::GeometryInfo<dim>::line_to_cell_vertices(line, 0);
+        const unsigned int to = dealii::GeometryInfo<dim>::line_to_cell_vertices(line, 1);
+        // Lexicographic corners of an edge differ in the bit of its direction.
+        double& edge = longest[(to - from) / 2];
+        edge = std::max(edge, (corners_m.col(to) - corners_m.col(from)).norm());
+      }
+      const double edge = std::accumulate(longest.begin(), longest.end(), 0.0) / dim;
+      double wished = grading.largest_m;
+      for (const FineDisc<dim>& disc : grading.discs) {
+        wished = std::min(wished, std::max(disc.size_m, grading.growth * distance_to(disc, corners_m)));
+      }
+      for (const FineSet<dim>& set : grading.sets) {
+        wished = std::min(wished, std::max(set.size_m, grading.growth * distance_to(set, corners_m)));
+      }
+      if (edge > slack * wished) {
+        cell->set_refine_flag();
+        changed = true;
+      }
+    }
+    if (changed) grid.execute_coarsening_and_refinement();
+  }
+}
+
+/// Cells along each edge of a block's coarse grid.
+template <int dim>
+std::vector<unsigned int> coarse_cells(const std::vector<double>& lengths, const Grading<dim>& grading) {
+  std::vector<unsigned int> cells;
+  if (grading.halves_the_block) {
+    const double shortest = *std::min_element(lengths.begin(), lengths.end());
+    for (const double length : lengths) cells.push_back(static_cast<unsigned int>(std::lround(length / shortest)));
+    return cells;
+  }
+  double edge = grading.largest_m;
+  for (const FineDisc<dim>& disc : grading.discs) edge = std::min(edge, disc.size_m);
+  while (2.0 * edge <= grading.largest_m) edge *= 2.0;
+  for (const double length : lengths)
+    cells.push_back(std::max(1u, static_cast<unsigned int>(std::ceil(length / edge - 1e-6))));
+  return cells;
+}
+
+/// Plain arrays from a finished grid: one quadratic scalar degree of freedom is one node.
+template <int dim>
+Mesh<dim> to_arrays(const dealii::Triangulation<dim>& grid, const Map<dim>& place_m = unmapped<dim>) {
+  using namespace dealii;
+  using Out = Mesh<dim>;
+  const FE_Q<dim> element(2);
+  DoFHandler<dim> nodes(grid);
+  nodes.distribute_dofs(element);
+  const std::vector<unsigned int> to_lexicographic = FETools::hierarchic_to_lexicographic_numbering<dim>(2);
+  const MappingQ<dim> mapping(1);
+
+  Out mesh;
+  mesh.points_m.resize(dim, nodes.n_dofs());
+  std::vector<types::global_dof_index> indices(Out::nodes_per_cell);
+  for (const auto& cell : nodes.active_cell_iterators()) {
+    cell->get_dof_indices(indices);
+    std::array<int, Out::nodes_per_cell> ordered;
+    for (int a = 0; a < Out::nodes_per_cell; ++a) {
+      ordered[to_lexicographic[a]] = static_cast<int>(indices[a]);
+      mesh.points_m.col(indices[a]) =
+          place_m(to_eigen<dim>(mapping.transform_unit_to_real_cell(cell, element.unit_support_point(a))));
+    }
+    mesh.cells.push_back(ordered);
+    for (const unsigned int f : cell->face_indices()) {
+      if (!cell->face(f)->at_boundary()) continue;
+      typename Out::Face face{{}, static_cast<Boundary>(cell->face(f)->boundary_id())};
+      const int axis = static_cast<int>(f) / 2, layer = f % 2 == 0 ? 0 : 2;
+      int next = 0;
+      for (int a = 0; a < Out::nodes_per_cell; ++a) {
+        const int place[3] = {a % 3, a / 3 % 3, a / 9};
+        if (place[axis] == layer) face.nodes[next++] = ordered[a];
+      }
+      mesh.faces.push_back(face);
+    }
+  }
+
+  AffineConstraints<double> constraints;
+  DoFTools::make_hanging_node_constraints(nodes, constraints);
+  constraints.close();
+  for (const auto& line : constraints.get_lines()) {
+    typename Out::Hanging hanging{static_cast<int>(line.index), {}};
+    mesh.points_m.col(hanging.node).setZero();
+    for (const auto& [master, weight] : line.entries) hanging.masters.emplace_back(static_cast<int>(master), weight);
+    mesh.hanging.push_back(std::move(hanging));
+  }
+  for (const auto& hanging : mesh.hanging) {
+    for (const auto& [master, weight] : hanging.masters) {
+      mesh.points_m.col(hanging.node) += weight * mesh.points_m.col(master);
+    }
+  }
+  return mesh;
+}
+
+}  // namespace
+
+Mesh<3> block_mesh(const BlockSpec& spec) {
+  dealii::Triangulation<3> grid;
+  const Eigen::Vector3d size = spec.upper_m - spec.lower_m;
+  const dealii::Point<3> lower(spec.lower_m.x(), spec.lower_m.y(), spec.lower_m.z());
+  const dealii::Point<3> upper(spec.upper_m.x(), spec.upper_m.y(), spec.upper_m.z());
+  dealii::GridGenerator::subdivided_hyper_rectangle(grid, coarse_cells({size.x(), size.y(), size.z()}, spec.grading),
+                                                    lower, upper, true);
+  for (const auto& cell : grid.active_cell_iterators()) {
+    for (const unsigned int f : cell->face_indices()) {
+      if (!cell->face(f)->at_boundary()) continue;
+      Boundary boundary = Boundary::free;
+      if (f == 0 && spec.symmetric_x) boundary = Boundary::plane_x;
+      if (f == 2 && spec.symmetric_y) boundary = Boundary::plane_y;
+      if (f == 4) boundary = Boundary::held;
+      cell->face(f)->set_all_boundary_ids(id_of(boundary));
+    }
+  }
+  refine(grid, spec.grading);
+  return to_arrays(grid);
+}
+
+Mesh<2> cylinder_mesh(const CylinderSpec& spec) {
+  dealii::Triangulation<2> grid;
+  dealii::GridGenerator::subdivided_hyper_rectangle(grid, coarse_cells({spec.radius_m, spec.height_m}, spec.grading),
+                                                    dealii::Point<2>(0.0, 0.0),
+                                                    dealii::Point<2>(spec.radius_m, spec.height_m), true);
+  for (const auto& cell : grid.active_cell_iterators()) {
+    for (const unsigned int f : cell->face_indices()) {
+      if (!cell->face(f)->at_boundary()) continue;
+      cell->face(f)->set_boundary_id(id_of(f == 0 ? Boundary::plane_x : (f == 2 ? Boundary::held : Boundary::free)));
+    }
+  }
+  refine(grid, spec.grading);
+  return to_arrays(grid);
+}
+
+template <int dim>
+Mesh<dim> mapped_mesh(const MappedSpec<dim>& spec) {
+  std::vector<dealii::Point<dim>> vertices(spec.vertices.size());
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    for (int d = 0; d < dim; ++d) vertices[v][d] = spec.vertices[v][d];
+  }
+  std::vector<dealii::CellData<dim>> cells(spec.cells.size());
+  for (std::size_t c = 0; c < cells.size(); ++c) cells[c].vertices.assign(spec.cells[c].begin(), spec.cells[c].end());
+  // Refinement in the plane relies on both cells at an edge running it the same way.
+  if constexpr (dim == 2) dealii::GridTools::consistently_order_cells(cells);
+  dealii::Triangulation<dim> grid;
+  grid.create_triangulation(vertices, cells, dealii::SubCellData());
+  for (const auto& cell : grid.active_cell_iterators()) {
+    for (const unsigned int f : cell->face_indices()) {
+      const auto face = cell->face(f);
+      if (face->at_boundary()) face->set_all_boundary_ids(id_of(spec.boundary(to_eigen<dim>(face->center()))));
+    }
+  }
+  refine(grid, spec.grading, spec.place_m);
+  return to_arrays(grid, spec.place_m);
+}
+
+template Mesh<2> mapped_mesh(const MappedSpec<2>&);
+template Mesh<3> mapped_mesh(const MappedSpec<3>&);
+
+}  // namespace touchstone::reference

@@ -1,0 +1,182 @@
+#include "reference/run/sensitivity.h"
+
+#include "reference/contact/contact_problem.h"
+#include "reference/mesh/prolongation.h"
+#include "reference/mesh/sampling.h"
+#include "reference/run/step_record.h"
+#include "reference/run/uncertainty.h"
+#include "reference/tool/distance_grid.h"
+
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <memory>
+#include <utility>
+
+namespace touchstone::reference {
+namespace {
+
+/// One choice of the method that is changed.
+struct Change {
+  const char* part;
+  const char* text;
+  Carries carries = Carries::wholly;
+  Numerics numerics{};
+  MeshChange mesh{};
+  int load_steps = 1;  // in place of one
+  std::shared_ptr<const ToolDistance> tool{};
+  [[nodiscard]] bool other_mesh() const { return mesh.far_field != 1.0 || mesh.inclusions != 1.0; }
+};
+
+std::vector<Change> changes(const scene::Scene& scene) {
+  std::vector<Change> list;
+  list.push_back({.part = "load_step", .text = "half as long", .load_steps = 2});
+  list.push_back({.part = "contact_parameter",
+                  .text = "ten times as large",
+                  .numerics = {.contact_parameter = 10.0, .numerical_bulk = 1.0}});
+  list.push_back({.part = "numerical_bulk",
+                  .text = "ten times as large",
+                  .numerics = {.contact_parameter = 1.0, .numerical_bulk = 10.0}});
+  if (scene.tool.shape == scene::ToolShape::mesh) {
+    const scene::TriangleMesh mesh = scene::tool_mesh(scene.tool);
+    list.push_back({.part = "tool_grid",
+                    .text = "half as wide",
+                    .tool = std::make_shared<DistanceGrid>(mesh, 0.5 * grid_spacing_m(mesh))});
+  }
+  // Every level has smaller cells at the inclusions, so the levels' differences hold this one.
+  if (!scene.body.inclusions.empty()) {
+    list.push_back({.part = "inclusion_cells",
+                    .text = "half as large",
+                    .carries = Carries::in_the_levels,
+                    .mesh = {.far_field = 1.0, .inclusions = 0.5}});
+  }
+  list.push_back({.part = "far_field",
+                  .text = "cells half as large",
+                  .carries = Carries::far_field,
+                  .mesh = {.far_field = 0.5, .inclusions = 1.0}});
+  return list;
+}
+
+template <int dim>
+class Repeat {
+ public:
+  Repeat(const SensitivityCase<dim>& given, const SensitivityWatch& watch)
+      : given_(given), watch_(watch), body_(scene::body_shape(given.scene.body)) {}
+
+  /// The instant's solution with one choice changed. @throws NotConverged
+  std::pair<Solved<dim>, Step> solve(const Change& change, const Mesh<dim>& mesh) const {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t cpu_begin = std::clock();
+    const scene::Scene& scene = given_.scene;
+    ContactProblem<dim> problem(mesh, scene.body.material, scene.reference.kinematics, given_.choice.mirror_x,
+                                given_.choice.mirror_y, ranks::threads(), change.numerics);
+    if (scene.contact.friction) problem.set_friction(*scene.contact.friction, scene.fast.r_th_m);
+    const auto tool = change.tool ? change.tool : given_.choice.tool;
+    const auto tool_anywhere = [&](double time_s) { return RigidTool<dim>(tool, scene::pose_at(scene.track, time_s)); };
+    LoadPath<dim> path(
+        problem,
+        [&](double time_s) -> std::optional<RigidTool<dim>> {
+          if (scene::rest_depth_m(*body_, scene.tool, scene::pose_at(scene.track, time_s)) <= 0.0) return std::nullopt;
+          return tool_anywhere(time_s);
+        },
+        tool_anywhere);
+    std::pair<Solved<dim>, Step> result;
+    auto& [solved, step] = result;
+    const auto advance = [&](const Solved<dim>& from, double time_s) {
+      const AdvanceReport report = path.advance(nullptr, from, time_s, solved,
+                                                [&](int iteration, double) { watch_(change.part, iteration); }, {});
+      step.newton_iterations += report.newton_iterations;
+      step.halvings += report.halvings;
+      if (!report.converged) {
+        throw NotConverged(std::string("the sensitivity to the ") + change.part +
+                           " did not converge: " + report.last.trouble);
+      }
+    };
+    const std::size_t last = given_.times_s.size() - 1;
+    const double lead_s = last > 0 ? given_.times_s[1] - given_.times_s[0] : 1.0;
+    const Solved<dim> rest{given_.times_s[0] - lead_s, problem.rest(), false};
+    // Friction remembers its path; without it the last step tells all, and on another mesh the solution itself.
+    std::size_t first = scene.contact.friction ? 0 : last;
+    Solved<dim> current = rest;
+    if (first == last && change.other_mesh()) {
+      current = {given_.at.time_s, Prolongation<dim>(given_.mesh, mesh)(given_.at.state), true};
+      current.time_s -= lead_s;
+    } else if (first == last && given_.before) {
+      current = *given_.before;
+    }
+    for (std::size_t instant = first; instant <= last; ++instant) {
+      const double from_s = current.time_s, to_s = given_.times_s[instant];
+      for (int k = 1; k <= change.load_steps; ++k) {
+        const double share = static_cast<double>(k) / change.load_steps;
+        advance(current, k == change.load_steps ? to_s : from_s + share * (to_s - from_s));
+        current = solved;
+      }
+    }
+    step.seen = problem.observe(solved.state, scene.fast.r_th_m);
+    step.unknowns = problem.unknowns();
+    step.linear_solver = problem.linear_solver();
+    step.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    step.cpu_s = static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC;
+    return result;
+  }
+
+ private:
+  const SensitivityCase<dim>& given_;
+  const SensitivityWatch& watch_;
+  std::unique_ptr<const scene::Shape> body_;
+};
+
+}  // namespace
+
+double share_at(const Sensitivity& sensitivity, int level) {
+  // Halving cells of second order leaves a third of what it takes away; quadratic ones do better.
+  constexpr double not_seen = 4.0 / 3.0;
+  switch (sensitivity.carries) {
+    case Carries::wholly:
+      return 1.0;
+    case Carries::far_field:
+      return not_seen * far_share(level);
+    case Carries::in_the_levels:
+      return 0.0;
+  }
+  return 1.0;
+}
+
+template <int dim>
+std::vector<Sensitivity> sensitivities(const SensitivityCase<dim>& given, const Store& store,
+                                       const SensitivityWatch& watch) {
+  const auto sampled = [&](const Mesh<dim>& mesh, const Solved<dim>& solved) {
+    return SurfaceSampler<dim>(mesh, given.rest_points_m, given.choice.mirror_x, given.choice.mirror_y)
+        .displacement_m(solved.state.u_m);
+  };
+  const Eigen::Matrix3Xd u_m = sampled(given.mesh, given.at);
+  const Eigen::VectorXd area_m2 = areas_or_ones(given.rest_area_m2, u_m.cols());
+  const double scale = u_m.colwise().squaredNorm().transpose().dot(area_m2);
+  const Repeat<dim> repeat(given, watch);
+  std::vector<Sensitivity> list;
+  for (const Change& change : changes(given.scene)) {
+    const Mesh<dim> mesh =
+        change.other_mesh() ? level_mesh<dim>(given.scene, given.choice, 0, change.mesh) : given.mesh;
+    std::optional<std::pair<Solved<dim>, Step>> found;
+    const std::string name = std::string("sensitivity-") + change.part;
+    if (std::optional<Record> record = store.read(name)) found = from_record<dim>(std::move(*record), mesh);
+    if (!found) {
+      found = repeat.solve(change, mesh);
+      store.write(name, to_record(found->first, found->second));
+    }
+    Sensitivity& one = list.emplace_back();
+    one.part = change.part;
+    one.change = change.text;
+    one.carries = change.carries;
+    one.force_rel = (found->second.seen.force_n - given.force_n).norm() / given.force_n.norm();
+    one.displacement_change_m = (sampled(mesh, found->first) - u_m).colwise().norm().transpose();
+    const double changed = one.displacement_change_m.cwiseAbs2().dot(area_m2);
+    one.shape_rel = scale > 0.0 ? std::sqrt(changed / scale) : 0.0;
+  }
+  return list;
+}
+
+template std::vector<Sensitivity> sensitivities(const SensitivityCase<2>&, const Store&, const SensitivityWatch&);
+template std::vector<Sensitivity> sensitivities(const SensitivityCase<3>&, const Store&, const SensitivityWatch&);
+
+}  // namespace touchstone::reference

@@ -1,0 +1,44 @@
+// What choices of the method that refinement does not touch change in the answer.
+#pragma once
+
+#include "reference/contact/load_path.h"
+#include "reference/run/model_choice.h"
+#include "reference/run/store.h"
+#include "reference/solver.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace touchstone::reference {
+
+/// A solved instant on the coarsest mesh, to be solved again with one choice changed.
+template <int dim>
+struct SensitivityCase {
+  const scene::Scene& scene;
+  const ModelChoice& choice;
+  const Mesh<dim>& mesh;
+  const Eigen::Matrix3Xd& rest_points_m;
+  const std::vector<double>& rest_area_m2;  ///< see Options
+  const std::vector<double>& times_s;       ///< of the instants up to the one looked at, which is the last
+  const Solved<dim>& at;                    ///< the instant's solution
+  const scene::Vec3& force_n;               ///< its contact force
+  const Solved<dim>* before;                ///< the solution of the instant before, or nullptr
+};
+
+/// What the bands hold of a sensitivity on a level, 0 the coarsest, as a multiple of it.
+[[nodiscard]] double share_at(const Sensitivity& sensitivity, int level);
+
+using SensitivityWatch = std::function<void(const std::string& part, int iteration)>;
+
+/// One after another: the load step halved, the active set's contact parameter and the numerical bulk modulus of the
+/// tangent ten times as large, the grid of a mesh tool's distance half as wide, cells at inclusions half as large, and
+/// cells far from the contact half as large. Parts that the scene has not are left out, and the last one is measured
+/// everywhere. Solved once per scene: the store keeps them.
+/// @param watch  called in every Newton iteration, which are none when all is in the store; may throw to stop
+/// @throws NotConverged
+template <int dim>
+[[nodiscard]] std::vector<Sensitivity> sensitivities(const SensitivityCase<dim>& given, const Store& store,
+                                                     const SensitivityWatch& watch);
+
+}  // namespace touchstone::reference

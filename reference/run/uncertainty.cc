@@ -1,0 +1,115 @@
+#include "reference/run/uncertainty.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace touchstone::reference {
+namespace {
+
+constexpr double safety = 1.25;
+constexpr double closest_pair = 1.49;
+
+/// Two levels and what the difference between them is worth at the finest one.
+struct Pair {
+  std::size_t coarse, fine;
+  double weight;
+};
+
+std::vector<Pair> pairs(const std::vector<double>& finer) {
+  const std::size_t last = finer.size() - 1;
+  std::vector<Pair> list;
+  for (const auto [coarse, fine] : {std::array{last - 1, last}, {last - 2, last}, {last - 2, last - 1}}) {
+    if (finer[fine] < closest_pair * finer[coarse]) continue;
+    list.push_back({coarse, fine, 1.0 / (finer[last] / finer[coarse] - finer[last] / finer[fine])});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::vector<double> force_band(const std::vector<std::vector<double>>& levels, const std::vector<double>& finer) {
+  const std::size_t instants = levels.empty() ? 0 : levels.back().size();
+  if (levels.size() < 3) return std::vector<double>(instants, std::numeric_limits<double>::infinity());
+  std::vector<double> own(instants, 0.0), band(instants);
+  for (const Pair& pair : pairs(finer)) {
+    for (std::size_t i = 0; i < instants; ++i) {
+      own[i] = std::max(own[i], safety * pair.weight * std::abs(levels[pair.fine][i] - levels[pair.coarse][i]));
+    }
+  }
+  for (std::size_t i = 0; i < instants; ++i) {
+    band[i] = own[i];
+    if (i > 0) band[i] = std::max(band[i], own[i - 1]);
+    if (i + 1 < instants) band[i] = std::max(band[i], own[i + 1]);
+  }
+  return band;
+}
+
+std::vector<Eigen::VectorXd> displacement_band(const std::vector<std::vector<Eigen::Matrix3Xd>>& levels,
+                                               const std::vector<double>& finer) {
+  const std::size_t instants = levels.empty() ? 0 : levels.back().size();
+  std::vector<Eigen::VectorXd> own(instants), band(instants);
+  for (std::size_t i = 0; i < instants; ++i) {
+    const Eigen::Index points = levels.back()[i].cols();
+    if (levels.size() < 3) {
+      own[i] = Eigen::VectorXd::Constant(points, std::numeric_limits<double>::infinity());
+      continue;
+    }
+    own[i].setZero(points);
+    for (const Pair& pair : pairs(finer)) {
+      const Eigen::Matrix3Xd change_m = levels[pair.fine][i] - levels[pair.coarse][i];
+      own[i] = own[i].cwiseMax(safety * pair.weight * change_m.colwise().norm().transpose());
+    }
+  }
+  for (std::size_t i = 0; i < instants; ++i) {
+    band[i] = own[i];
+    if (i > 0) band[i] = band[i].cwiseMax(own[i - 1]);
+    if (i + 1 < instants) band[i] = band[i].cwiseMax(own[i + 1]);
+  }
+  return band;
+}
+
+std::vector<bool> deep_instants(const std::vector<scene::InstantRecord>& instants) {
+  double deepest_m = 0.0;
+  for (const scene::InstantRecord& instant : instants) deepest_m = std::max(deepest_m, instant.depth_m);
+  std::vector<bool> deep;
+  for (const scene::InstantRecord& instant : instants) {
+    deep.push_back(instant.depth_m > grazing_depth_m && instant.depth_m > deep_share * deepest_m);
+  }
+  return deep;
+}
+
+std::optional<double> force_uncertainty_rel(const std::vector<scene::InstantRecord>& instants,
+                                            const std::vector<double>& band_n) {
+  std::optional<double> largest;
+  const std::vector<bool> deep = deep_instants(instants);
+  for (std::size_t i = 0; i < instants.size(); ++i) {
+    const double force_n = instants[i].force_n().norm();
+    if (!deep[i] || force_n == 0.0) continue;
+    const double here = band_n[i] / force_n;
+    // Once NaN, stays NaN.
+    if (!largest || std::isnan(here) || here > *largest) largest = here;
+  }
+  return largest;
+}
+
+std::optional<double> shape_uncertainty_rel(const std::vector<scene::InstantRecord>& instants,
+                                            const std::vector<Eigen::VectorXd>& band_m,
+                                            const std::vector<double>& area_m2) {
+  double uncertain = 0.0, moved = 0.0;
+  for (std::size_t i = 0; i < instants.size(); ++i) {
+    const Eigen::VectorXd area = areas_or_ones(area_m2, instants[i].displacement_m.cols());
+    uncertain += band_m[i].cwiseAbs2().dot(area);
+    moved += instants[i].displacement_m.colwise().squaredNorm().transpose().dot(area);
+  }
+  if (moved == 0.0) return std::nullopt;
+  return std::sqrt(uncertain / moved);
+}
+
+Eigen::VectorXd areas_or_ones(const std::vector<double>& area_m2, Eigen::Index points) {
+  if (area_m2.empty()) return Eigen::VectorXd::Ones(points);
+  return Eigen::Map<const Eigen::VectorXd>(area_m2.data(), static_cast<Eigen::Index>(area_m2.size()));
+}
+
+}  // namespace touchstone::reference
