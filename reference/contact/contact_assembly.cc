@@ -104,7 +104,7 @@ typename ContactProblem<dim>::Forces ContactProblem<dim>::forces_of_share(const 
         X.col(a) = mesh_.points_m.col(cell[a]);
         u.col(a) = state.u_m.col(cell[a]);
       }
-      share.admissible = element_.evaluate(X, u, state.p_pa.col(c), false, result, mesh_.materials_of(c));
+      share.admissible = element_.evaluate(X, u, state.p_pa.col(c), Stiffness::none, result, mesh_.materials_of(c));
       for (int i = 0; i < dim; ++i) {
         for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
           share.nodal_n(i, cell[a]) += result.force_n[i * Mesh<dim>::nodes_per_cell + a];
@@ -236,7 +236,7 @@ void ContactProblem<dim>::scatter_plain(const std::array<int, Mesh<dim>::nodes_p
 }
 
 template <int dim>
-void ContactProblem<dim>::assemble(const State<dim>& state) {
+void ContactProblem<dim>::assemble(const State<dim>& state, Stiffness stiffness) {
   in_lanes(threads_, static_cast<int>(tangent_cells_.size()), [&](int number, int begin, int end) {
     Lane& lane = lanes_[number];
     std::fill(lane.value.begin(), lane.value.end(), 0.0);
@@ -255,7 +255,7 @@ void ContactProblem<dim>::assemble(const State<dim>& state) {
         u.col(a) = state.u_m.col(cell[a]);
         plain = plain && hanging_[cell[a]] < 0 && eliminated_[cell[a]] < 0 && step_offset_m_.col(cell[a]).isZero(0.0);
       }
-      element_.evaluate(X, u, state.p_pa.col(c), true, result, mesh_.materials_of(c));
+      element_.evaluate(X, u, state.p_pa.col(c), stiffness, result, mesh_.materials_of(c));
       pressure_gain_[k] = result.pressure_gain;
       pressure_offset_pa_.col(k) = result.pressure_offset_pa;
       if (plain) {
@@ -319,7 +319,7 @@ Eigen::VectorXd ContactProblem<dim>::sum_of_lanes() {
 }
 
 template <int dim>
-Eigen::VectorXd ContactProblem<dim>::assemble_tangent(const State<dim>& state, bool with_curvature) {
+Eigen::VectorXd ContactProblem<dim>::assemble_tangent(const State<dim>& state, Tangent tangent) {
   const Stopwatch watch(assembly_s_);
   if (matrix_.column_begin.empty()) {
     jointly(Order::pattern, [&] {
@@ -338,8 +338,10 @@ Eigen::VectorXd ContactProblem<dim>::assemble_tangent(const State<dim>& state, b
     const std::vector<char> in_contact = cells_of_nodes(mesh_, eliminated);
     ranks::send(in_contact);
     take_cells(in_contact);
-    assemble(state);
-    if (with_curvature) add_curvature();
+    const Stiffness stiffness = tangent == Tangent::definite ? Stiffness::definite : Stiffness::consistent;
+    ranks::send(std::array{stiffness});
+    assemble(state, stiffness);
+    if (tangent == Tangent::consistent) add_curvature();
     if (friction_) add_turning();
     return sum_of_lanes();
   });
@@ -370,26 +372,26 @@ typename ContactProblem<dim>::Pressures ContactProblem<dim>::pressure_change_of_
   return dp_pa;
 }
 
-template void ContactProblem<2>::assemble(const State<2>&);
+template void ContactProblem<2>::assemble(const State<2>&, Stiffness);
 template void ContactProblem<2>::add_dead_forces();
 template void ContactProblem<2>::add_curvature();
 template void ContactProblem<2>::expand(int, int, double, Expansion&) const;
 template void ContactProblem<2>::build_pattern();
 template ContactProblem<2>::Forces ContactProblem<2>::forces(const State<2>&) const;
 template ContactProblem<2>::Forces ContactProblem<2>::forces_of_share(const State<2>&) const;
-template Eigen::VectorXd ContactProblem<2>::assemble_tangent(const State<2>&, bool);
+template Eigen::VectorXd ContactProblem<2>::assemble_tangent(const State<2>&, Tangent);
 template Eigen::VectorXd ContactProblem<2>::sum_of_lanes();
 template ContactProblem<2>::Pressures ContactProblem<2>::pressure_change(const Nodal&) const;
 template ContactProblem<2>::Pressures ContactProblem<2>::pressure_change_of_share(const Nodal&) const;
 template ContactProblem<2>::Nodal ContactProblem<2>::internal_forces(const State<2>&) const;
-template void ContactProblem<3>::assemble(const State<3>&);
+template void ContactProblem<3>::assemble(const State<3>&, Stiffness);
 template void ContactProblem<3>::add_dead_forces();
 template void ContactProblem<3>::add_curvature();
 template void ContactProblem<3>::expand(int, int, double, Expansion&) const;
 template void ContactProblem<3>::build_pattern();
 template ContactProblem<3>::Forces ContactProblem<3>::forces(const State<3>&) const;
 template ContactProblem<3>::Forces ContactProblem<3>::forces_of_share(const State<3>&) const;
-template Eigen::VectorXd ContactProblem<3>::assemble_tangent(const State<3>&, bool);
+template Eigen::VectorXd ContactProblem<3>::assemble_tangent(const State<3>&, Tangent);
 template Eigen::VectorXd ContactProblem<3>::sum_of_lanes();
 template ContactProblem<3>::Pressures ContactProblem<3>::pressure_change(const Nodal&) const;
 template ContactProblem<3>::Pressures ContactProblem<3>::pressure_change_of_share(const Nodal&) const;

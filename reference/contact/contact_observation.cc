@@ -46,7 +46,7 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
         X.col(a) = mesh_.points_m.col(mesh_.cells[c][a]);
         u.col(a) = state.u_m.col(mesh_.cells[c][a]);
       }
-      element_.evaluate(X, u, state.p_pa.col(c), false, result, mesh_.materials_of(c));
+      element_.evaluate(X, u, state.p_pa.col(c), Stiffness::none, result, mesh_.materials_of(c));
       change_m3 += result.volume_change_m3;
       rest_m3 += result.rest_volume_m3;
     }

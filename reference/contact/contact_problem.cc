@@ -246,9 +246,9 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
   const double length_m = tool_ ? tool_->half_width_m() : largest_extent_m_;
   const double smallest_scale_n = 1e-10 * material_.shear_modulus_pa() * length_m * length_m;
   constexpr double volume_tolerance = 1e-9, gap_tolerance = 1e-10, place_tolerance = 1e-12;
-  constexpr int most_indefinite = 3;
+  constexpr int most_indefinite = 12;
   const int most_iterations = friction_ ? largest_iterations_with_friction : largest_iterations;
-  bool last_definite = true;
+  bool last_stable = true;
 
   Forces current = forces(state);
   if (!current.admissible) {
@@ -298,7 +298,7 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
       // A balance whose tangent is indefinite is one the body would leave: a large step can end there, small ones do
       // not.
       if (!friction_ || !begin_sliding(state)) {
-        report.converged = last_definite && (iteration == 0 || solver_->positive_definite(matrix_));
+        report.converged = last_stable && (iteration == 0 || solver_->positive_definite(matrix_));
         if (!report.converged) report.trouble = "the balance found is not stable";
         if (friction_) keep_history(state);
         return report;
@@ -329,10 +329,6 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
         eliminated_[node] = all_directions;
       }
     }
-    // The curvature of the tool lowers the tangent. Where that makes it indefinite, Newton does without for one
-    // iteration. A body that is itself unstable is left to a solver that does not mind, in two dimensions; in three it
-    // would take a hundred times a factorisation and its memory, and a shorter load step does better.
-    Eigen::VectorXd solution = assemble_tangent(state, true);
     // The step is solved for no more exactly than it is worth, nor than the last one must be: S. C. Eisenstat, H. F.
     // Walker, SIAM J. Sci. Comput. 17 (1996) 16-32. In a new load step, and once the contact area changes, an old
     // factor takes longer to correct than a new one to make.
@@ -343,28 +339,26 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     const double tolerance_rel = std::clamp(std::max(0.1 * away_rel, 0.01 * last_step_rel), 1e-10, 1e-2);
     if (changed || iteration == 0) solver_->forget();
     // With slip one tangent is solved several times.
-    const bool slips = slip_rows_ > 0;
-    const auto solve = [&] {
-      return slips ? solver_->factorise(matrix_) : solver_->solve(matrix_, tolerance_rel, solution);
-    };
-    bool definite = last_definite = solve();
+    bool definite = false;
+    Eigen::VectorXd solution;
+    for (const Tangent tangent : {Tangent::consistent, Tangent::without_curvature, Tangent::definite}) {
+      solution = assemble_tangent(state, tangent);
+      // With slip one tangent is solved several times.
+      definite = slip_rows_ > 0 ? solver_->factorise(matrix_) : solver_->solve(matrix_, tolerance_rel, solution);
+      if (!definite) continue;
+      // A node on the edge between two facets would leave it; which way is nothing to the body.
+      last_stable =
+          tangent == Tangent::consistent || (tangent == Tangent::without_curvature && tool_ && tool_->faceted());
+      if (tangent != Tangent::consistent) ++report.indefinite;
+      break;
+    }
     if (!definite) {
-      ++report.indefinite;
-      solution = assemble_tangent(state, false);
-      definite = solve();
-    }
-    if (slips) {
-      const SlipCoupling slip = slip_coupling();
-      if (definite) {
-        solve_with_slip(
-            slip, [this](Eigen::VectorXd& x) { solver_->solve(x); }, solution);
-      } else {
-        solution -= slip.column * slip.guess_n;
-      }
-    }
-    if (!definite && (dim == 3 || !solver_->solve_indefinite(matrix_, solution))) {
-      report.trouble = dim == 3 ? "the tangent is indefinite" : "the tangent is singular";
+      report.trouble = "the tangent is singular";
       return report;
+    }
+    if (slip_rows_ > 0) {
+      solve_with_slip(
+          slip_coupling(), [this](Eigen::VectorXd& x) { solver_->solve(x); }, solution);
     }
 
     Nodal du_m(dim, mesh_.node_count());

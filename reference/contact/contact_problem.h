@@ -71,12 +71,19 @@ struct Numerics {
   double numerical_bulk = 1.0;     ///< bulk modulus that an incompressible material has in the tangent
 };
 
+/// What Newton solves with, each in place of the one before where that is not positive definite.
+enum class Tangent {
+  consistent,
+  without_curvature,  ///< of the tool, which lowers the tangent
+  definite,           ///< nor with what makes the body itself unstable, see Stiffness
+};
+
 /// How a Newton solve went.
 struct NewtonReport {
   bool converged = false;
   int iterations = 0;
   double residual_rel = 0.0;  ///< out-of-balance force over the sum of contact and support forces
-  int indefinite = 0;         ///< iterations whose tangent needed the curvature term dropped or LU
+  int indefinite = 0;         ///< iterations whose tangent was not positive definite, and made so
   std::string trouble;        ///< in words, when not converged
 };
 
@@ -210,13 +217,13 @@ class ContactProblem : public ranks::Part {
                      Lane& lane) const;
   /// Adds a symmetric matrix given by columns, of which the lower triangle is read; unknowns ascending.
   void add_sorted(const int* unknowns, int count, const double* K, Lane& lane) const;
-  void assemble(const State<dim>& state);
+  void assemble(const State<dim>& state, Stiffness stiffness);
   void add_dead_forces();
   void add_curvature();
   void add_turning();
   [[nodiscard]] SlipCoupling slip_coupling() const;
   /// The tangent in matrix_ and what it is to be solved for.
-  [[nodiscard]] Eigen::VectorXd assemble_tangent(const State<dim>& state, bool with_curvature);
+  [[nodiscard]] Eigen::VectorXd assemble_tangent(const State<dim>& state, Tangent tangent);
   /// Sums the lanes into matrix_ and the result.
   [[nodiscard]] Eigen::VectorXd sum_of_lanes();
   /// What the pressures do with a displacement, all cells'.

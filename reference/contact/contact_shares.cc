@@ -183,7 +183,9 @@ void ContactProblem<dim>::follow(Order order) {
       std::vector<char> in_contact(mesh_.cells.size());
       ranks::receive(in_contact);
       take_cells(in_contact);
-      assemble(state);
+      std::array<Stiffness, 1> stiffness{};
+      ranks::receive(stiffness);
+      assemble(state, stiffness[0]);
       (void)sum_of_lanes();
       break;
     }

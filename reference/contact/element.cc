@@ -100,8 +100,9 @@ Element<dim>::Element(const MixedMaterial& body, const std::vector<MixedMaterial
 }
 
 template <int dim>
-bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& p_pa, bool with_tangent,
+bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& p_pa, Stiffness stiffness,
                             CellResult<dim>& out, const Materials* materials) const {
+  const bool with_tangent = stiffness != Stiffness::none;
   constexpr int padded = (nodes + 3) / 4 * 4;
   constexpr int pressures = CellResult<dim>::pressures;
   constexpr int hoop = 2;  // the out-of-plane direction of a ring
@@ -177,6 +178,13 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
         own_pressure ? (finite ? volume_change(H) : H.trace()) / material.inverse_kappa_per_pa : unknown_pa;
     PointLaw law = finite ? neo_hookean(H, material.mu_pa, p) : linear_elastic(H, material.mu_pa, p);
     if (own_pressure) law.V_pa += law.J * law.J / material.inverse_kappa_per_pa;
+    if (stiffness == Stiffness::definite) {
+      // S (l_a : l_b^T) is S on the symmetric part of l and -S on the other: the negative one of the two goes. So does
+      // what a compressive pressure takes back by V beyond that symmetric part.
+      law.mu_bar_pa += 0.5 * std::abs(law.S_pa);
+      law.S_pa *= 0.5;
+      law.V_pa += std::max(0.0, -2.0 / 3.0 * law.pJ_pa);
+    }
     out.smallest_J = std::min(out.smallest_J, 1.0 + law.J_minus_1);
     if (finite && law.J <= smallest_allowed_J) return false;
     out.rest_volume_m3 += W_m3;

@@ -64,6 +64,14 @@ struct CellResult {
   Pressure pressure_offset_pa;
 };
 
+/// What is wanted of a cell beside its forces.
+enum class Stiffness {
+  none,
+  consistent,  ///< the forces' derivative
+  definite,    ///< without what rotation and volume take back under pressure: leads to the same balance, more slowly,
+               ///< and is positive semidefinite where the derivative is not
+};
+
 /// One cell of the mixed element. Stateless but for the materials; every method may be called by several threads.
 template <int dim>
 class Element {
@@ -83,7 +91,7 @@ class Element {
   /// @param p_pa pressure coefficients of 1, (X - Xc) / h
   /// @param materials nullptr: the body's throughout
   /// @returns false, with the result unfinished, when some point has J <= smallest_allowed_J (finite strain only)
-  bool evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& p_pa, bool with_tangent, CellResult<dim>& out,
+  bool evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& p_pa, Stiffness stiffness, CellResult<dim>& out,
                 const Materials* materials = nullptr) const;
 
   /// Newton may pass through strongly distorted states, not through these.

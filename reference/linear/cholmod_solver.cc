@@ -3,7 +3,6 @@
 #include "reference/linear/blas.h"
 
 #include <cholmod.h>
-#include <umfpack.h>
 
 #include <stdexcept>
 
@@ -99,43 +98,6 @@ void CholmodSolver::solve_lower(Eigen::VectorXd& x) {
 void CholmodSolver::solve_upper(Eigen::VectorXd& x) {
   state_->solve(CHOLMOD_Lt, x);
   state_->solve(CHOLMOD_Pt, x);
-}
-
-bool CholmodSolver::solve_indefinite(const SymmetricMatrix& matrix, Eigen::VectorXd& x) {
-  const std::int64_t n = matrix.size();
-  // Both triangles by columns. Walking the columns in order keeps the rows sorted.
-  std::vector<SuiteSparse_long> begin(n + 1, 0);
-  for (std::int64_t j = 0; j < n; ++j) {
-    for (std::int64_t k = matrix.column_begin[j]; k < matrix.column_begin[j + 1]; ++k) {
-      ++begin[j + 1];
-      if (matrix.row[k] != j) ++begin[matrix.row[k] + 1];
-    }
-  }
-  for (std::int64_t j = 0; j < n; ++j) begin[j + 1] += begin[j];
-  std::vector<SuiteSparse_long> next(begin.begin(), begin.end() - 1), row(begin[n]);
-  std::vector<double> value(begin[n]);
-  for (std::int64_t j = 0; j < n; ++j) {
-    for (std::int64_t k = matrix.column_begin[j]; k < matrix.column_begin[j + 1]; ++k) {
-      const std::int64_t i = matrix.row[k];
-      row[next[j]] = i;
-      value[next[j]++] = matrix.value[k];
-      if (i == j) continue;
-      row[next[i]] = j;
-      value[next[i]++] = matrix.value[k];
-    }
-  }
-  void *symbolic = nullptr, *numeric = nullptr;
-  bool solved =
-      umfpack_dl_symbolic(n, n, begin.data(), row.data(), value.data(), &symbolic, nullptr, nullptr) == UMFPACK_OK &&
-      umfpack_dl_numeric(begin.data(), row.data(), value.data(), symbolic, &numeric, nullptr, nullptr) == UMFPACK_OK;
-  if (solved) {
-    const Eigen::VectorXd right = x;
-    solved = umfpack_dl_solve(UMFPACK_A, begin.data(), row.data(), value.data(), x.data(), right.data(), numeric,
-                              nullptr, nullptr) == UMFPACK_OK;
-  }
-  umfpack_dl_free_numeric(&numeric);
-  umfpack_dl_free_symbolic(&symbolic);
-  return solved;
 }
 
 std::int64_t CholmodSolver::predicted_factor_bytes() const noexcept {

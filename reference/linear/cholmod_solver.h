@@ -1,4 +1,4 @@
-// Sparse direct solver for the symmetric tangent: CHOLMOD's supernodal Cholesky, UMFPACK when it is not definite.
+// Sparse direct solver for the symmetric tangent: CHOLMOD's supernodal Cholesky.
 #pragma once
 
 #include "reference/linear/linear_solver.h"
@@ -23,8 +23,6 @@ class CholmodSolver : public LinearSolver {
   void analyse(const SymmetricMatrix& matrix) override;
   [[nodiscard]] bool factorise(const SymmetricMatrix& matrix) override;
   void solve(Eigen::VectorXd& x) override;
-  /// By unsymmetric LU: much slower, but indifferent to sign.
-  [[nodiscard]] bool solve_indefinite(const SymmetricMatrix& matrix, Eigen::VectorXd& x) override;
 
   /// The two halves of solve(), for the matrix is P' L L' P: L^-1 P x, and P' L^-T x.
   void solve_lower(Eigen::VectorXd& x);

@@ -31,7 +31,6 @@ struct DistributedSolver::State {
   const ranks::Lead* lead;
   int threads;
   std::vector<MUMPS_INT> row, column;  // one-based, as MUMPS has them
-  bool is_singular = false;
 
   // With the numbers of the manual.
   MUMPS_INT& icntl(int k) { return mumps.icntl[k - 1]; }
@@ -107,8 +106,7 @@ void DistributedSolver::analyse(const SymmetricMatrix& own_part) {
 
 bool DistributedSolver::factorise(const SymmetricMatrix& own_part) {
   state_->jointly(Order::factorise, [&] { state_->factorise_share(own_part); });
-  state_->is_singular = state_->infog(1) == singular;
-  if (state_->is_singular) return false;
+  if (state_->infog(1) == singular) return false;
   if (state_->infog(1) < 0) state_->fail("factorise");
   return state_->infog(12) == 0;
 }
@@ -119,12 +117,6 @@ void DistributedSolver::solve(Eigen::VectorXd& x) {
   state_->mumps.lrhs = static_cast<MUMPS_INT>(x.size());
   state_->jointly(Order::solve, [&] { state_->call(solution); });
   if (state_->infog(1) < 0) state_->fail("solve");
-}
-
-bool DistributedSolver::solve_indefinite(const SymmetricMatrix&, Eigen::VectorXd& x) {
-  if (state_->is_singular) return false;
-  solve(x);
-  return true;
 }
 
 void DistributedSolver::follow(Order order, const SymmetricMatrix& own_part) {

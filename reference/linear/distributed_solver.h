@@ -25,7 +25,6 @@ class DistributedSolver : public LinearSolver {
   void analyse(const SymmetricMatrix& own_part) override;
   [[nodiscard]] bool factorise(const SymmetricMatrix& own_part) override;
   void solve(Eigen::VectorXd& x) override;
-  [[nodiscard]] bool solve_indefinite(const SymmetricMatrix& own_part, Eigen::VectorXd& x) override;
   [[nodiscard]] std::string description() const override;
 
   /// The other ranks' side of analyse, factorise and solve.

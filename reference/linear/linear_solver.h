@@ -60,9 +60,6 @@ class LinearSolver {
   /// What was done since this was made, where it is counted.
   [[nodiscard]] virtual LinearWork work() const noexcept { return {}; }
 
-  /// One solve with the matrix that was just refused. @returns false when singular
-  [[nodiscard]] virtual bool solve_indefinite(const SymmetricMatrix& matrix, Eigen::VectorXd& x) = 0;
-
   /// The library, its version and how much of the machine it uses.
   [[nodiscard]] virtual std::string description() const = 0;
 };

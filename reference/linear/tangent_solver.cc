@@ -121,10 +121,6 @@ bool TangentSolver::solve(const SymmetricMatrix& K, double tolerance_rel, Eigen:
   return LinearSolver::solve(K, tolerance_rel, x);
 }
 
-bool TangentSolver::solve_indefinite(const SymmetricMatrix& K, Eigen::VectorXd& x) {
-  return cholesky_.solve_indefinite(K, x);
-}
-
 bool TangentSolver::iterate(const SymmetricMatrix& K, double tolerance_rel, Eigen::VectorXd& x) {
   const Stopwatch watch(work_.iteration_s);
   const Tangent tangent(K, cholesky_);

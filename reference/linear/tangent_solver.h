@@ -28,7 +28,6 @@ class TangentSolver : public LinearSolver {
   ///                      over x. Stiff directions, such as those that change volume, have no more weight than soft
   ///                      ones
   [[nodiscard]] bool solve(const SymmetricMatrix& K, double tolerance_rel, Eigen::VectorXd& x) override;
-  [[nodiscard]] bool solve_indefinite(const SymmetricMatrix& K, Eigen::VectorXd& x) override;
 
   /// The factor of this K says so where there is one, otherwise conjugate gradients with an arbitrary right-hand side,
   /// in which every direction of negative curvature has its part, and where they doubt it a factorisation.

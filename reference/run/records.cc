@@ -103,7 +103,7 @@ void fill_records(const Scene& scene, const std::vector<double>& times_s, const 
   }
   if (indefinite > 0) {
     result.linear_solver += "; " + std::to_string(indefinite) +
-                            " tangents were not positive definite and went without the tool's curvature or to UMFPACK";
+                            " tangents were not positive definite and were made so";
   }
 }
 

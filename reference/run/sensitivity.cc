@@ -82,35 +82,40 @@ class Repeat {
         tool_anywhere);
     std::pair<Solved<dim>, Step> result;
     auto& [solved, step] = result;
-    const auto advance = [&](const Solved<dim>& from, double time_s) {
-      const AdvanceReport report = path.advance(nullptr, from, time_s, solved,
-                                                [&](int iteration, double) { watch_(change.part, iteration); }, {});
-      step.newton_iterations += report.newton_iterations;
-      step.halvings += report.halvings;
-      if (!report.converged) {
-        throw NotConverged(std::string("the sensitivity to the ") + change.part +
-                           " did not converge: " + report.last.trouble);
-      }
-    };
     const std::size_t last = given_.times_s.size() - 1;
     const double lead_s = last > 0 ? given_.times_s[1] - given_.times_s[0] : 1.0;
-    const Solved<dim> rest{given_.times_s[0] - lead_s, problem.rest(), false};
-    // Friction remembers its path; without it the last step tells all, and on another mesh the solution itself.
-    std::size_t first = scene.contact.friction ? 0 : last;
-    Solved<dim> current = rest;
-    if (first == last && change.other_mesh()) {
-      current = {given_.at.time_s, Prolongation<dim>(given_.mesh, mesh)(given_.at.state), true};
-      current.time_s -= lead_s;
-    } else if (first == last && given_.before) {
-      current = *given_.before;
-    }
-    for (std::size_t instant = first; instant <= last; ++instant) {
-      const double from_s = current.time_s, to_s = given_.times_s[instant];
-      for (int k = 1; k <= change.load_steps; ++k) {
-        const double share = static_cast<double>(k) / change.load_steps;
-        advance(current, k == change.load_steps ? to_s : from_s + share * (to_s - from_s));
-        current = solved;
+    const auto follow = [&](Solved<dim> current, std::size_t first) {
+      AdvanceReport report;
+      for (std::size_t instant = first; instant <= last; ++instant) {
+        const double from_s = current.time_s, to_s = given_.times_s[instant];
+        for (int k = 1; k <= change.load_steps; ++k) {
+          const double share = static_cast<double>(k) / change.load_steps;
+          report = path.advance(nullptr, current, k == change.load_steps ? to_s : from_s + share * (to_s - from_s),
+                                solved, [&](int iteration, double) { watch_(change.part, iteration); }, {});
+          step.newton_iterations += report.newton_iterations;
+          step.halvings += report.halvings;
+          if (!report.converged) return report;
+          current = solved;
+        }
       }
+      return report;
+    };
+    // Friction remembers its path; without it the last step tells all, and on another mesh the solution itself, unless
+    // other cells make too much of the difference.
+    const Solved<dim> rest{given_.times_s[0] - lead_s, problem.rest(), false};
+    AdvanceReport report;
+    report.converged = false;
+    if (!scene.contact.friction) {
+      Solved<dim> start = given_.before ? *given_.before : rest;
+      if (change.other_mesh()) {
+        start = {given_.at.time_s - lead_s, Prolongation<dim>(given_.mesh, mesh)(given_.at.state), true};
+      }
+      report = follow(std::move(start), last);
+    }
+    if (!report.converged) report = follow(rest, 0);
+    if (!report.converged) {
+      throw NotConverged(std::string("the sensitivity to the ") + change.part +
+                         " did not converge: " + report.last.trouble);
     }
     step.seen = problem.observe(solved.state, scene.fast.r_th_m);
     step.unknowns = problem.unknowns();

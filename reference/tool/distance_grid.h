@@ -34,6 +34,7 @@ class DistanceGrid final : public ToolDistance {
   [[nodiscard]] Gap<3> at(const scene::Vec3& p_T_m) const override;
   [[nodiscard]] scene::Bounds bounds() const override { return bounds_; }
   [[nodiscard]] double half_width_m() const override;
+  [[nodiscard]] bool faceted() const override { return true; }
 
  private:
   [[nodiscard]] std::size_t index(int i, int j, int k) const noexcept {

@@ -30,6 +30,8 @@ class ToolDistance {
   [[nodiscard]] virtual scene::Bounds bounds() const = 0;
   /// Half the tool's smallest extent: the unit of tolerances.
   [[nodiscard]] virtual double half_width_m() const = 0;
+  /// Whether its surface bends at the edges of facets, on a scale that belongs to its description and not to its shape.
+  [[nodiscard]] virtual bool faceted() const { return false; }
 };
 
 /// A tool at its place. In two dimensions the tool is a body of revolution about the z axis, and points are (r, z) in
@@ -59,6 +61,7 @@ class RigidTool {
 
   [[nodiscard]] const scene::Vec3& mass_center_m() const noexcept { return pose_.position_m; }
   [[nodiscard]] double half_width_m() const { return distance_->half_width_m(); }
+  [[nodiscard]] bool faceted() const { return distance_->faceted(); }
 
  private:
   [[nodiscard]] scene::Vec3 turned_into_tool_frame(const Point& direction) const;

@@ -26,13 +26,10 @@ TEST(CholmodSolver, SolvesSeveralMatricesOnOnePattern) {
   EXPECT_NE(solver.description().find("CHOLMOD"), std::string::npos);
 }
 
-TEST(CholmodSolver, RefusesAnIndefiniteMatrixAndLeavesItToLu) {
+TEST(CholmodSolver, RefusesAnIndefiniteMatrix) {
   CholmodSolver solver(1);
   solver.analyse(three_by_three(-1.0));
   EXPECT_FALSE(solver.factorise(three_by_three(-1.0)));
-  Eigen::VectorXd x = Eigen::Vector3d(1.0, 2.0, 3.0);
-  ASSERT_TRUE(solver.solve_indefinite(three_by_three(-1.0), x));
-  expect_solves(-1.0, x);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Stress is the slope of the energy, the tangent is the slope of the force: by central differences.
 #include "reference/contact/element.h"
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 namespace touchstone::reference {
@@ -47,7 +48,7 @@ void expect_consistent_tangent(scene::Kinematics kinematics, double nu, bool cro
   using Cell = CellResult<dim>;
   typename Element<dim>::Pressure p = Element<dim>::Pressure::Constant(0.1);
   Cell at, up, down;
-  ASSERT_TRUE(element.evaluate(X, u, p, true, at, &materials));
+  ASSERT_TRUE(element.evaluate(X, u, p, Stiffness::consistent, at, &materials));
   // Along du the pressure row asks for dp = gain du; so the condensed stiffness is the slope of the force on that line.
   const double step = 1e-6;
   for (int k = 0; k < Cell::unknowns; k += 5) {
@@ -55,9 +56,9 @@ void expect_consistent_tangent(scene::Kinematics kinematics, double nu, bool cro
     const typename Element<dim>::Pressure dp = at.pressure_gain.col(k);
     typename Element<dim>::Nodal v = u;
     v(i, a) = u(i, a) + step;
-    ASSERT_TRUE(element.evaluate(X, v, p + step * dp, false, up, &materials));
+    ASSERT_TRUE(element.evaluate(X, v, p + step * dp, Stiffness::none, up, &materials));
     v(i, a) = u(i, a) - step;
-    ASSERT_TRUE(element.evaluate(X, v, p - step * dp, false, down, &materials));
+    ASSERT_TRUE(element.evaluate(X, v, p - step * dp, Stiffness::none, down, &materials));
     const typename Cell::Vector slope = (up.force_n - down.force_n) / (2.0 * step);
     EXPECT_LT((at.stiffness.col(k) - slope).norm(), 1e-6 * at.stiffness.norm()) << "unknown " << k;
     // The pressure row itself stays solved to first order while kappa is the tangent's.
@@ -66,6 +67,35 @@ void expect_consistent_tangent(scene::Kinematics kinematics, double nu, bool cro
     }
   }
   EXPECT_LT((at.stiffness - at.stiffness.transpose()).norm(), 1e-12 * at.stiffness.norm());
+}
+
+template <int dim>
+void expect_definite_stiffness(double p_pa) {
+  const Element<dim> element(MixedMaterial({2.0, 0.5}, scene::Kinematics::finite));
+  typename Element<dim>::Nodal X, u;
+  for (int a = 0; a < Element<dim>::nodes; ++a) {
+    const int place[3] = {a % 3, a / 3 % 3, a / 9};
+    for (int d = 0; d < dim; ++d) {
+      X(d, a) = 1.0 + 0.5 * place[d];
+      u(d, a) = 0.03 * std::sin(2.0 * a + 1.7 * d);
+    }
+  }
+  typename Element<dim>::Pressure p = Element<dim>::Pressure::Zero();
+  p[0] = p_pa;
+  const auto eigenvalues = [&](Stiffness stiffness) -> Eigen::VectorXd {
+    CellResult<dim> result;
+    EXPECT_TRUE(element.evaluate(X, u, p, stiffness, result));
+    return result.stiffness.template selfadjointView<Eigen::Lower>().eigenvalues();
+  };
+  EXPECT_LT(eigenvalues(Stiffness::consistent).minCoeff(), -0.1);
+  EXPECT_GT(eigenvalues(Stiffness::definite).minCoeff(), -1e-9);
+}
+
+TEST(Element, DefiniteStiffnessIsSoUnderPressureAndTension) {
+  for (const double p_pa : {-30.0, 30.0}) {
+    expect_definite_stiffness<2>(p_pa);
+    expect_definite_stiffness<3>(p_pa);
+  }
 }
 
 TEST(Element, TangentIsTheSlopeOfTheForceWhereTwoMaterialsMeet) {
