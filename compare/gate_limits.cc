@@ -56,9 +56,6 @@ std::string date_text(std::chrono::year_month_day day) {
                      static_cast<unsigned>(day.day()));
 }
 
-const char* kind_name(scene::GateKind kind) { return kind == scene::GateKind::truth ? "truth" : "drift"; }
-const char* run_name(scene::GateRun run) { return run == scene::GateRun::fast ? "fast" : "reference"; }
-
 /// Why a gate holds less than it did; empty when it does not.
 std::string loosened(const scene::GateFile& base_file, const scene::Gate& base, const scene::GateFile& file,
                      const scene::Gate& gate) {
@@ -66,9 +63,9 @@ std::string loosened(const scene::GateFile& base_file, const scene::Gate& base, 
     return fmt::format("{} \"{}\" instead of \"{}\"", what, now, before);
   };
   if (base.quantity != gate.quantity) return changed("quantity", base.quantity, gate.quantity);
-  if (base.kind != gate.kind) return changed("kind", kind_name(base.kind), kind_name(gate.kind));
+  if (base.kind != gate.kind) return changed("kind", name_of(base.kind), name_of(gate.kind));
   if (base.unit != gate.unit) return changed("unit", base.unit, gate.unit);
-  if (base_file.run != file.run) return changed("run", run_name(base_file.run), run_name(file.run));
+  if (base_file.run != file.run) return changed("run", name_of(base_file.run), name_of(file.run));
   if (gate.limit > base.limit) return fmt::format("limit {} wider than {}", gate.limit, base.limit);
   return "";
 }

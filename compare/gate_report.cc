@@ -11,8 +11,6 @@
 namespace touchstone::compare {
 namespace {
 
-const char* kind_name(scene::GateKind kind) { return kind == scene::GateKind::truth ? "truth" : "drift"; }
-
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
 
 template <std::size_t columns>
@@ -36,12 +34,12 @@ std::string table(const std::array<const char*, columns>& head,
 
 /// Of the number alone; a gate that is red for another reason has its own.
 std::string beyond_text(const GateRecord& record) {
+  const std::string limit =
+      fmt::format("{:.4g}{}{}", record.gate.limit, record.gate.unit.empty() ? "" : " ", record.gate.unit);
   if (record.gate.kind == scene::GateKind::truth) {
-    return fmt::format("|{:.4g}| + {:.4g} is beyond {:.4g} {}", *record.value, *record.uncertainty, record.gate.limit,
-                       record.gate.unit);
+    return fmt::format("|{:.4g}| + {:.4g} is beyond {}", *record.value, *record.uncertainty, limit);
   }
-  return fmt::format("{:.9g} is beyond {:.4g} {} of the accepted {:.9g}", *record.value, record.gate.limit,
-                     record.gate.unit, *record.accepted);
+  return fmt::format("{:.9g} is beyond {} of the accepted {:.9g}", *record.value, limit, *record.accepted);
 }
 
 std::string why_red(const GateRecord& record) { return record.failure.empty() ? beyond_text(record) : record.failure; }
@@ -56,7 +54,7 @@ std::string gates_text(const std::vector<GateRecord>& records, const std::vector
   std::vector<std::array<std::string, 8>> rows;
   for (const GateRecord& record : records) {
     rows.push_back(
-        {record.name(), kind_name(record.gate.kind), record.value ? cell(*record.value) : "-", cell(record.held()),
+        {record.name(), name_of(record.gate.kind), record.value ? cell(*record.value) : "-", cell(record.held()),
          cell(record.gate.limit),
          std::isfinite(record.margin()) ? fmt::format("{:.0f} %", 100.0 * record.margin() / record.gate.limit) : "-",
          record.gate.unit, record.passes() ? "ok" : "RED"});
@@ -94,7 +92,7 @@ std::string proofs_text(const std::vector<GateProof>& proofs) {
 scene::Figures gate_report_figures(const std::vector<GateRecord>& records, const std::vector<std::string>& faults) {
   scene::Figures figures{{"gate.count", static_cast<double>(records.size()), "", ""},
                          {"gate.red", static_cast<double>(red_count(records)), "", ""},
-                         {"gate.folder_faults", static_cast<double>(faults.size()), "", ""}};
+                         {"gate.faults", static_cast<double>(faults.size()), "", ""}};
   for (const GateRecord& record : records) {
     const std::string key = "gate." + record.name() + ".";
     const auto add = [&](const char* name, const std::optional<double>& number) {
@@ -126,7 +124,7 @@ std::string gates_junit(const std::vector<GateRecord>& records, const std::vecto
       if (value) property(name, fmt::format("{}", *value));
     };
     property("quantity", record.gate.quantity);
-    property("kind", kind_name(record.gate.kind));
+    property("kind", name_of(record.gate.kind));
     property("unit", record.gate.unit);
     number("value", record.value);
     number("uncertainty", record.uncertainty);
@@ -138,7 +136,7 @@ std::string gates_junit(const std::vector<GateRecord>& records, const std::vecto
     if (!record.passes()) text += fmt::format("<failure message=\"{}\"/>\n", escape_xml(why_red(record)));
     text += "</testcase>\n";
   }
-  text += "<testcase classname=\"gate\" name=\"folder\">\n";
+  text += "<testcase classname=\"gate\" name=\"faults\">\n";
   if (!faults.empty()) {
     text += fmt::format("<failure message=\"{}\">{}</failure>\n", escape_xml(faults.front()),
                         escape_xml(fmt::format("{}", fmt::join(faults, "\n"))));

@@ -12,11 +12,13 @@ namespace touchstone::compare {
 /// The table: gate, change, what the limit holds with it, limit, red or NOT PROVED; below it why.
 [[nodiscard]] std::string proofs_text(const std::vector<GateProof>& proofs);
 
-/// Per gate `gate.<file>.<gate>.value|uncertainty|accepted|held|limit|margin|verdict`, and gate.count, gate.red.
+/// Per gate `gate.<file>.<gate>.value|uncertainty|accepted|held|limit|margin|verdict`, and gate.count, gate.red,
+/// gate.faults.
+/// @param faults  beside single gates: of the folder and of proofs
 [[nodiscard]] scene::Figures gate_report_figures(const std::vector<GateRecord>& records,
                                                  const std::vector<std::string>& faults);
 
-/// JUnit's XML: a test case per gate with its numbers as properties, one more for the folder.
+/// JUnit's XML: a test case per gate with its numbers as properties, one more for the faults.
 [[nodiscard]] std::string gates_junit(const std::vector<GateRecord>& records, const std::vector<std::string>& faults);
 
 }  // namespace touchstone::compare

@@ -74,13 +74,15 @@ int gate(const GateOptions& options, const std::string& command) {
     line.finish();
     std::string text = gates_text(records, faults);
     if (options.prove) text += "\n" + proofs_text(proofs);
+    for (const GateProof& proof : proofs) {
+      if (!proof.holds()) faults.push_back(proof.changed.name() + " is not proved: " + proof.failure);
+    }
     scene::write_file(options.out / "table.txt", text);
     scene::write_summary(options.out / "summary.json", gate_report_figures(records, faults));
     scene::write_manifest(options.out / "manifest.json", manifest);
     if (!options.junit.empty()) scene::write_file(options.junit, gates_junit(records, faults));
     std::cout << text;
-    const bool good = faults.empty() && std::ranges::all_of(records, &GateRecord::passes) &&
-                      std::ranges::all_of(proofs, &GateProof::holds);
+    const bool good = faults.empty() && std::ranges::all_of(records, &GateRecord::passes);
     return good ? fast::done : fast::answer_is_no;
   });
 }

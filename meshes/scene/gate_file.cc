@@ -170,6 +170,10 @@ class Reader {
 
 }  // namespace
 
+const char* name_of(GateKind kind) { return kind == GateKind::truth ? "truth" : "drift"; }
+
+const char* name_of(GateRun run) { return run == GateRun::fast ? "fast" : "reference"; }
+
 GateFile parse_gate_file(std::string_view text, const std::filesystem::path& file) {
   const toml::table document = parsed(text, file);
   return Reader(document, file).gates();

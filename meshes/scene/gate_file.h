@@ -38,6 +38,10 @@ namespace touchstone::scene {
 enum class GateKind { truth, drift };
 enum class GateRun { fast, reference };
 
+/// As the gate file spells them.
+[[nodiscard]] const char* name_of(GateKind kind);
+[[nodiscard]] const char* name_of(GateRun run);
+
 struct Gate {
   std::string name;  ///< within its file
   GateKind kind = GateKind::truth;
