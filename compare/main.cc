@@ -1,5 +1,6 @@
 // touchstone: one scene in, one result folder out.
 #include "compare/export_verb.h"
+#include "compare/gate_verb.h"
 #include "compare/study_verb.h"
 #include "compare/verbs.h"
 #include "compare/verify_verb.h"
@@ -76,5 +77,7 @@ int main(int argc, char** argv) {
   add_store(export_verb);
   live::add_live_verb(app, options, live_options, exit_code);
   compare::add_verify_verb(app, verify_options, exit_code);
+  compare::GateOptions gate_options;
+  compare::add_gate_verb(app, gate_options, exit_code);
   return fast::run_command_line(app, argc, argv, exit_code);
 }
