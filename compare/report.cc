@@ -6,6 +6,7 @@
 #include "compare/svg_plot.h"
 #include "compare/text.h"
 #include "compare/verdict.h"
+#include "compare/viewer.h"
 
 #include <fmt/format.h>
 
@@ -150,7 +151,7 @@ std::string force_section(const ReportContent& c) {
 std::string shape_section(const ReportContent& c) {
   const Errors& errors = c.errors;
   const InstantErrors& deepest = errors.instants[errors.deepest];
-  std::string out = tag("h2", "Shape") + "\n";
+  std::string out = tag("h2", "Shape") + "\n" + viewer_section(c.scene, c.run, c.result, errors);
   out +=
       figure(half_cut_svg(c.scene, c.run, c.result, errors.deepest),
              fmt::format("Both bodies at the deepest instant ({}, {} deep), cut in half at the tool's centre; the grey "
