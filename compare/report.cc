@@ -268,11 +268,11 @@ std::string report_html(const ReportContent& c) {
   out += tag("h2", "What each side models of the scene") + "\n";
   out += tag("h3", "Fast model", "class=\"fast\"") + plan_table(c.plans.fast);
   out += tag("h3", "Reference", "class=\"reference\"") + plan_table(c.plans.reference);
-  out +=
-      manifest_section(c.manifest,
-                       "Beside this page: summary.json (these figures), curve.csv (every instant), manifest.json, and "
-                       "surface.pvd for ParaView, where the filter Warp By Vector with displacement_fast_m or "
-                       "displacement_reference_m shows a side.");
+  out += manifest_section(
+      c.manifest,
+      "Beside this page: summary.json (these figures), curve.csv (every instant), shape.svg, manifest.json, and "
+      "surface.pvd for ParaView, where the filter Warp By Vector with displacement_fast_m or "
+      "displacement_reference_m shows a side.");
   return page(scene_title(c.scene), out);
 }
 

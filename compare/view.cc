@@ -12,6 +12,7 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
+#include <vtkChartLegend.h>
 #include <vtkChartXY.h>
 #include <vtkContextActor.h>
 #include <vtkContextScene.h>
@@ -50,6 +51,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 
 namespace touchstone::compare {
 namespace {
@@ -185,6 +187,7 @@ struct ResultView::Parts {
   std::vector<scene::Column> forces;  ///< one per side, named as in the legend
   std::vector<scene::Pose> poses;
   std::size_t instant = 0, body = 0, colouring = 0;
+  std::map<std::pair<std::size_t, std::size_t>, double> full_scales_m;  ///< by body and colouring, as they are needed
 
   vtkNew<vtkPolyData> shown;
   vtkNew<vtkPolyDataNormals> normals;
@@ -230,8 +233,10 @@ struct ResultView::Parts {
   }
 
   /// Largest over all instants, so that a colour means the same along the slider.
-  [[nodiscard]] double full_scale_m() const {
-    double found = 0.0;
+  [[nodiscard]] double full_scale_m() {
+    const auto [known, is_new] = full_scales_m.try_emplace({body, colouring}, 0.0);
+    double& found = known->second;
+    if (!is_new) return found;
     for (std::size_t t = 0; t < surfaces.size(); ++t) {
       for (vtkIdType i = 0; i < surfaces[t]->GetNumberOfPoints(); ++i) {
         if (const double value = value_m(t, i); std::isfinite(value)) found = std::max(found, value);
@@ -294,7 +299,6 @@ struct ResultView::Parts {
     camera->SetPosition(0.352, -0.791, 0.5);
     camera->SetViewUp(0.0, 0.0, 1.0);
     space->ResetCamera(surfaces.front()->GetBounds());
-    camera->Zoom(1.25);
   }
 
   void make_curve() {
@@ -320,6 +324,7 @@ struct ResultView::Parts {
     line->SetInputData(cursor, 0, 1);
     line->SetColor(ink[0], ink[1], ink[2]);
     chart->SetShowLegend(true);
+    chart->GetLegend()->SetHorizontalAlignment(vtkChartLegend::LEFT);
     chart->SetTitle("Force on the tool");
     chart->GetAxis(vtkAxis::BOTTOM)->SetTitle("time [s]");
     chart->GetAxis(vtkAxis::LEFT)->SetTitle("force [N]");
@@ -327,7 +332,7 @@ struct ResultView::Parts {
     chart_actor->GetScene()->SetRenderer(curve);
     curve->AddActor(chart_actor);
     curve->SetBackground(1.0, 1.0, 1.0);
-    curve->SetViewport(body_share, 0.2, 1.0, 0.85);
+    curve->SetViewport(body_share, 0.0, 1.0, 1.0);
   }
 
   void make_window() {

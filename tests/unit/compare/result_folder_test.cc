@@ -46,7 +46,9 @@ TEST_F(ResultFolderTest, IsReadBackAsItWasWritten) {
     ASSERT_NE(figure, nullptr) << written.key;
     EXPECT_EQ(figure->text, written.text);
     EXPECT_EQ(figure->unit, written.unit);
-    if (written.text.empty() && std::isfinite(written.number)) EXPECT_EQ(figure->number, written.number);
+    if (written.text.empty() && std::isfinite(written.number)) {
+      EXPECT_EQ(figure->number, written.number);
+    }
   }
   const Errors errors = compute_errors(sides_.scene, sides_.run, sides_.result);
   const auto columns = curve_columns(sides_.run, sides_.result, errors);

@@ -8,9 +8,6 @@
 #include "synthetic.h"
 #include "temporary_folder.h"
 
-#include <X11/Xlib.h>
-#include <X11/Xutil.h>
-#include <X11/keysym.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
@@ -24,8 +21,12 @@
 
 #include <array>
 #include <cstdlib>
-#include <map>
 #include <set>
+
+// After all others: its macros take common words.
+#include <X11/Xlib.h>
+#include <X11/Xutil.h>
+#include <X11/keysym.h>
 
 namespace touchstone::compare {
 namespace {
@@ -172,7 +173,7 @@ Window find_window(Display* display, Window below, const std::string& name) {
   return found;
 }
 
-std::vector<unsigned long> pixels_of(Display* display, Window window) {
+std::vector<unsigned long> window_pixels(Display* display, Window window) {
   XWindowAttributes size;
   XGetWindowAttributes(display, window, &size);
   XImage* image = XGetImage(display, window, 0, 0, static_cast<unsigned>(size.width),
@@ -207,7 +208,7 @@ TEST_F(ViewTest, TheWindowFollowsTheKeyboardOfAnXServer) {
   const auto drawn = [&] {
     if (window == 0) window = find_window(display, DefaultRootWindow(display), "Touchstone");
     if (window == 0) return false;
-    const std::vector<unsigned long> pixels = pixels_of(display, window);
+    const std::vector<unsigned long> pixels = window_pixels(display, window);
     return std::set<unsigned long>(pixels.begin(), pixels.end()).size() > 200;
   };
   EXPECT_TRUE(comes_true(drawn));
@@ -223,9 +224,9 @@ TEST_F(ViewTest, TheWindowFollowsTheKeyboardOfAnXServer) {
     XFlush(display);
   };
   for (const KeySym key : {XK_Left, XK_c, XK_b}) {
-    const std::vector<unsigned long> before = pixels_of(display, window);
+    const std::vector<unsigned long> before = window_pixels(display, window);
     press(key);
-    EXPECT_TRUE(comes_true([&] { return pixels_of(display, window) != before; })) << XKeysymToString(key);
+    EXPECT_TRUE(comes_true([&] { return window_pixels(display, window) != before; })) << XKeysymToString(key);
   }
   press(XK_q);
   int status = -1;
