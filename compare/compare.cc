@@ -1,7 +1,9 @@
 #include "compare/compare.h"
 
 #include "compare/figures.h"
+#include "compare/picture.h"
 #include "compare/report.h"
+#include "compare/svg_plot.h"
 #include "compare/text.h"
 #include "compare/verdict.h"
 #include "compare/vtk_out.h"
@@ -44,6 +46,7 @@ Comparison write_comparison(const std::filesystem::path& folder, const scene::Sc
     comparison.text += wrapped(paragraph) + "\n\n";
   scene::write_csv(folder / "curve.csv", curve_columns(run, result, errors));
   write_surfaces(folder, run, result, errors);
+  scene::write_file(folder / "shape.svg", as_file(half_cut_svg(scene, run, result, errors.deepest)));
   scene::write_summary(folder / "summary.json", comparison.figures);
   scene::write_manifest(folder / "manifest.json", manifest);
   write_report(folder / "report.html", {scene, run, result, errors, comparison.figures, plans, manifest});

@@ -1,4 +1,5 @@
-// From both sides' answers to a result folder: curve.csv, surface.pvd, summary.json, manifest.json, report.html.
+// From both sides' answers to a result folder: curve.csv, surface.pvd, shape.svg, summary.json, manifest.json,
+// report.html.
 #pragma once
 
 #include "compare/errors.h"

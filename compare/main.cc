@@ -1,9 +1,11 @@
 // touchstone: one scene in, one result folder out.
 #include "compare/export_verb.h"
 #include "compare/gate_verb.h"
+#include "compare/results_verb.h"
 #include "compare/study_verb.h"
 #include "compare/verbs.h"
 #include "compare/verify_verb.h"
+#include "compare/view_verb.h"
 #include "fast/command_line.h"
 #include "fast/live/live_verb.h"
 #include "reference/contact/contact_shares.h"
@@ -71,6 +73,10 @@ int main(int argc, char** argv) {
       add_with_folder("compare", "both sides, then force and shape errors: tables, VTK, report", compare::run_compare));
   compare::StudyOptions study_options;
   compare::add_study_verb(app, study_options, exit_code);
+  compare::ResultsOptions results_options;
+  compare::add_report_verb(app, results_options, exit_code);
+  compare::ViewOptions view_options;
+  compare::add_view_verb(app, view_options, exit_code);
   compare::ExportOptions export_options;
   CLI::App* export_verb = compare::add_export_verb(app, options, export_options, reference, exit_code);
   export_verb->add_option("--out", options.out, "result folder (default out/<scene>-export)");

@@ -33,15 +33,24 @@ svg { max-width: 100%; height: auto; display: block; }
 table { border-collapse: collapse; width: 100%; font-size: .9rem; margin: .8rem 0; }
 th, td { text-align: left; vertical-align: top; padding: .38rem .7rem .38rem 0; border-bottom: 1px solid var(--line); }
 th { font-weight: 600; } td.n, th.n { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
-td.t { text-align: right; }
+td.t { text-align: right; } th.wrap { text-align: right; vertical-align: bottom; } .under { display: block; color: var(--dim); }
+a { color: var(--reference); } img { max-width: 100%; height: auto; background: #fff; border-radius: 8px; }
 tr.group th { padding-top: 1.1rem; font-size: 1rem; }
 code { font: .82rem ui-monospace, "DejaVu Sans Mono", monospace; color: var(--dim); overflow-wrap: anywhere; }
 pre { font: .82rem/1.45 ui-monospace, "DejaVu Sans Mono", monospace; background: var(--panel); padding: .9rem 1.1rem;
   border-radius: 8px; overflow-x: auto; white-space: pre-wrap; }
 dt { font-weight: 600; } dd { margin: 0 0 .5rem; max-width: 46rem; }
+.viewer { background: var(--panel); border-radius: 8px; padding: .8rem 1rem; margin: .8rem 0; }
+.viewer p { margin: .3rem 0; } .viewer[hidden] { display: none; }
+.controls { display: flex; flex-wrap: wrap; gap: .5rem 1.2rem; align-items: center; font-size: .9rem; }
+.stage { position: relative; } .canvas { height: min(430px, 60vw); touch-action: none; }
+.side { position: absolute; top: .5rem; font-weight: 600; pointer-events: none; } .side[hidden] { display: none; }
+.bar { max-width: 460px; margin: .5rem auto; font-size: .88rem; text-align: center; } .colours { height: 12px; }
+.numbers { display: flex; justify-content: space-between; } .numbers span { width: 0; display: flex; justify-content: center; }
+.time { display: flex; gap: .8rem; align-items: center; } .time input { flex: 1; } .chart svg { cursor: pointer; }
 summary { cursor: pointer; font-weight: 600; }
 @media print {
-  body { max-width: none; padding: 0; font-size: 10.5pt; } figure, tr, .tile { break-inside: avoid; }
+  .viewer { display: none; } body { max-width: none; padding: 0; font-size: 10.5pt; } figure, tr, .tile { break-inside: avoid; }
   .plots { grid-template-columns: 1fr 1fr; } .tiles { grid-template-columns: repeat(4, 1fr); } h2 { break-after: avoid; }
 }
 )";
@@ -97,6 +106,10 @@ std::string page(const std::string& title, const std::string& body) {
   std::string out =
       "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
+  // The browser holds the page to what it promises.
+  out +=
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; script-src "
+      "'unsafe-inline'; img-src 'self' file: data:\"/>\n";
   out += tag("title", title + " | Touchstone") + "\n<style>" + style + "</style>\n</head>\n<body>\n";
   return out + body + "</body>\n</html>\n";
 }

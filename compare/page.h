@@ -1,4 +1,5 @@
-// What every page of results is made of: one self-contained XHTML file, no script, nothing fetched.
+// What every page of results is made of: one self-contained XHTML file that may fetch nothing but pictures
+// that stand beside it.
 #pragma once
 
 #include "scene/plan.h"

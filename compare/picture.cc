@@ -20,36 +20,18 @@ struct Rgb {
   double r, g, b;
 };
 
-/// Viridis at even steps: equal steps look equally large, also in grey print and to the colour-blind.
-constexpr std::array<Rgb, 9> viridis = {{{68, 1, 84},
-                                         {71, 44, 122},
-                                         {59, 81, 139},
-                                         {44, 113, 142},
-                                         {33, 144, 141},
-                                         {39, 173, 129},
-                                         {92, 200, 99},
-                                         {170, 220, 50},
-                                         {253, 231, 37}}};
-/// Light to dark, for errors: no error is pale.
-constexpr std::array<Rgb, 6> heat = {
-    {{255, 247, 226}, {254, 217, 142}, {253, 166, 84}, {237, 100, 57}, {189, 34, 48}, {103, 0, 31}}};
-
-enum class Map { displacement, error };
-
 // A half-cut view, from the top: title, drawing, colour bar.
 constexpr double view_top_px = 36, view_px = 350, bar_top_px = view_top_px + view_px + 10;
 constexpr double view_height_px = bar_top_px + 52;
 
-Rgb colour_of(Map map, double share) {
-  const auto lookup = [share](const auto& table) {
-    // Nothing moves: 0 / 0 takes the first colour too.
-    const double at = (share > 0.0 ? std::min(share, 1.0) : 0.0) * static_cast<double>(table.size() - 1);
-    const std::size_t low = std::min(static_cast<std::size_t>(at), table.size() - 2);
-    const double t = at - static_cast<double>(low);
-    const Rgb &a = table[low], &b = table[low + 1];
-    return Rgb{(1 - t) * a.r + t * b.r, (1 - t) * a.g + t * b.g, (1 - t) * a.b + t * b.b};
-  };
-  return map == Map::displacement ? lookup(viridis) : lookup(heat);
+Rgb colour_of(ColourMap map, double share) {
+  const std::vector<std::array<int, 3>>& table = colour_table(map);
+  // Nothing moves: 0 / 0 takes the first colour too.
+  const double at = (share > 0.0 ? std::min(share, 1.0) : 0.0) * static_cast<double>(table.size() - 1);
+  const std::size_t low = std::min(static_cast<std::size_t>(at), table.size() - 2);
+  const double t = at - static_cast<double>(low);
+  const auto between = [&](std::size_t i) { return (1 - t) * table[low][i] + t * table[low + 1][i]; };
+  return {between(0), between(1), between(2)};
 }
 
 std::string hex(const Rgb& c, double brightness) {
@@ -107,7 +89,7 @@ struct Face {
 
 /// One half of a body: its far surface from back to front, then the cut, which nothing hides.
 std::string half_body(const scene::Surface& surface, const Eigen::Matrix3Xd& displacement_m, double y_m,
-                      const Eigen::VectorXd& shade_by_m, double full_scale_m, Map map, const Camera& camera) {
+                      const Eigen::VectorXd& shade_by_m, double full_scale_m, ColourMap map, const Camera& camera) {
   const Vec3 light = Vec3(-0.35, -0.45, 0.82).normalized();
   const Eigen::Matrix3Xd place_m = surface.points_m + displacement_m;
   std::vector<Face> faces;
@@ -154,7 +136,7 @@ std::string label(double x, double y, const std::string& anchor, const std::stri
 
 /// Horizontal colour bar in millimetres.
 /// @param clipped  values above the scale occur and take its last colour
-std::string colour_bar(Map map, double full_scale_m, bool clipped, const std::string& what, double left_px,
+std::string colour_bar(ColourMap map, double full_scale_m, bool clipped, const std::string& what, double left_px,
                        double top_px, double width_px) {
   constexpr int strips = 48;
   std::string out;
@@ -206,7 +188,7 @@ struct HalfCut {
 
   /// One view under its title.
   [[nodiscard]] std::string panel(const std::string& title, const Eigen::Matrix3Xd& displacement_m,
-                                  const Eigen::VectorXd& shade_by_m, double full_m, Map map, double left_px,
+                                  const Eigen::VectorXd& shade_by_m, double full_m, ColourMap map, double left_px,
                                   double width_px) const {
     const Camera camera(seen_m, left_px + 14, view_top_px, width_px - 28, view_px);
     std::string out = label(left_px + 0.5 * width_px, 20, "middle", title, " font-size=\"14\" font-weight=\"600\"");
@@ -249,6 +231,16 @@ void add_outlines(Plot& plot, const std::string& name, Look look, const Outlines
 
 }  // namespace
 
+const std::vector<std::array<int, 3>>& colour_table(ColourMap map) {
+  static const std::vector<std::array<int, 3>> viridis = {{68, 1, 84},    {71, 44, 122},  {59, 81, 139},
+                                                          {44, 113, 142}, {33, 144, 141}, {39, 173, 129},
+                                                          {92, 200, 99},  {170, 220, 50}, {253, 231, 37}};
+  static const std::vector<std::array<int, 3>> magma = {{252, 253, 191}, {254, 194, 135}, {251, 135, 97},
+                                                        {229, 80, 100},  {181, 54, 122},  {129, 37, 129},
+                                                        {79, 18, 123},   {28, 16, 68}};
+  return map == ColourMap::displacement ? viridis : magma;
+}
+
 double tool_shown_below_m(const scene::Surface& surface) {
   const Vec3 lower_m = surface.points_m.rowwise().minCoeff(), upper_m = surface.points_m.rowwise().maxCoeff();
   return upper_m.z() + 0.5 * (upper_m - lower_m).maxCoeff();
@@ -270,12 +262,12 @@ std::string half_cut_svg(const scene::Scene& scene, const fast::Run& run, const 
   const HalfCut cut(scene, run.surface, result.instants[instant].tool);
   std::string out = svg_opening("Both deformed bodies, cut in half, and the error between them",
                                 static_cast<int>(3 * panel_px), static_cast<int>(view_height_px));
-  out += cut.panel("Reference", reference_m, reference_size_m, full_m, Map::displacement, 0.0, panel_px);
-  out += cut.panel("Fast model", fast_m, fast_size_m, full_m, Map::displacement, panel_px, panel_px);
-  out += cut.panel("Error, on the reference's shape", reference_m, error_m, full_error_m, Map::error, 2 * panel_px,
-                   panel_px);
-  out += colour_bar(Map::displacement, full_m, clipped, "displacement", 0.5 * panel_px, bar_top_px, panel_px);
-  out += colour_bar(Map::error, full_error_m, false, "distance between the two sides' points", 2 * panel_px + 40,
+  out += cut.panel("Reference", reference_m, reference_size_m, full_m, ColourMap::displacement, 0.0, panel_px);
+  out += cut.panel("Fast model", fast_m, fast_size_m, full_m, ColourMap::displacement, panel_px, panel_px);
+  out += cut.panel("Error, on the reference's shape", reference_m, error_m, full_error_m, ColourMap::error,
+                   2 * panel_px, panel_px);
+  out += colour_bar(ColourMap::displacement, full_m, clipped, "displacement", 0.5 * panel_px, bar_top_px, panel_px);
+  out += colour_bar(ColourMap::error, full_error_m, false, "distance between the two sides' points", 2 * panel_px + 40,
                     bar_top_px, panel_px - 80);
   return out + "</svg>\n";
 }
@@ -286,9 +278,9 @@ std::string half_cut_svg(const scene::Scene& scene, const scene::Surface& surfac
   const Eigen::VectorXd size_m = record.displacement_m.colwise().norm();
   std::string out = svg_opening(title, static_cast<int>(width_px), static_cast<int>(view_height_px));
   out += HalfCut(scene, surface, record.tool)
-             .panel(title, record.displacement_m, size_m, largest(size_m), Map::displacement, 0.0, width_px);
-  out +=
-      colour_bar(Map::displacement, largest(size_m), false, "displacement", 0.2 * width_px, bar_top_px, 0.6 * width_px);
+             .panel(title, record.displacement_m, size_m, largest(size_m), ColourMap::displacement, 0.0, width_px);
+  out += colour_bar(ColourMap::displacement, largest(size_m), false, "displacement", 0.2 * width_px, bar_top_px,
+                    0.6 * width_px);
   return out + "</svg>\n";
 }
 

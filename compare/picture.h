@@ -4,10 +4,19 @@
 #include "compare/errors.h"
 #include "compare/svg_plot.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
 namespace touchstone::compare {
+
+/// What a body is coloured by.
+enum class ColourMap { displacement, error };
+
+/// Red, green, blue (0 to 255) at even steps of the scale; equal steps look equally large, also in grey print and to
+/// the colour-blind. Displacement: viridis, dark to light. Error: magma backwards, light to dark, so that no error is
+/// pale.
+[[nodiscard]] const std::vector<std::array<int, 3>>& colour_table(ColourMap map);
 
 /// Three half-cut bodies side by side: the reference and the fast model coloured by how far each point moved, on
 /// one scale, and the reference's shape coloured by how far the fast model's points are from there. The body is cut

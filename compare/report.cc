@@ -6,6 +6,7 @@
 #include "compare/svg_plot.h"
 #include "compare/text.h"
 #include "compare/verdict.h"
+#include "compare/viewer.h"
 
 #include <fmt/format.h>
 
@@ -150,7 +151,7 @@ std::string force_section(const ReportContent& c) {
 std::string shape_section(const ReportContent& c) {
   const Errors& errors = c.errors;
   const InstantErrors& deepest = errors.instants[errors.deepest];
-  std::string out = tag("h2", "Shape") + "\n";
+  std::string out = tag("h2", "Shape") + "\n" + viewer_section(c.scene, c.run, c.result, errors);
   out +=
       figure(half_cut_svg(c.scene, c.run, c.result, errors.deepest),
              fmt::format("Both bodies at the deepest instant ({}, {} deep), cut in half at the tool's centre; the grey "
@@ -267,11 +268,11 @@ std::string report_html(const ReportContent& c) {
   out += tag("h2", "What each side models of the scene") + "\n";
   out += tag("h3", "Fast model", "class=\"fast\"") + plan_table(c.plans.fast);
   out += tag("h3", "Reference", "class=\"reference\"") + plan_table(c.plans.reference);
-  out +=
-      manifest_section(c.manifest,
-                       "Beside this page: summary.json (these figures), curve.csv (every instant), manifest.json, and "
-                       "surface.pvd for ParaView, where the filter Warp By Vector with displacement_fast_m or "
-                       "displacement_reference_m shows a side.");
+  out += manifest_section(
+      c.manifest,
+      "Beside this page: summary.json (these figures), curve.csv (every instant), shape.svg, manifest.json, and "
+      "surface.pvd for ParaView, where the filter Warp By Vector with displacement_fast_m or "
+      "displacement_reference_m shows a side.");
   return page(scene_title(c.scene), out);
 }
 

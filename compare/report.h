@@ -1,4 +1,4 @@
-// The page a reader opens first: one self-contained HTML file, no script, nothing fetched.
+// The page a reader opens first: one self-contained HTML file, nothing fetched; a script only for the view in space.
 #pragma once
 
 #include "compare/compare.h"

@@ -84,24 +84,28 @@ struct Extent {
   }
 };
 
-std::string stroke(Look look) {
-  switch (look) {
+std::string colour_of(const Curve& curve) { return curve.own_colour.empty() ? colour(curve.look) : curve.own_colour; }
+
+std::string stroke(const Curve& curve) {
+  const auto line = [&](const char* width, const char* dashes) {
+    return fmt::format("stroke=\"{}\" stroke-width=\"{}\"{}", colour_of(curve), width,
+                       *dashes == 0 ? "" : fmt::format(" stroke-dasharray=\"{}\"", dashes));
+  };
+  switch (curve.look) {
     case Look::reference:
-      return fmt::format("stroke=\"{}\" stroke-width=\"2\"", colour(look));
-    case Look::fast:
-      return fmt::format("stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"6 3\"", colour(look));
     case Look::plain:
-      return fmt::format("stroke=\"{}\" stroke-width=\"2\"", colour(look));
-    case Look::outline:
-      return fmt::format("stroke=\"{}\" stroke-width=\"1.2\" stroke-dasharray=\"2 3\"", colour(look));
-    case Look::inclusion:
-      return fmt::format("stroke=\"{}\" stroke-width=\"1.5\" stroke-dasharray=\"9 4\"", colour(look));
     case Look::first:
-      return fmt::format("stroke=\"{}\" stroke-width=\"2\"", colour(look));
+      return line("2", "");
+    case Look::fast:
+      return line("2", "6 3");
+    case Look::outline:
+      return line("1.2", "2 3");
+    case Look::inclusion:
+      return line("1.5", "9 4");
     case Look::second:
-      return fmt::format("stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"8 4\"", colour(look));
+      return line("2", "8 4");
     case Look::third:
-      return fmt::format("stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"2 3\"", colour(look));
+      return line("2", "2 3");
   }
   return "";
 }
@@ -174,19 +178,19 @@ std::string curve_line(const Curve& curve, const Axis& x, const Axis& y) {
   }
   if (path.empty()) return "";
   const std::string fill =
-      curve.filled ? fmt::format("fill=\"{}\" fill-opacity=\"0.16\" fill-rule=\"evenodd\"", colour(curve.look))
+      curve.filled ? fmt::format("fill=\"{}\" fill-opacity=\"0.16\" fill-rule=\"evenodd\"", colour_of(curve))
                    : "fill=\"none\"";
-  return fmt::format("<path d=\"{}\" {} {} stroke-linejoin=\"round\"/>\n", path, fill, stroke(curve.look));
+  return fmt::format("<path d=\"{}\" {} {} stroke-linejoin=\"round\"/>\n", path, fill, stroke(curve));
 }
 
 /// Round for the reference and square for the fast model, so that grey print tells them apart.
-std::string marker(Look look, double x_px, double y_px, const std::string& title_element) {
-  if (look == Look::fast) {
+std::string marker(const Curve& curve, double x_px, double y_px, const std::string& title_element) {
+  if (curve.look == Look::fast) {
     return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"6\" height=\"6\" fill=\"{}\">{}</rect>", x_px - 3,
-                       y_px - 3, colour(look), title_element);
+                       y_px - 3, colour_of(curve), title_element);
   }
-  return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\">{}</circle>", x_px, y_px, colour(look),
-                     title_element);
+  return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\">{}</circle>", x_px, y_px,
+                     colour_of(curve), title_element);
 }
 
 std::string curve_markers(const Curve& curve, const Plot& plot, const Axis& x, const Axis& y) {
@@ -197,7 +201,7 @@ std::string curve_markers(const Curve& curve, const Plot& plot, const Axis& x, c
     const std::string tip =
         escape_xml(fmt::format("{}{}{}: {}; {}: {}", curve.name, curve.name.empty() ? "" : " | ", plot.x_label,
                                number_text(curve.x[i], 4), plot.y_label, number_text(curve.y[i], 4)));
-    out += marker(curve.look, px, py, "<title>" + tip + "</title>") + "\n";
+    out += marker(curve, px, py, "<title>" + tip + "</title>") + "\n";
   }
   return out;
 }
@@ -215,8 +219,8 @@ std::vector<LegendEntry> legend_entries(const Plot& plot) {
       entries.push_back({name, std::move(swatch), 33.0 + 18.0 + 6.6 * static_cast<double>(name.size())});
   };
   for (const Curve& curve : plot.curves) {
-    std::string swatch = fmt::format("<line x1=\"0\" y1=\"0\" x2=\"26\" y2=\"0\" {}/>", stroke(curve.look));
-    if (curve.markers) swatch += marker(curve.look, 13.0, 0.0, "");
+    std::string swatch = fmt::format("<line x1=\"0\" y1=\"0\" x2=\"26\" y2=\"0\" {}/>", stroke(curve));
+    if (curve.markers) swatch += marker(curve, 13.0, 0.0, "");
     add(curve.name, std::move(swatch));
   }
   for (const Band& band : plot.bands) {
@@ -294,6 +298,8 @@ std::string svg_opening(const std::string& title, int width_px, int height_px) {
       width_px, height_px, escape_xml(title));
 }
 
+std::pair<double, double> x_axis_px(int width_px) { return {margin_left, width_px - margin_right}; }
+
 std::vector<double> nice_ticks(double low, double high, int wanted) {
   const double raw = (high - low) / wanted;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
@@ -333,7 +339,7 @@ std::string to_svg(const Plot& plot, int width_px, int height_px) {
   std::pair<double, double> y_range = plot.y_range.value_or(y_extent.padded(plot.y_log));
   const Legend names = legend(plot, margin_left, width_px - margin_right, margin_top + 2);
   const int top_px = margin_top + legend_row * names.rows;
-  const double right_px = width_px - margin_right, bottom_px = height_px - margin_bottom;
+  const double right_px = x_axis_px(width_px).second, bottom_px = height_px - margin_bottom;
   if (plot.same_scale) give_same_scale(x_range, y_range, right_px - margin_left, bottom_px - top_px);
   const Axis x(x_range.first, x_range.second, plot.x_log, margin_left, right_px);
   const Axis y(y_range.first, y_range.second, plot.y_log, bottom_px, top_px);
@@ -352,6 +358,12 @@ std::string to_svg(const Plot& plot, int width_px, int height_px) {
   for (const Curve& curve : plot.curves) out += curve_line(curve, x, y);
   for (const Curve& curve : plot.curves) {
     if (curve.markers) out += curve_markers(curve, plot, x, y);
+  }
+  if (plot.cursor) {
+    out += fmt::format(
+        "<line class=\"cursor\" x1=\"{0:.1f}\" y1=\"{1}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" stroke=\"currentColor\" "
+        "stroke-width=\"1.5\"/>\n",
+        x.px(*plot.cursor), top_px, bottom_px);
   }
   return out + "</svg>\n</svg>\n";
 }

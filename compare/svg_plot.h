@@ -19,7 +19,8 @@ struct Curve {
   Look look = Look::plain;
   std::vector<double> x, y;
   bool markers = true;
-  bool filled = false;  ///< the area within, holes left out
+  bool filled = false;       ///< the area within, holes left out
+  std::string own_colour{};  ///< "#rrggbb" in place of the look's, where one side has many curves
 };
 
 /// Area between two curves over x.
@@ -42,6 +43,7 @@ struct Plot {
   bool x_log = false, y_log = false;
   bool same_scale = false;                                    ///< x and y to one scale, for drawings
   std::optional<std::pair<double, double>> x_range, y_range;  ///< otherwise what the curves need
+  std::optional<double> cursor;                               ///< an x marked by a line of class "cursor", for a script
   std::vector<Span> spans;
   std::vector<Band> bands;
   std::vector<Curve> curves;
@@ -49,6 +51,9 @@ struct Plot {
 
 /// @returns one <svg> element, well-formed XML; without any point to draw it says "nothing to show"
 [[nodiscard]] std::string to_svg(const Plot& plot, int width_px = 560, int height_px = 360);
+
+/// Where the x axis of such an element begins and ends [px].
+[[nodiscard]] std::pair<double, double> x_axis_px(int width_px);
 
 /// Begins an <svg> element: its size, font and title; "</svg>" ends it.
 [[nodiscard]] std::string svg_opening(const std::string& title, int width_px, int height_px);

@@ -39,7 +39,7 @@ TEST_F(WriteComparison, FillsTheFolderAndNothingElse) {
   }
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names,
-            (std::vector<std::string>{"curve.csv", "manifest.json", "report.html", "summary.json", "surface.pvd",
+            (std::vector<std::string>{"curve.csv", "manifest.json", "report.html", "shape.svg", "summary.json", "surface.pvd",
                                       "surface_0000.vtp", "surface_0001.vtp", "surface_0002.vtp", "surface_0003.vtp"}));
 }
 

@@ -1,0 +1,252 @@
+#include "compare/results_page.h"
+
+#include "compare/errors.h"
+#include "compare/figures.h"
+#include "compare/page.h"
+#include "compare/svg_plot.h"
+#include "compare/text.h"
+#include "scene/error.h"
+#include "scene/scene_io.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace touchstone::compare {
+namespace {
+
+/// Told apart on white and on black, by the colour-blind too (Okabe and Ito, without yellow and black).
+constexpr std::array palette = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"};
+
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+
+struct HeadlineColumn {
+  std::string_view key, title;
+};
+constexpr HeadlineColumn headline[] = {{"force.nrmse", "Force error, of the peak"},
+                                       {"force.peak_rel", "Error of the largest force"},
+                                       {"shape.rel_l2", "Shape error, of the displacement"},
+                                       {"contact.area_iou", "Contact area in common"},
+                                       {"force.peak_reference_n", "Largest force, reference"},
+                                       {"fast.step_us.p50", "Fast step, median"},
+                                       {"fast.step_us.p999", "99.9 % are shorter than"},
+                                       {"reference.wall_s", "Reference took"}};
+
+/// A result with what the page calls it.
+struct Entry {
+  const ResultFolder& result;
+  std::string name, title, link;
+};
+
+/// How a page in `place` reaches a file, percent-encoded as an address.
+std::string relative_link(const std::filesystem::path& file, const std::filesystem::path& place) {
+  const std::string path =
+      std::filesystem::proximate(std::filesystem::weakly_canonical(file), std::filesystem::weakly_canonical(place))
+          .generic_string();
+  std::string out;
+  for (const char c : path) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       std::string_view("-._~/").find(c) != std::string_view::npos;
+    out += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return out;
+}
+
+/// The folder's name; with its parents' as far as needed to tell it from the others.
+std::string short_name(const std::vector<ResultFolder>& results, std::size_t at) {
+  const auto tail = [](const std::filesystem::path& folder, int parts) {
+    std::filesystem::path rest = std::filesystem::weakly_canonical(folder), out;
+    for (int i = 0; i < parts && rest.has_relative_path(); ++i) {
+      out = out.empty() ? rest.filename() : rest.filename() / out;
+      rest = rest.parent_path();
+    }
+    return out.generic_string();
+  };
+  for (int parts = 1; parts < 16; ++parts) {
+    const std::string name = tail(results[at].folder, parts);
+    const auto alike = std::count_if(results.begin(), results.end(),
+                                     [&](const ResultFolder& r) { return tail(r.folder, parts) == name; });
+    if (alike == 1) return name;
+  }
+  return results[at].folder.generic_string();
+}
+
+/// Of the scene, whose own files may have gone since.
+std::string title_of(const ResultFolder& result, const std::string& otherwise) {
+  try {
+    return scene_title(scene::parse_scene(result.resolved_scene, result.folder / "manifest.json"));
+  } catch (const scene::InputError&) {
+    return otherwise;
+  }
+}
+
+std::string headline_cell(const ResultFolder& result, std::string_view key) {
+  const scene::Figure* value = result.figure(key);
+  if (value == nullptr) return cell("–");
+  if (!value->text.empty()) return cell(value->text);
+  const std::string unknown = "unknown";
+  std::string out = escape_xml(std::isfinite(value->number) ? figure_text(*value) : unknown);
+  const scene::Figure* uncertainty = result.figure(std::string(key) + std::string(uncertainty_suffix));
+  if (uncertainty != nullptr) {
+    const bool known = uncertainty->text.empty() && std::isfinite(uncertainty->number);
+    out += tag("span", fmt::format("± {}", known ? figure_text(*uncertainty) : unknown), "class=\"under\"");
+    if (known && std::abs(value->number) <= uncertainty->number) {
+      out += tag("span", "not distinguishable", "class=\"under\"");
+    }
+  }
+  return "<td class=\"n\">" + out + "</td>";
+}
+
+std::string headline_table(const std::vector<Entry>& entries) {
+  std::string out = "<div class=\"scroll\"><table>\n<tr><th>Result</th>";
+  for (const HeadlineColumn& column : headline) {
+    out += tag("th", std::string(column.title), fmt::format("class=\"wrap\" title=\"{}\"", column.key));
+  }
+  out += "</tr>\n";
+  for (const Entry& entry : entries) {
+    out += "<tr><td>" + tag("a", entry.title, fmt::format("href=\"{}\"", entry.link)) +
+           tag("span", entry.name, "class=\"under\"") + "</td>";
+    for (const HeadlineColumn& column : headline) out += headline_cell(entry.result, column.key);
+    out += "</tr>\n";
+  }
+  return out + "</table></div>\n" +
+         tag("p",
+             "± is the reference's own uncertainty in the same norm. Not distinguishable: the error is no larger than "
+             "that, so it may be none.",
+             "class=\"dim\"") +
+         "\n";
+}
+
+/// A curve of one result; drawn as the reference is, or the fast model.
+Curve result_curve(const Entry& entry, std::size_t at, Look look, std::vector<double> x, std::vector<double> y) {
+  Curve curve{look == Look::reference ? entry.name : "", look, std::move(x), std::move(y)};
+  curve.own_colour = palette[at % palette.size()];
+  curve.markers = false;
+  return curve;
+}
+
+double largest(const std::vector<double>& values) {
+  double found = 0.0;
+  for (const double v : values) found = std::max(found, std::isfinite(v) ? v : 0.0);
+  return found;
+}
+
+std::vector<double> scaled(std::vector<double> values, double offset, double factor) {
+  for (double& v : values) v = (v - offset) * factor;
+  return values;
+}
+
+/// Forces of both sides over the track, relative to its length and to the reference's peak.
+Plot share_plot(const std::vector<Entry>& entries) {
+  Plot plot;
+  plot.title = "Force over the track, relative";
+  plot.x_label = "share of the track's time [%]";
+  plot.y_label = "force / reference's largest [%]";
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const ResultFolder& result = entries[i].result;
+    const std::vector<double>& time_s = result.required_column("time_s");
+    const std::vector<double>& reference_n = result.required_column("reference_force_n");
+    const double peak_n = largest(reference_n);
+    const double length_s = time_s.back() - time_s.front();
+    if (peak_n == 0.0 || length_s == 0.0) continue;
+    const std::vector<double> share = scaled(time_s, time_s.front(), 100.0 / length_s);
+    plot.curves.push_back(
+        result_curve(entries[i], i, Look::reference, share, scaled(reference_n, 0.0, 100.0 / peak_n)));
+    plot.curves.push_back(result_curve(entries[i], i, Look::fast, share,
+                                       scaled(result.required_column("fast_force_n"), 0.0, 100.0 / peak_n)));
+  }
+  return plot;
+}
+
+/// Forces of both sides over depth, as they are; grazing instants, whose rounding would take most decades, left out.
+Plot depth_plot(const std::vector<Entry>& entries) {
+  Plot plot;
+  plot.title = "Force over depth, both axes logarithmic";
+  plot.x_label = "depth [mm]";
+  plot.y_label = "force on the tool [N]";
+  plot.x_log = plot.y_log = true;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const ResultFolder& result = entries[i].result;
+    std::vector<double> depth_mm = scaled(result.required_column("depth_m"), 0.0, 1e3);
+    for (double& depth : depth_mm) depth = depth > 1e3 * grazing_depth_m ? depth : no_value;
+    plot.curves.push_back(
+        result_curve(entries[i], i, Look::reference, depth_mm, result.required_column("reference_force_n")));
+    plot.curves.push_back(result_curve(entries[i], i, Look::fast, depth_mm, result.required_column("fast_force_n")));
+  }
+  return plot;
+}
+
+/// As many results to a pair of plots as there are colours.
+std::string force_section(const std::vector<Entry>& entries) {
+  std::string out = tag("h2", "Force") + "\n<div class=\"plots\">\n";
+  for (std::size_t begin = 0; begin < entries.size(); begin += palette.size()) {
+    const std::vector<Entry> some(
+        entries.begin() + static_cast<std::ptrdiff_t>(begin),
+        entries.begin() + static_cast<std::ptrdiff_t>(std::min(begin + palette.size(), entries.size())));
+    out += figure(to_svg(share_plot(some), 560, 420), "Solid: reference. Dashed, same colour: fast model.");
+    out += figure(to_svg(depth_plot(some), 560, 420), "The same results in newtons and millimetres.");
+  }
+  return out + "</div>\n";
+}
+
+std::string pictures_section(const std::vector<Entry>& entries, const std::filesystem::path& place) {
+  std::string pictures;
+  for (const Entry& entry : entries) {
+    const std::filesystem::path picture = entry.result.folder / "shape.svg";
+    if (!std::filesystem::exists(picture)) continue;
+    pictures += fmt::format("<figure><a href=\"{}\"><img src=\"{}\" alt=\"{}\" loading=\"lazy\"/></a>{}</figure>\n",
+                            entry.link, relative_link(picture, place),
+                            escape_xml("Deformed bodies and error: " + entry.title), tag("figcaption", entry.title));
+  }
+  if (pictures.empty()) return "";
+  return tag("h2", "Shape at the deepest instant") + "\n" +
+         tag("p", "Reference, fast model, and the error between them; each opens its report.", "class=\"dim\"") +
+         "\n<div class=\"plots\">\n" + pictures + "</div>\n";
+}
+
+std::string origin_section(const std::vector<Entry>& entries) {
+  std::string out = tag("h2", "How these were made") +
+                    "\n<div class=\"scroll\"><table>\n<tr><th>Result</th><th>Scene hash</th><th>Version</th><th>Date"
+                    "</th><th>Folder</th></tr>\n";
+  std::set<std::string> versions;
+  for (const Entry& entry : entries) {
+    const ResultFolder& result = entry.result;
+    versions.insert(result.version);
+    out += "<tr>" + cell(entry.name) + "<td>" + tag("code", result.scene_hash) + "</td>" + cell(result.version) +
+           cell(result.date) + "<td>" + tag("code", result.folder.string()) + "</td></tr>\n";
+  }
+  out += "</table></div>\n";
+  if (versions.size() > 1) out += tag("p", "The results are of different versions of the program.") + "\n";
+  return out;
+}
+
+}  // namespace
+
+std::string results_page_html(const std::vector<ResultFolder>& results, const std::filesystem::path& place) {
+  std::vector<scene::Fault> faults;
+  for (const ResultFolder& result : results) {
+    if (result.command == "touchstone compare") continue;
+    faults.push_back({(result.folder / "manifest.json").string(), 0, 0,
+                      fmt::format("was made by \"{}\", expected a result of \"touchstone compare\"", result.command)});
+  }
+  if (!faults.empty()) throw scene::InputError(std::move(faults));
+  std::vector<Entry> entries;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const std::string name = short_name(results, i);
+    entries.push_back(
+        {results[i], name, title_of(results[i], name), relative_link(results[i].folder / "report.html", place)});
+  }
+  const std::string title = fmt::format("{} result{}", entries.size(), entries.size() == 1 ? "" : "s");
+  return page(title,
+              tag("h1", title) + "\n" +
+                  tag("p", "How far the fast contact model is from the finite-element reference, scene by scene.",
+                      "class=\"dim\"") +
+                  "\n" + headline_table(entries) + force_section(entries) + pictures_section(entries, place) +
+                  origin_section(entries));
+}
+
+}  // namespace touchstone::compare

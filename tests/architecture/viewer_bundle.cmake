@@ -1,0 +1,15 @@
+# cmake -DVIEWER_DIR=... -P viewer_bundle.cmake
+# The bundle's first line names the hashes of what it was made from; the lock names no registry of anyone's own.
+file(STRINGS "${VIEWER_DIR}/viewer.bundle.js" head LIMIT_COUNT 1)
+foreach(source viewer.js package-lock.json)
+  file(SHA256 "${VIEWER_DIR}/${source}" hash)
+  if(NOT head MATCHES "${source} ${hash}")
+    message(FATAL_ERROR "viewer.bundle.js was not made from ${source} as it is: npm ci && npm run bundle in ${VIEWER_DIR}")
+  endif()
+endforeach()
+file(STRINGS "${VIEWER_DIR}/package-lock.json" resolved REGEX "\"resolved\":")
+foreach(line ${resolved})
+  if(NOT line MATCHES "https://registry\\.npmjs\\.org/")
+    message(FATAL_ERROR "package-lock.json fetches from elsewhere: ${line}")
+  endif()
+endforeach()
