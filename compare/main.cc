@@ -1,6 +1,7 @@
 // touchstone: one scene in, one result folder out.
 #include "compare/export_verb.h"
 #include "compare/study_verb.h"
+#include "compare/tune_verb.h"
 #include "compare/verbs.h"
 #include "compare/verify_verb.h"
 #include "fast/command_line.h"
@@ -70,6 +71,8 @@ int main(int argc, char** argv) {
       add_with_folder("compare", "both sides, then force and shape errors: tables, VTK, report", compare::run_compare));
   compare::StudyOptions study_options;
   compare::add_study_verb(app, study_options, exit_code);
+  compare::TuneOptions tune_options;
+  add_reference(compare::add_tune_verb(app, tune_options, reference, exit_code));
   compare::ExportOptions export_options;
   CLI::App* export_verb = compare::add_export_verb(app, options, export_options, reference, exit_code);
   export_verb->add_option("--out", options.out, "result folder (default out/<scene>-export)");
