@@ -135,34 +135,36 @@ std::vector<std::size_t> all_of(std::size_t count) {
 void determine(const std::vector<FitParameter>& parameters, const Residuals& residuals,
                const std::vector<double>& places, int observations, Fit& fit) {
   const std::size_t count = parameters.size();
+  for (const double value : fit.value) fit.parameters.emplace_back().value = value;
+  fit.chi2_per_freedom = fit.chi2 / std::max(1, observations - static_cast<int>(count));
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  fit.correlation = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count), none);
+  const Model model(parameters, residuals, fit.value, all_of(count));
+  const std::optional<Eigen::MatrixXd> all = model.jacobian(places.data(), fit.residual);
+  if (!all) throw std::runtime_error("the model has no answer beside the fit's own values");
+  // What the model cannot follow counts as scatter, so that the errors are those of the misfit and not of the data.
+  const double scatter = std::sqrt(std::max(1.0, fit.chi2_per_freedom));
   std::vector<std::size_t> inner;
   for (std::size_t k = 0; k < count; ++k) {
-    Determination& one = fit.parameters.emplace_back();
-    one.value = fit.value[static_cast<Eigen::Index>(k)];
-    if (places[k] < bound_share) {
-      one.at_bound = AtBound::low;
-    } else if (places[k] > 1.0 - bound_share) {
-      one.at_bound = AtBound::high;
+    // A parameter without effect stays wherever it was started.
+    const bool counts = all->col(static_cast<Eigen::Index>(k)).norm() * open_share >= scatter;
+    if (counts && places[k] < bound_share) {
+      fit.parameters[k].at_bound = AtBound::low;
+    } else if (counts && places[k] > 1.0 - bound_share) {
+      fit.parameters[k].at_bound = AtBound::high;
     } else {
       inner.push_back(k);
     }
   }
   fit.free = static_cast<int>(inner.size());
-  fit.chi2_per_freedom = fit.chi2 / std::max(1, observations - static_cast<int>(count));
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  fit.correlation = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count), none);
   if (inner.empty()) return;
-
-  std::vector<double> inner_places;
-  for (const std::size_t k : inner) inner_places.push_back(places[k]);
-  const Model model(parameters, residuals, fit.value, inner);
-  const std::optional<Eigen::MatrixXd> jacobian = model.jacobian(inner_places.data(), fit.residual);
-  if (!jacobian) throw std::runtime_error("the model has no answer beside the fit's own values");
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(*jacobian, Eigen::ComputeFullV);
-  Eigen::VectorXd singular = Eigen::VectorXd::Zero(jacobian->cols());
+  Eigen::MatrixXd jacobian(all->rows(), fit.free);
+  for (std::size_t k = 0; k < inner.size(); ++k) {
+    jacobian.col(static_cast<Eigen::Index>(k)) = all->col(static_cast<Eigen::Index>(inner[k]));
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeFullV);
+  Eigen::VectorXd singular = Eigen::VectorXd::Zero(jacobian.cols());
   singular.head(svd.singularValues().size()) = svd.singularValues();
-  // What the model cannot follow counts as scatter, so that the errors are those of the misfit and not of the data.
-  const double scatter = std::sqrt(std::max(1.0, fit.chi2_per_freedom));
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(singular.size(), singular.size());
   for (Eigen::Index k = 0; k < singular.size(); ++k) {
     const bool counted = singular[k] > 0.0 && singular[k] > rank_share * singular[0];

@@ -203,8 +203,10 @@ std::vector<std::string> notes_of(const StageFit& stage) {
           one.key, low ? "lower" : "upper", value_text(low ? one.low : one.high, one.unit), low ? "lower" : "higher"));
     } else if (found.open) {
       notes.push_back(fmt::format(
-          "These data cannot determine {}: any value between {} and {} fits about as well as {}.", one.key,
-          value_text(one.low, one.unit), value_text(one.high, one.unit), value_text(found.value, one.unit)));
+          "These data cannot determine {}: it is known no better than its bounds say already, {} to {}; {} is where "
+          "the "
+          "search ended.",
+          one.key, value_text(one.low, one.unit), value_text(one.high, one.unit), value_text(found.value, one.unit)));
     }
   }
   for (const std::vector<std::size_t>& direction : fit.open_directions) {
@@ -221,6 +223,8 @@ std::vector<std::string> notes_of(const StageFit& stage) {
   }
   for (const Profile& profile : stage.profiles) {
     const scene::TuningParameter& one = stage.parameters[profile.parameter];
+    const Determination& found = fit.parameters[profile.parameter];
+    if (found.open || found.at_bound != AtBound::no) continue;
     if (profile.open_low && profile.open_high) {
       notes.push_back(
           fmt::format("The profile of {} stays flat from bound to bound: these data cannot determine it.", one.key));

@@ -1,6 +1,8 @@
 // Bounded least squares on functions whose answers are known: does it find them, and does it say what it cannot know?
 #include "compare/fit.h"
 
+#include <Eigen/LU>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

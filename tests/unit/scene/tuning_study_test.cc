@@ -17,7 +17,7 @@ const std::string scenes = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/
 const std::string head = "kind = \"tuning\"\n";
 const std::string training = "[[training]]\nname = \"middle\"\nscene = \"" + scenes + "ball-on-cube-press.toml\"\n";
 const std::string held_out = "[[held_out]]\nname = \"larger\"\ndiffers = \"tool\"\nscene = \"" + scenes +
-                             "ball-on-cube-press.toml\"\nset = { tool.radius_m = 0.0105 }\ndepth_m = [0.001, 0.003]\n";
+                             "ball-on-cube-press.toml\"\nset = { tool.radius_m = 0.0104 }\ndepth_m = [0.001, 0.003]\n";
 const std::string stiffness = "[[parameter]]\nkey = \"contact.k1_n_per_m\"\nbounds = [1.0e3, 1.0e7]\n";
 
 class TuningStudyTest : public testing::Test {
@@ -55,7 +55,7 @@ TEST_F(TuningStudyTest, HoldsContactsParametersAndWhatFollowsFromThem) {
   ASSERT_EQ(study.held_out.size(), 1u);
   EXPECT_EQ(study.training[0].scene.compare.instants, 7);
   EXPECT_EQ(study.held_out[0].scene.compare.instants, 7);
-  EXPECT_EQ(study.held_out[0].scene.tool.radius_m, 0.0105);
+  EXPECT_EQ(study.held_out[0].scene.tool.radius_m, 0.0104);
   EXPECT_EQ(study.held_out[0].differs, "tool");
   EXPECT_THAT(study.held_out[0].depth_m, ElementsAre(0.001, 0.003));
   EXPECT_THAT(study.formulations, ElementsAre(Formulation::corrected));
