@@ -23,7 +23,8 @@ using ::testing::HasSubstr;
 const std::string scenes = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/";
 
 scene::Scene small(const std::vector<std::string>& more = {}) {
-  std::vector<std::string> settings = {"compare.instants=9", "fast.triangles=400", "fast.rate_hz=200.0"};
+  std::vector<std::string> settings = {"compare.instants=9", "fast.triangles=400", "fast.rate_hz=200.0",
+                                       "contact.k1_n_per_m=20000.0"};
   settings.insert(settings.end(), more.begin(), more.end());
   return scene::load_scene(scenes + "sphere-on-sphere-body.toml", settings);
 }
@@ -146,7 +147,7 @@ TEST(Tune, SaysWhatTheDataCannotDetermine) {
   for (auto* list : {&asked.training, &asked.held_out}) {
     for (scene::TuningContact& contact : *list) contact.scene.fast.C_n = 0.0;
   }
-  const Tuning tuning = tune(asked, made_with({}));
+  const Tuning tuning = tune(asked, made_with({{"fast.s_c_m2", 1.0e-2}}));
   const TunedModel& model = tuning.models.at(0);
   EXPECT_TRUE(found(model, "fast.r_R_m").open);
   EXPECT_FALSE(found(model, "fast.s_c_m2").open);
@@ -155,8 +156,8 @@ TEST(Tune, SaysWhatTheDataCannotDetermine) {
 }
 
 TEST(Tune, NamesAnActiveBoundInEveryAnswer) {
-  const Tuning tuning = tune(study({free("contact.k1_n_per_m", 1e1, 1e2), free("contact.k3_n_per_m3", 1e7, 1e11)}),
-                             made_with({{"contact.k1_n_per_m", 900.0}, {"contact.k3_n_per_m3", 2.0e9}}));
+  const Tuning tuning = tune(study({free("contact.k1_n_per_m", 1e2, 1e4), free("contact.k3_n_per_m3", 1e7, 1e11)}),
+                             made_with({{"contact.k1_n_per_m", 3.0e4}, {"contact.k3_n_per_m3", 2.0e9}}));
   const TunedModel& model = tuning.models.at(0);
   EXPECT_EQ(found(model, "contact.k1_n_per_m").at_bound, AtBound::high);
   EXPECT_THAT(model.stages.at(0).notes, Contains(HasSubstr("contact.k1_n_per_m ended at its upper bound")));
@@ -190,9 +191,9 @@ TEST(Tune, RefusesAContactWithoutAnInstantThatCounts) {
 
 TEST(Tune, LeavesAFolderWhoseParametersASceneTakesOver) {
   const testing::TemporaryFolder folder;
-  scene::TuningStudy asked =
-      study({free("contact.k1_n_per_m", 1e1, 1e5), free("fast.s_c_m2", 1e-4, 1e-1, scene::TuningStage::shape)});
-  asked.parameters[1].profile = true;
+  scene::TuningStudy asked = study({free("contact.k3_n_per_m3", 1e7, 1e11), free("contact.k1_n_per_m", 1e1, 1e5),
+                                    free("fast.s_c_m2", 1e-4, 1e-1, scene::TuningStage::shape)});
+  asked.parameters[2].profile = true;
   asked.title = "Made & tuned";
   const Tuning tuning = tune(asked, made_with({{"contact.k1_n_per_m", 900.0}}));
   write_tuning(folder.path(), tuning, scene::make_manifest(asked.training[0].scene, "touchstone tune"));
