@@ -19,8 +19,8 @@ constexpr double difference = 1e-3;
 /// Nearer to a bound than this share a parameter is at it.
 constexpr double bound_share = 1e-3;
 
-/// Singular values below this share of the largest are none.
-constexpr double rank_share = 1e-9;
+/// Singular values below this share of the largest, or of the scatter, are none.
+constexpr double rank_share = 1e-9, effect_share = 1e-6;
 
 /// From this share of a direction on a parameter takes part in it.
 constexpr double part_of_direction = 0.3;
@@ -167,7 +167,7 @@ void determine(const std::vector<FitParameter>& parameters, const Residuals& res
   singular.head(svd.singularValues().size()) = svd.singularValues();
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(singular.size(), singular.size());
   for (Eigen::Index k = 0; k < singular.size(); ++k) {
-    const bool counted = singular[k] > 0.0 && singular[k] > rank_share * singular[0];
+    const bool counted = singular[k] > std::max(rank_share * singular[0], effect_share * scatter);
     fit.rank += counted ? 1 : 0;
     const Eigen::VectorXd direction = svd.matrixV().col(k);
     const double width = counted ? scatter / singular[k] : std::numeric_limits<double>::infinity();

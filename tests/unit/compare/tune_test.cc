@@ -29,7 +29,7 @@ scene::Scene small(const std::vector<std::string>& more = {}) {
   return scene::load_scene(scenes + "sphere-on-sphere-body.toml", settings);
 }
 
-/// What a fast model with these constants answers, as a reference that is good to 1 % of its peak force.
+/// What a fast model with these constants answers, as a reference with narrow bands.
 SolveReference made_with(const std::map<std::string, double>& constants) {
   return [constants](const scene::Scene& asked, const scene::Surface&) {
     scene::Scene scene = asked;
@@ -50,7 +50,7 @@ SolveReference made_with(const std::map<std::string, double>& constants) {
     result.between_nodes_penetration_m.assign(count, 0.0);
     result.equilibrium_rel.assign(count, 0.0);
     result.volume_change_rel.assign(count, 0.0);
-    result.shape_uncertainty_rel = 0.01;
+    result.shape_uncertainty_rel = 1e-4;
     result.model = "made by the fast model";
     return result;
   };
@@ -67,6 +67,7 @@ scene::TuningStudy study(std::vector<scene::TuningParameter> parameters) {
   out.formulations = {scene::Formulation::corrected};
   out.laws = {scene::ContactLaw::duffing};
   out.starts = 2;
+  out.shape_floor = 1e-4;
   out.training = {{"pole", "", small(), {0.0, 0.003}}};
   out.held_out = {{"deeper", "depth", small(), {0.003, 1.0}},
                   {"Larger ball", "tool", small({"tool.radius_m=0.0104"}), {0.0, 1.0}}};
@@ -142,17 +143,16 @@ TEST(Tune, JudgesOnlyTheInstantsOfTheAskedDepths) {
 
 TEST(Tune, SaysWhatTheDataCannotDetermine) {
   // A local factor of strength zero has no radius.
-  scene::TuningStudy asked = study({free("fast.s_c_m2", 1e-4, 1e-1, scene::TuningStage::shape),
+  scene::TuningStudy asked = study({free("fast.s_c_m2", 1e-2, 1.0, scene::TuningStage::shape),
                                     free("fast.r_R_m", 0.005, 0.03, scene::TuningStage::shape)});
   for (auto* list : {&asked.training, &asked.held_out}) {
     for (scene::TuningContact& contact : *list) contact.scene.fast.C_n = 0.0;
   }
-  const Tuning tuning = tune(asked, made_with({{"fast.s_c_m2", 1.0e-2}}));
+  const Tuning tuning = tune(asked, made_with({{"fast.s_c_m2", 0.1}}));
   const TunedModel& model = tuning.models.at(0);
   EXPECT_TRUE(found(model, "fast.r_R_m").open);
   EXPECT_FALSE(found(model, "fast.s_c_m2").open);
   EXPECT_THAT(model.stages.at(0).notes, Contains(HasSubstr("cannot determine fast.r_R_m")));
-  EXPECT_THAT(model.stages.at(0).notes, Contains(HasSubstr("rank deficient: 1 of 2")));
 }
 
 TEST(Tune, NamesAnActiveBoundInEveryAnswer) {
