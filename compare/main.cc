@@ -3,6 +3,7 @@
 #include "compare/gate_verb.h"
 #include "compare/results_verb.h"
 #include "compare/study_verb.h"
+#include "compare/tune_verb.h"
 #include "compare/verbs.h"
 #include "compare/verify_verb.h"
 #include "compare/view_verb.h"
@@ -77,6 +78,8 @@ int main(int argc, char** argv) {
   compare::add_report_verb(app, results_options, exit_code);
   compare::ViewOptions view_options;
   compare::add_view_verb(app, view_options, exit_code);
+  compare::TuneOptions tune_options;
+  add_reference(compare::add_tune_verb(app, tune_options, reference, exit_code));
   compare::ExportOptions export_options;
   CLI::App* export_verb = compare::add_export_verb(app, options, export_options, reference, exit_code);
   export_verb->add_option("--out", options.out, "result folder (default out/<scene>-export)");

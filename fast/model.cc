@@ -41,6 +41,15 @@ FastModel::FastModel(const scene::Scene& scene)
   if (max_regions > 1) clusters = std::make_unique<const ClusterGrid>(cluster_grid(tool, scene.fast.r_th_m));
 }
 
+void FastModel::set_constants(const scene::Scene& scene) {
+  law = ContactLaw(scene.contact);
+  friction = scene.contact.friction ? std::optional<FrictionLaw>(*scene.contact.friction) : std::nullopt;
+  skeleton = beam_skeleton(*anchors, scene);
+  local = {scene.fast.C_n, scene.fast.C_r_m, scene.fast.r_R_m};
+  formulas = formulas_of(scene, skeleton);
+  if (max_regions > 1) clusters = std::make_unique<const ClusterGrid>(cluster_grid(tool, scene.fast.r_th_m));
+}
+
 std::size_t FastModel::memory_bytes() const noexcept {
   const auto vertices = static_cast<std::size_t>(surface.vertex_count());
   return sizeof(FastModel) + tool.memory_bytes() + rest.memory_bytes() + normals.memory_bytes() +

@@ -39,6 +39,9 @@ struct FastModel {
   /// @param scene validated
   explicit FastModel(const scene::Scene& scene);
 
+  /// Takes over the constants of the laws, the skeleton and the local factor from a scene that differs in nothing else.
+  void set_constants(const scene::Scene& scene);
+
   std::unique_ptr<const scene::Shape> body;  ///< rest shape
   Detection detection;
   ToolSamples tool;

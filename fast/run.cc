@@ -3,6 +3,7 @@
 #include "fast/separation.h"
 #include "fast/several_regions.h"
 #include "fast/step.h"
+#include "fast/ticks.h"
 
 #include <xxhash.h>
 #include <algorithm>
@@ -16,32 +17,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double microseconds(Clock::duration duration) { return std::chrono::duration<double, std::micro>(duration).count(); }
-
-/// A tick of virtual time; `instant` is the record it makes, or -1.
-struct Tick {
-  double time_s;
-  int instant;
-};
-
-/// Ticks at the scene's rate. The tick nearest to an instant takes the instant's own time, so that both sides answer at
-/// exactly equal poses.
-std::vector<Tick> ticks_of(const scene::Scene& scene) {
-  const double begin_s = scene.track.front().time_s, end_s = scene.track.back().time_s;
-  const std::vector<double> instants_s = scene::instants_s(scene);
-  std::vector<Tick> ticks;
-  std::size_t next = 0;
-  const auto last = static_cast<std::int64_t>(std::llround((end_s - begin_s) * scene.fast.rate_hz));
-  for (std::int64_t k = 0; k <= last; ++k) {
-    const auto nearest = [&](double time_s) { return std::llround((time_s - begin_s) * scene.fast.rate_hz) <= k; };
-    const bool regular = next == instants_s.size() || !nearest(instants_s[next]);
-    if (regular) ticks.push_back({begin_s + static_cast<double>(k) / scene.fast.rate_hz, -1});
-    // Instants closer together than the ticks each get one of their own.
-    for (; next < instants_s.size() && nearest(instants_s[next]); ++next) {
-      ticks.push_back({instants_s[next], static_cast<int>(next)});
-    }
-  }
-  return ticks;
-}
 
 /// Hash over every tick's force and the shape after the last.
 class StateHash {
@@ -62,16 +37,6 @@ class StateHash {
   };
   std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
 };
-
-Eigen::Matrix3Xd matrix_of(const Columns3& columns) {
-  Eigen::Matrix3Xd matrix(3, static_cast<Eigen::Index>(columns[0].size()));
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto& column = columns[static_cast<std::size_t>(axis)];
-    matrix.row(axis) =
-        Eigen::Map<const Eigen::RowVectorXf>(column.data(), static_cast<Eigen::Index>(column.size())).cast<double>();
-  }
-  return matrix;
-}
 
 scene::InstantRecord record_of(const scene::Scene& scene, const FastModel& model, const FastState& state, double time_s,
                                const scene::Pose& pose) {

@@ -93,4 +93,14 @@ void SurfaceField::reset(const SurfacePatches& rest) noexcept {
   }
 }
 
+Eigen::Matrix3Xd matrix_of(const Columns3& columns) {
+  Eigen::Matrix3Xd matrix(3, static_cast<Eigen::Index>(columns[0].size()));
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& column = columns[static_cast<std::size_t>(axis)];
+    matrix.row(axis) =
+        Eigen::Map<const Eigen::RowVectorXf>(column.data(), static_cast<Eigen::Index>(column.size())).cast<double>();
+  }
+  return matrix;
+}
+
 }  // namespace touchstone::fast

@@ -13,6 +13,9 @@
 namespace touchstone::fast {
 
 using Columns3 = std::array<std::vector<float>, 3>;
+
+/// The same as one column per vertex.
+[[nodiscard]] Eigen::Matrix3Xd matrix_of(const Columns3& columns);
 using Columns4 = std::array<std::vector<float>, patch_corners_max>;
 
 inline constexpr std::int32_t block_vertices = 32;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 
 namespace touchstone::scene {
 namespace {
@@ -52,7 +53,8 @@ void check_start(const Scene& scene, const Shape& body, std::vector<Violation>& 
   }
 }
 
-void check_contact_law(const Scene& scene, const Shape& body, std::vector<Violation>& found) {
+/// @param deepest_m  asked only where it matters
+void check_contact_law(const Scene& scene, const std::function<double()>& deepest_m, std::vector<Violation>& found) {
   const Contact& c = scene.contact;
   const double k1 = c.law == ContactLaw::area_aware ? c.k1_per_radius_n_per_m2 : c.k1_n_per_m;
   if (k1 == 0.0 && c.k3_n_per_m3 <= 0.0) {
@@ -60,7 +62,7 @@ void check_contact_law(const Scene& scene, const Shape& body, std::vector<Violat
   } else if (c.k3_n_per_m3 < 0.0 && c.law == ContactLaw::duffing) {
     // Errata E1: beyond D* = sqrt(k1 / (3 |k3|)) the softening law's force falls.
     const double peak_m = std::sqrt(c.k1_n_per_m / (-3.0 * c.k3_n_per_m3));
-    const double deepest = deepest_m(scene, body);
+    const double deepest = deepest_m();
     if (deepest > peak_m) {
       found.push_back({"contact.k3_n_per_m3",
                        "the softening law peaks at " + number(peak_m * 1e3) + " mm but the track reaches " +
@@ -146,6 +148,15 @@ void check_friction(const Contact& contact, std::vector<Violation>& found) {
 
 }  // namespace
 
+std::vector<Violation> broken_constants(const Scene& scene, double deepest_m) {
+  std::vector<Violation> found;
+  check_friction(scene.contact, found);
+  check_local_factor(scene, found);
+  check_contact_law(
+      scene, [deepest_m] { return deepest_m; }, found);
+  return found;
+}
+
 std::vector<Violation> broken_rules(const Scene& scene) {
   std::vector<Violation> found;
   check_profile(scene.body, "body", found);
@@ -160,7 +171,8 @@ std::vector<Violation> broken_rules(const Scene& scene) {
   check_support(scene.body, *body, found);
   check_inclusions(scene.body, *body, found);
   check_start(scene, *body, found);
-  check_contact_law(scene, *body, found);
+  check_contact_law(
+      scene, [&] { return deepest_m(scene, *body); }, found);
   return found;
 }
 

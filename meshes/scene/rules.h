@@ -16,4 +16,8 @@ struct Violation {
 /// Every broken rule of a scene whose single values are all in range.
 [[nodiscard]] std::vector<Violation> broken_rules(const Scene& scene);
 
+/// Those of the fast model's constants alone, for a search that changes nothing else.
+/// @param deepest_m  the track's largest rest depth
+[[nodiscard]] std::vector<Violation> broken_constants(const Scene& scene, double deepest_m);
+
 }  // namespace touchstone::scene

@@ -1,6 +1,7 @@
 #include "scene/scene_io.h"
 
 #include "scene/fields.h"
+#include "scene/files.h"
 #include "scene/hash.h"
 #include "scene/nearest_name.h"
 #include "scene/rules.h"
@@ -395,6 +396,30 @@ void merge(toml::table&& from, toml::table& into) {
   }
 }
 
+/// What the document says over what the file it includes says, if any, which stands beside it and includes nothing.
+void take_in_included(const std::filesystem::path& file, toml::table& document) {
+  const toml::node* node = document.get("include");
+  if (node == nullptr) return;
+  const auto refuse = [&](const std::string& message) {
+    const toml::source_position where = node->source().begin;
+    throw InputError({{file.string(), static_cast<int>(where.line), static_cast<int>(where.column), message}});
+  };
+  if (!node->is_string()) refuse("include = " + written(*node) + "; expected the path of a TOML file, from this one");
+  const std::filesystem::path included = file.parent_path() / node->value_or(std::string());
+  const std::optional<std::string> text = read_file(included);
+  if (!text) refuse("include: cannot read " + included.string() + "; expected a TOML file with keys of a scene");
+  try {
+    toml::table all = toml::parse(*text, included.string());
+    if (all.contains("include"))
+      refuse("include: " + included.string() + " includes a file itself; expected one without");
+    document.erase("include");
+    merge(std::move(document), all);
+    document = std::move(all);
+  } catch (const toml::parse_error& error) {
+    rethrow(error, included.string());
+  }
+}
+
 /// @param before  what stands before the value: its key and " = "
 toml::table parse_value(const std::string& value, const std::string& before, const std::string& place) {
   try {
@@ -495,6 +520,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file,
   } catch (const toml::parse_error& error) {
     rethrow(error, file.string());
   }
+  take_in_included(file, document);
   for (const std::string& setting : overrides) apply_override(setting, document);
   return Reader(document, file).read();
 }

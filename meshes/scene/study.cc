@@ -1,11 +1,8 @@
 #include "scene/study.h"
 
 #include "scene/fields.h"
-#include "scene/files.h"
-#include "scene/nearest_name.h"
 #include "scene/scene_io.h"
-
-#include <toml++/toml.h>
+#include "scene/toml_reader.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,29 +11,6 @@
 
 namespace touchstone::scene {
 namespace {
-
-/// A value as TOML that reads back the same.
-std::string value_text(const toml::node& node) {
-  if (const auto* number = node.as_floating_point()) return number_text(number->get());
-  if (const auto* number = node.as_integer()) return std::to_string(number->get());
-  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
-  std::string text;
-  if (const auto* array = node.as_array()) {
-    for (const toml::node& element : *array) text += (text.empty() ? "" : ", ") + value_text(element);
-    return "[" + text + "]";
-  }
-  if (const auto* table = node.as_table()) {
-    for (const auto& [key, element] : *table) {
-      text += (text.empty() ? "" : ", ") + std::string(key.str()) + " = " + value_text(element);
-    }
-    return "{" + text + "}";
-  }
-  for (const char c : node.value_or(std::string_view())) {
-    if (c == '"' || c == '\\') text += '\\';
-    text += c;
-  }
-  return "\"" + text + "\"";
-}
 
 /// The value as people write it in a table.
 std::string label_text(const toml::node& node) {
@@ -50,9 +24,9 @@ struct Axis {
   std::vector<std::vector<StudySetting>> settings;
 };
 
-class Reader {
+class Reader : TomlReader {
  public:
-  Reader(const toml::table& document, const std::filesystem::path& file) : document_(document), file_(file) {}
+  using TomlReader::TomlReader;
 
   Study read() {
     Study study;
@@ -74,91 +48,11 @@ class Reader {
     if (faults_.empty() && study.cases.empty()) add(document_, "no case; expected [[axis]] or [[case]] rows");
     for (const Axis& each : axes) study.axes.push_back(each.name);
     unique_names(study);
-    if (!faults_.empty()) throw InputError(std::move(faults_));
+    refuse_faults();
     return study;
   }
 
  private:
-  [[nodiscard]] Fault place(const toml::source_region& source) const {
-    return {file_.string(), static_cast<int>(source.begin.line), static_cast<int>(source.begin.column), ""};
-  }
-  void add(const toml::source_region& source, const std::string& message) {
-    Fault fault = place(source);
-    fault.message = message;
-    faults_.push_back(std::move(fault));
-  }
-  void add(const toml::node& node, const std::string& message) { add(node.source(), message); }
-
-  void known_keys(const toml::table& table, const std::string& row, const std::vector<std::string>& known) {
-    for (const auto& [key, node] : table) {
-      const std::string name(key.str());
-      if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-      add(key.source(),
-          "unknown key \"" + row + name + "\"; did you mean \"" + row + nearest_name(name, known) + "\"?");
-    }
-  }
-
-  std::optional<std::string> text(const toml::table& table, const std::string& key) {
-    const toml::node* node = table.get(key);
-    if (node == nullptr) return std::nullopt;
-    if (node->is_string()) return node->value<std::string>();
-    add(*node, key + " = " + value_text(*node) + "; expected a text");
-    return std::nullopt;
-  }
-
-  std::string word(const toml::table& table, const std::string& key, const std::vector<std::string>& words,
-                   const std::optional<std::string>& otherwise = std::nullopt) {
-    const toml::node* node = table.get(key);
-    if (node == nullptr && otherwise) return *otherwise;
-    std::string expected;
-    for (const std::string& each : words) expected += (expected.empty() ? "\"" : " or \"") + each + "\"";
-    if (node == nullptr) {
-      add(table, key + ": missing; expected " + expected);
-    } else if (!node->is_string() ||
-               std::find(words.begin(), words.end(), node->value_or(std::string())) == words.end()) {
-      add(*node, key + " = " + value_text(*node) + "; expected " + expected);
-    } else {
-      return node->value_or(std::string());
-    }
-    return "";
-  }
-
-  std::vector<const toml::table*> rows(const std::string& key) {
-    std::vector<const toml::table*> list;
-    const toml::node* node = document_.get(key);
-    if (node == nullptr) return list;
-    const toml::array* array = node->as_array();
-    if (array == nullptr || !array->is_array_of_tables()) {
-      add(*node, key + ": expected [[" + key + "]] rows");
-      return list;
-    }
-    for (const toml::node& row : *array) list.push_back(row.as_table());
-    return list;
-  }
-
-  /// A table of settings, its tables within tables spelt as dotted keys.
-  std::vector<StudySetting> settings(const toml::table& table, const std::string& key) {
-    std::vector<StudySetting> list;
-    const toml::node* node = table.get(key);
-    if (node == nullptr) return list;
-    if (node->is_table()) {
-      flatten(*node->as_table(), "", list);
-    } else {
-      add(*node, key + ": expected a table of keys as for --set");
-    }
-    return list;
-  }
-  void flatten(const toml::table& table, const std::string& above, std::vector<StudySetting>& list) const {
-    for (const auto& [key, node] : table) {
-      const std::string name = above + std::string(key.str());
-      if (node.is_table()) {
-        flatten(*node.as_table(), name + ".", list);
-      } else {
-        list.push_back({name, value_text(node), place(node.source())});
-      }
-    }
-  }
-
   Axis axis(const toml::table& table) {
     known_keys(table, "axis.", {"name", "key", "values", "range", "zip", "labels"});
     Axis axis;
@@ -330,10 +224,6 @@ class Reader {
       }
     }
   }
-
-  const toml::table& document_;
-  const std::filesystem::path& file_;
-  std::vector<Fault> faults_;
 };
 
 /// A fault of a case, told where the study gives the value.
@@ -350,18 +240,8 @@ Fault in_study(const Fault& fault, const StudyCase& one) {
 }  // namespace
 
 Study load_study(const std::filesystem::path& file) {
-  const std::optional<std::string> text = read_file(file);
-  if (!text) {
-    throw InputError({{file.string(), 0, 0, "cannot read the study; expected a readable TOML file"}});
-  }
-  try {
-    const toml::table document = toml::parse(*text, file.string());
-    return Reader(document, file).read();
-  } catch (const toml::parse_error& error) {
-    const toml::source_position where = error.source().begin;
-    throw InputError({{file.string(), static_cast<int>(where.line), static_cast<int>(where.column),
-                       "not valid TOML: " + std::string(error.description())}});
-  }
+  const toml::table document = read_document(file);
+  return Reader(document, file).read();
 }
 
 std::vector<Scene> load_cases(const Study& study, const std::function<std::vector<Fault>(const Scene&)>& check) {

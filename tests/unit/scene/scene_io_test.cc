@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <set>
@@ -227,6 +228,53 @@ TEST(Documentation, SceneReferenceIsTheTable) {
   text << in.rdbuf();
   EXPECT_THAT(text.str(), HasSubstr(scene_reference_markdown()))
       << "reports/scene-reference.md is not the table of fields.cc; rewrite it with: touchstone --scene-reference";
+}
+
+class IncludeTest : public testing::Test {
+ protected:
+  IncludeTest() : dir_(std::filesystem::temp_directory_path() / ("include-" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(dir_);
+  }
+  ~IncludeTest() override { std::filesystem::remove_all(dir_); }
+  void write(const std::string& text) { std::ofstream(dir_ / "parameters.toml") << text; }
+  [[nodiscard]] Scene read(const std::string& more = "") const {
+    return parse_scene("include = \"parameters.toml\"\n" + more + good, dir_ / "scene.toml");
+  }
+  [[nodiscard]] std::string refusal(const std::string& more = "") const {
+    try {
+      (void)read(more);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  std::filesystem::path dir_;
+};
+
+TEST_F(IncludeTest, GivesWhatTheSceneDoesNotSay) {
+  write("[fast]\ns_c_m2 = 0.5\n[contact]\nk1_n_per_m = 77.0\n");
+  const Scene alone = parse_scene(good, "a.toml");
+  ASSERT_NE(alone.fast.s_c_m2, 0.5);
+  EXPECT_EQ(read().fast.s_c_m2, 0.5);
+  // The scene's own value wins, and --set over both.
+  EXPECT_EQ(read().contact.k1_n_per_m, alone.contact.k1_n_per_m);
+  EXPECT_EQ(
+      parse_scene("include = \"parameters.toml\"\n" + good, dir_ / "scene.toml", {"fast.s_c_m2=0.25"}).fast.s_c_m2,
+      0.25);
+}
+
+TEST_F(IncludeTest, TellsAFaultInTheFileItStandsIn) {
+  const std::string included = (dir_ / "parameters.toml").string();
+  write("[fast]\ns_c_m2 = -1.0\n");
+  EXPECT_THAT(refusal(), HasSubstr(included + ":2:10: fast.s_c_m2 = -1.0; expected a number in"));
+  write("[fast]\ns_d_m2 = 1.0\n");
+  EXPECT_THAT(refusal(), HasSubstr(included + ":2:1: unknown key"));
+  write("[fast\n");
+  EXPECT_THAT(refusal(), HasSubstr(included + ":1"));
+  write("include = \"other.toml\"\n");
+  EXPECT_THAT(refusal(), HasSubstr("scene.toml:1:11: include: " + included + " includes a file itself"));
+  std::filesystem::remove(dir_ / "parameters.toml");
+  EXPECT_THAT(refusal(), HasSubstr("scene.toml:1:11: include: cannot read " + included));
 }
 
 TEST(ShippedScenes, AllLoad) {
