@@ -39,7 +39,8 @@ class ViewTest : public ::testing::Test {
   ViewTest() {
     testing::Sides sides = testing::pressed(4, 600);
     sides.manifest.command = "touchstone compare";
-    sides.manifest.resolved_scene = scene::resolved_toml(sides.scene);
+    sides.manifest.resolved_scene =
+        scene::resolved_toml(scene::load_scene(TOUCHSTONE_SOURCE_DIR "/meshes/scenes/ball-on-cube-press.toml"));
     (void)write_comparison(folder_.path(), sides.scene, sides.run, sides.result, sides.manifest);
   }
 
