@@ -299,6 +299,7 @@ struct ResultView::Parts {
     camera->SetPosition(0.352, -0.791, 0.5);
     camera->SetViewUp(0.0, 0.0, 1.0);
     space->ResetCamera(surfaces.front()->GetBounds());
+    camera->Zoom(0.8);  // room for the words and the colour bar
   }
 
   void make_curve() {
