@@ -185,6 +185,9 @@ TEST(ShippedStudies, HaveScenesWithoutFault) {
   for (const auto& entry :
        std::filesystem::directory_iterator(std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/studies")) {
     if (entry.path().extension() != ".toml") continue;
+    std::ifstream in(entry.path());
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    if (text.find("kind = \"tuning\"") != std::string::npos) continue;  // tuning_study_test.cc
     ++count;
     EXPECT_GT(load_cases(load_study(entry)).size(), 1u) << entry.path();
   }

@@ -115,5 +115,13 @@ TEST_F(TuningStudyTest, WritesAParameterWhereTheSceneKeepsIt) {
   EXPECT_EQ(scene.fast.s_c_m2, 0.5);
 }
 
+TEST(ShippedTuningStudies, HaveScenesWithoutFaultAndContactsHeldOut) {
+  for (const char* name : {"ball-on-cube", "ellipsoid", "friction", "mallet", "inclusion"}) {
+    const TuningStudy study = load_tuning_study(TOUCHSTONE_SOURCE_DIR "/meshes/studies/" + std::string(name) + ".toml");
+    EXPECT_FALSE(study.training.empty()) << name;
+    EXPECT_FALSE(study.held_out.empty()) << name;
+  }
+}
+
 }  // namespace
 }  // namespace touchstone::scene
