@@ -1,6 +1,5 @@
 #include "compare/calculix.h"
 
-#include "reference/linear/threads.h"
 #include "scene/error.h"
 
 #include <fcntl.h>
@@ -64,14 +63,13 @@ std::vector<CalculixStep> read_calculix(const std::filesystem::path& dat, const 
 
 CalculixRun run_calculix(const std::filesystem::path& folder, const std::string& name, const reference::Deck& deck) {
   std::filesystem::remove(folder / (name + ".dat"));
-  const std::string threads = std::to_string(reference::threads_to_use());
   const std::string log = name + ".log";
   const auto begin = std::chrono::steady_clock::now();
   const pid_t child = fork();
   if (child == 0) {
     const int out = chdir(folder.c_str()) == 0 ? open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644) : -1;
     if (out >= 0 && dup2(out, STDOUT_FILENO) >= 0 && dup2(out, STDERR_FILENO) >= 0 &&
-        setenv("OMP_NUM_THREADS", threads.c_str(), 1) == 0) {
+        setenv("OMP_NUM_THREADS", "1", 1) == 0) {
       execlp("ccx", "ccx", "-i", name.c_str(), nullptr);
     }
     _exit(no_such_program);
