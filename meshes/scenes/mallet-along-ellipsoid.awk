@@ -6,7 +6,7 @@
 BEGIN {
   a = 40; b = 30; c = 25     # semi-axes [mm]; the ellipsoid's centre is at z = c
   r = 4; depth = 2           # the half ball and how deep it is pressed, along the normal [mm]
-  arm = 67.456               # from the half ball's centre to the mass centre [mm]
+  arm = 67.434               # from the half ball's centre to the mass centre [mm]
   x_end = 28                 # the point of contact goes from -x_end to x_end [mm]
   y_begin = -2; y_end = -6   # and from y_begin to y_end [mm]
   down = 8; rest = 3; along = 50; step_s = 0.03

@@ -74,7 +74,7 @@ int quarter_segments(double radius, double step) {
 
 /// A disc-like head at the bottom, face down, and a round handle up to the tail: one profile turned about z.
 TriangleMesh mallet() {
-  constexpr double step = 1.2;
+  constexpr double step = 1.2, tail_step = 0.4;
   constexpr double head_radius = 12.0, head_length = 25.0, head_edge = 3.0;
   constexpr double handle_radius = 4.0, handle_length = 70.0, neck = 2.0;
   const double top = head_length + handle_length;
@@ -87,10 +87,10 @@ TriangleMesh mallet() {
   arc(curve, {handle_radius + neck, head_length + neck}, neck, 1.5 * pi, pi, step);
   // The tail is round: half a ball.
   line_to(curve, {handle_radius, top - handle_radius}, step);
-  arc(curve, {0.0, top - handle_radius}, handle_radius, 0.0, 0.5 * pi, 0.8 * step);
+  arc(curve, {0.0, top - handle_radius}, handle_radius, 0.0, 0.5 * pi, tail_step);
   Rings rings;
   for (const Eigen::Vector2d& p : curve) {
-    const int n = quarter_segments(p.x(), step);
+    const int n = quarter_segments(p.x(), p.y() < top - handle_radius ? step : tail_step);
     std::vector<Vec3> ring;
     for (int i = 0; i < std::max(1, 4 * n); ++i) {
       const double angle = n > 0 ? 0.5 * pi * i / n : 0.0;
@@ -104,7 +104,7 @@ TriangleMesh mallet() {
 
 /// Two parallel pins, tips down at z = 0, joined by half a ring: a round tube along a U with half a ball at either end.
 TriangleMesh compass() {
-  constexpr double step = 1.0, radius = 2.5, half_apart = 12.0, pin_length = 30.0;
+  constexpr double step = 1.0, tip_step = 0.25, radius = 2.5, half_apart = 12.0, pin_length = 30.0;
   // Along the U: way from the first tip's ball centre, up, around, down.
   const double straight = pin_length - radius, around = pi * half_apart, length = 2.0 * straight + around;
   const auto frame = [&](double way, Vec3& center, Vec3& along) {
@@ -122,17 +122,17 @@ TriangleMesh compass() {
   };
   // The profile over the way: half a ball, the tube, half a ball.
   Curve curve{{0.0, -radius}};
-  arc(curve, {0.0, 0.0}, radius, -0.5 * pi, 0.0, step);
+  arc(curve, {0.0, 0.0}, radius, -0.5 * pi, 0.0, tip_step);
   line_to(curve, {radius, straight}, step);
   line_to(curve, {radius, straight + around}, step);
   line_to(curve, {radius, length}, step);
-  arc(curve, {0.0, length}, radius, 0.0, 0.5 * pi, step);
+  arc(curve, {0.0, length}, radius, 0.0, 0.5 * pi, tip_step);
   Rings rings;
   for (const Eigen::Vector2d& p : curve) {
     Vec3 center, along;
     frame(p.y(), center, along);
     const Vec3 side = Vec3::UnitY().cross(along);
-    const int n = quarter_segments(p.x(), step);
+    const int n = quarter_segments(p.x(), p.y() <= 0.0 || p.y() >= length ? tip_step : step);
     std::vector<Vec3> ring;
     for (int i = 0; i < std::max(1, 4 * n); ++i) {
       const double angle = n > 0 ? 0.5 * pi * i / n : 0.0;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <ctime>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace touchstone::reference {
@@ -86,16 +87,21 @@ class Repeat {
     const double lead_s = last > 0 ? given_.times_s[1] - given_.times_s[0] : 1.0;
     const auto follow = [&](Solved<dim> current, std::size_t first) {
       AdvanceReport report;
+      std::optional<Solved<dim>> before;
       for (std::size_t instant = first; instant <= last; ++instant) {
         const double from_s = current.time_s, to_s = given_.times_s[instant];
         for (int k = 1; k <= change.load_steps; ++k) {
           const double share = static_cast<double>(k) / change.load_steps;
-          report = path.advance(nullptr, current, k == change.load_steps ? to_s : from_s + share * (to_s - from_s),
-                                solved, [&](int iteration, double) { watch_(change.part, iteration); }, {});
+          // With friction the state found depends a little on where Newton starts: like the level's own but for what
+          // is changed. Shorter load steps start without the linear predictor, so that their change holds this too.
+          const bool predict = before && change.load_steps == 1;
+          report = path.advance(predict ? &*before : nullptr, current,
+                                k == change.load_steps ? to_s : from_s + share * (to_s - from_s), solved,
+                                [&](int iteration, double) { watch_(change.part, iteration); }, {});
           step.newton_iterations += report.newton_iterations;
           step.halvings += report.halvings;
           if (!report.converged) return report;
-          current = solved;
+          before = std::exchange(current, solved);
         }
       }
       return report;

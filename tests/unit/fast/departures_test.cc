@@ -306,9 +306,9 @@ TEST(Departures, E7) {
     return walk.force_n().z();
   };
   states("E7 |", "173.8 N", mallet_n("head", false));
-  states("E7 |", "35.2 N", mallet_n("tail", false));
+  states("E7 |", "36.8 N", mallet_n("tail", false));
   states("E7 |", "2.16 N", mallet_n("head", true));
-  states("E7 |", "1.03 N", mallet_n("tail", true));
+  states("E7 |", "1.11 N", mallet_n("tail", true));
 }
 
 /// Stiffness of a contact's common end.
@@ -592,13 +592,13 @@ TEST(Departures, E18) {
   };
   const auto published = run_of(Formulation::published), corrected = run_of(Formulation::corrected);
   states("E18 |", "0.62", published.order_spread_rel.value());
-  states("E18 |", "0.41", corrected.order_spread_rel.value());
-  states("E18 |", "1.6e-3", published.equilibrium_rel.value());
-  states("E18 |", "9.4e-5", corrected.equilibrium_rel.value());
+  states("E18 |", "0.40", corrected.order_spread_rel.value());
+  states("E18 |", "1.7e-3", published.equilibrium_rel.value());
+  states("E18 |", "9.9e-5", corrected.equilibrium_rel.value());
   Walk walk("compass-two-pins", Formulation::corrected);
   walk.go(1.0, 50);
-  states("E18 |", "0.83 N", walk.region(0).force.force_n.norm());
-  states("E18 |", "0.24 N", walk.region(1).force.force_n.norm());
+  states("E18 |", "0.88 N", walk.region(0).force.force_n.norm());
+  states("E18 |", "0.27 N", walk.region(1).force.force_n.norm());
 }
 
 TEST(Departures, E19) {
@@ -672,7 +672,7 @@ TEST(Departures, OriginIsTakenOutToTheSurface) {
 TEST(Departures, TorqueIsThatOfTheForceAtTheLoadCentre) {
   Walk walk("mallet-along-ellipsoid", Formulation::corrected);
   walk.go(0.9, 90);
-  states("none | VIII", "0.035 N m", total_torque_nm(walk.state).norm());
+  states("none | VIII", "0.038 N m", total_torque_nm(walk.state).norm());
 }
 
 /// The ball rolls 5 mm without slipping, or is dragged as far.
@@ -719,7 +719,7 @@ TEST(Departures, AreasOfTheCurrentBody) {
   scene::Scene scene = test::shipped_scene("compass-two-pins", Formulation::corrected);
   scene.body = test::shipped_scene("sphere-on-sphere-body", Formulation::corrected).body;
   Walk walk(scene);
-  const double touching_m = 0.082195 + 0.002 - (0.030 - std::sqrt(0.030 * 0.030 - 0.012 * 0.012));
+  const double touching_m = 0.08214 + 0.002 - (0.030 - std::sqrt(0.030 * 0.030 - 0.012 * 0.012));
   for (const double depth_m : {-0.001, 0.0, 0.001, 0.002}) walk.step_to(test::at(0.0, 0.0, touching_m - depth_m));
   ASSERT_EQ(walk.state.region_count, 2);
   double change = 0.0;
@@ -739,8 +739,8 @@ TEST(Departures, RegionsOfTheCompass) {
     EXPECT_EQ(walk.state.region_count, std::min(max_regions, 2));
     return walk.force_n().norm();
   };
-  states("none | II-B, regions", "1.07 N", force_n(10));
-  states("none | II-B, regions", "0.83 N", force_n(1));
+  states("none | II-B, regions", "1.15 N", force_n(10));
+  states("none | II-B, regions", "0.88 N", force_n(1));
 }
 
 TEST(Departures, LaterRegionsPushOnEarlierOnes) {
@@ -749,7 +749,7 @@ TEST(Departures, LaterRegionsPushOnEarlierOnes) {
   walk.go(1.0, 50);
   const ContactRegion& first = walk.region(0);
   const double alone_n = first.force.normal_n, later_n = (first.force.force_n + alone_n * first.d).norm();
-  states("none | VI-A", "3.1e-5 N", later_n);
+  states("none | VI-A", "3.7e-5 N", later_n);
 }
 
 TEST(Departures, SeparationBeforeContact) {
