@@ -257,7 +257,7 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
   }
   // With friction the nodes' status may come round again and again, as Newton steps over an answer and back: half a step
   // leads out.
-  constexpr int most_cycles = 10;
+  constexpr int most_cycles = 4;
   int cycles = 0;
   std::set<std::string> passed;
   if (friction_) begin_increment(state);
