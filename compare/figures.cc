@@ -188,8 +188,9 @@ void add_contact_figures(const Errors& errors, Collector& out) {
 }  // namespace
 
 scene::Figures make_figures(const Errors& errors, const fast::Run& run, const reference::Result& result) {
-  Collector out(errors.force_peak_reference_n == 0.0 ? "undefined: the reference is never in contact"
-                                                     : "undefined: nothing to relate it to");
+  const bool contact = errors.force_peak_reference_n > 0.0;
+  const std::string apart = "undefined: the reference is never in contact";
+  Collector out(contact ? "undefined: nothing to relate it to" : apart);
   out.measure("force.nrmse", errors.force_nrmse);
   out.measure("force.peak_rel", errors.force_peak_rel);
   out.measure("force.rel_above_10pct_depth", errors.force_rel_deep);
@@ -201,7 +202,7 @@ scene::Figures make_figures(const Errors& errors, const fast::Run& run, const re
   out.measure("shape.inside_r_rel_l2", errors.shape_inside_r_rel_l2);
   out.measure("shape.outside_r_rel_l2", errors.shape_outside_r_rel_l2);
   out.measure_or_why("shape.side_faces_rel_l2", errors.shape_side_faces_rel_l2,
-                     "undefined: no face that moves is without contact");
+                     contact ? "undefined: every face is touched" : apart);
   out.measure("shape.normals_rms_rad", errors.shape_normals_rms_rad, "rad");
   out.measure("shape.hausdorff_m", errors.shape_hausdorff_m, "m");
   out.number("shape.volume_change_rel", errors.volume_change_fast_rel);
