@@ -41,10 +41,9 @@ std::string ceiling_sentence(const Tuning& tuning, const TunedModel& model, cons
   const bool force_below = against(e.force_nrmse, force) == "below";
   const bool shape_below = against(e.shape_rel_l2, expected_shape) == "below";
   if (force_below || shape_below) {
-    text += fmt::format(" A {} error lower than the ceiling needs an explanation.", force_below && shape_below
-                                                                                        ? "force and a shape"
-                                                                                    : force_below ? "force"
-                                                                                                  : "shape");
+    text += force_below && shape_below ? " A force and a shape error lower than the ceiling need an explanation."
+                                       : fmt::format(" A {} error lower than the ceiling needs an explanation.",
+                                                     force_below ? "force" : "shape");
   }
   if (against(e.shape_rel_l2, expected_exact_anchors) == "below") {
     text += fmt::format(" The shape is even below the {} to {} that exact anchor points would leave.",

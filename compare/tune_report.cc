@@ -17,11 +17,13 @@ namespace {
 
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
-std::string measure_text(const Measure& measure, const std::string& unit) {
-  if (!measure.value) return "–";
-  std::string text = quantity_text(*measure.value, unit);
-  if (measure.uncertainty) text += " ± " + quantity_text(*measure.uncertainty, unit);
-  return measure.distinguishable() ? text : text + ", not distinguishable";
+std::string measure_cell(const Measure& measure, const std::string& unit) {
+  if (!measure.value) return number_cell("–");
+  const auto under = [](const std::string& text) { return tag("span", text, "class=\"under\""); };
+  std::string out = escape_xml(quantity_text(*measure.value, unit));
+  if (measure.uncertainty) out += under("± " + quantity_text(*measure.uncertainty, unit));
+  if (!measure.distinguishable()) out += under("not distinguishable");
+  return "<td class=\"n\">" + out + "</td>";
 }
 
 /// The worst of the contacts in one figure; null where none has it.
@@ -94,7 +96,7 @@ std::string errors_table(const Tuning& tuning, bool held_out) {
   std::string out = tag("h2", held_out ? "On held-out contacts" : "On training contacts") +
                     "\n<div class=\"scroll\"><table>\n<tr><th>Contact</th>" +
                     std::string(held_out ? "<th>differs in</th>" : "");
-  for (const ErrorColumn& column : columns) out += tag("th", column.head, "class=\"n\"");
+  for (const ErrorColumn& column : columns) out += tag("th", column.head, "class=\"wrap\"");
   out += "</tr>\n";
   for (const TunedModel& model : tuning.models) {
     out += fmt::format("<tr class=\"group\"><th colspan=\"{}\">{}</th></tr>\n", columns.size() + (held_out ? 2 : 1),
@@ -105,7 +107,7 @@ std::string errors_table(const Tuning& tuning, bool held_out) {
       const Errors& e = outcome.errors;
       out += "<tr>" + cell(data.contact.name) + (held_out ? cell(data.contact.differs) : "");
       for (const ErrorColumn& column : columns) {
-        out += number_cell(measure_text(e.*column.figure, column.unit));
+        out += measure_cell(e.*column.figure, column.unit);
       }
       out += "</tr>\n";
     }

@@ -212,7 +212,7 @@ TEST(Ceilings, AnErrorBelowThemIsAskedForAnExplanation) {
   const std::string found = ceiling_sentence(tuning, model, model.outcomes.at(1));
   EXPECT_THAT(found, HasSubstr("deeper (held out): force "));
   EXPECT_THAT(found, HasSubstr("below the 10 to 35"));
-  EXPECT_THAT(found, HasSubstr("A force and a shape error lower than the ceiling needs an explanation."));
+  EXPECT_THAT(found, HasSubstr("A force and a shape error lower than the ceiling need an explanation."));
   std::map<std::string, std::string> texts;
   for (const scene::Figure& figure : tuning_figures(tuning)) texts[figure.key] = figure.text;
   EXPECT_EQ(texts.at("held_out.deeper.force.nrmse_against_ceiling"), "below");
