@@ -25,7 +25,7 @@ std::string_view against(const Measure& error, const Expected& expected) {
   if (!error.value) return "";
   const double band = error.uncertainty.value_or(0.0);
   if (*error.value + band < expected.low) return "below";
-  return *error.value - band > expected.high ? "above" : "within";
+  return *error.value - band <= expected.high ? "within" : "above";
 }
 
 bool has_ceiling(const scene::Scene& scene) { return !scene.contact.friction; }

@@ -23,7 +23,7 @@ inline constexpr Expected expected_shape{0.65, 0.80};
 inline constexpr Expected expected_exact_anchors{0.40, 0.60};
 
 /// "below", "within" or "above" the range; below and above only where the reference's uncertainty does not reach into
-/// it, "" without a value.
+/// it, "" without a value. What is not finite is above.
 [[nodiscard]] std::string_view against(const Measure& error, const Expected& expected);
 
 /// Whether the prototype says anything about such a contact: it had no friction.

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <limits>
 
 namespace touchstone::compare {
 namespace {
@@ -191,6 +192,7 @@ TEST(Ceilings, AreMissedOnlyBeyondTheUncertainty) {
   EXPECT_EQ(against({0.2, std::nullopt}, expected), "within");
   EXPECT_EQ(against({0.35, 0.01}, expected), "above");
   EXPECT_EQ(against({0.35, 0.06}, expected), "within");
+  EXPECT_EQ(against({std::numeric_limits<double>::quiet_NaN(), 0.01}, expected), "above");
   EXPECT_EQ(against({}, expected), "");
 }
 
