@@ -26,6 +26,11 @@ std::vector<scene::Column> curve_columns(const fast::Run& run, const reference::
   add("reference_force_n", [](const InstantErrors& e) { return e.force_reference_n; });
   add("error_force_n", [](const InstantErrors& e) { return e.force_error_n; });
   add("error_force_rel", [&](const InstantErrors& e) { return e.force_error_rel.value_or(none); });
+  if (errors.friction) {
+    add("way_m", [](const InstantErrors& e) { return e.way_m; });
+    add("fast_friction_n", [](const InstantErrors& e) { return e.friction_fast_n; });
+    add("reference_friction_n", [](const InstantErrors& e) { return e.friction_reference_n; });
+  }
   add("error_shape_rel_l2", [&](const InstantErrors& e) { return e.shape_rel_l2.value.value_or(none); });
   add("reference_shape_uncertainty_rel_l2",
       [&](const InstantErrors& e) { return e.shape_rel_l2.uncertainty.value_or(none); });

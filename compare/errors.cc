@@ -1,12 +1,17 @@
 #include "compare/errors.h"
 
+#include "compare/contact_errors.h"
+#include "compare/error_sums.h"
 #include "compare/moved_surface.h"
 #include "reference/tool/tool_distance.h"
+#include "scene/revolution.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <set>
 #include <stdexcept>
 
 namespace touchstone::compare {
@@ -15,41 +20,10 @@ namespace {
 constexpr double same_time_s = 1e-12;
 constexpr double same_place_m = 1e-9;
 
-/// Known only when finite: a reference with too few levels has no band.
-std::optional<double> known(double uncertainty) {
-  return std::isfinite(uncertainty) ? std::optional(uncertainty) : std::nullopt;
-}
-
-/// Keeps the larger; once NaN, stays NaN, so that no bad number is lost in a maximum.
-void keep_larger(double& largest, double value) {
-  if (std::isnan(value) || value > largest) largest = value;
-}
-
 /// Keeps the value of larger magnitude with its sign.
 void keep_farther(double& farthest, double value) {
   if (std::isnan(value) || std::abs(value) > std::abs(farthest)) farthest = value;
 }
-
-void keep_larger(std::optional<double>& largest, double value) {
-  double kept = largest.value_or(value);
-  keep_larger(kept, value);
-  largest = kept;
-}
-
-/// Sums whose ratio's root is a relative L2 error.
-struct SquareSums {
-  double error = 0.0, uncertainty = 0.0, scale = 0.0;
-
-  void add(double weight, double error_by, double uncertainty_by, double scale_by) {
-    error += weight * error_by * error_by;
-    uncertainty += weight * uncertainty_by * uncertainty_by;
-    scale += weight * scale_by * scale_by;
-  }
-  [[nodiscard]] Measure relative() const {
-    if (scale == 0.0) return {};
-    return {std::sqrt(error / scale), known(std::sqrt(uncertainty / scale))};
-  }
-};
 
 void require_aligned(const fast::Run& run, const reference::Result& result) {
   const std::size_t instants = run.instants.size();
@@ -79,7 +53,7 @@ void require_aligned(const fast::Run& run, const reference::Result& result) {
 }
 
 void compare_forces(const fast::Run& run, const reference::Result& result, Errors& errors) {
-  double error2 = 0.0, band2 = 0.0;
+  MeanSquares squares;
   SquareSums deep;
   int deep_instants = 0;
   bool deep_without_force = false;
@@ -93,8 +67,7 @@ void compare_forces(const fast::Run& run, const reference::Result& result, Error
     e.force_uncertainty_n = result.force_uncertainty_n[t];
     e.force_error_n = (fast_n - reference_n).norm();
     if (e.in_contact && e.force_reference_n > 0.0) e.force_error_rel = e.force_error_n / e.force_reference_n;
-    error2 += e.force_error_n * e.force_error_n;
-    band2 += e.force_uncertainty_n * e.force_uncertainty_n;
+    squares.add(e.force_error_n, e.force_uncertainty_n);
     if (e.force_reference_n > errors.force_peak_reference_n) band_at_peak_n = e.force_uncertainty_n;
     keep_larger(errors.force_peak_fast_n, e.force_fast_n);
     keep_larger(errors.force_peak_reference_n, e.force_reference_n);
@@ -108,8 +81,7 @@ void compare_forces(const fast::Run& run, const reference::Result& result, Error
   }
   const double peak_n = errors.force_peak_reference_n;
   if (peak_n == 0.0) return;
-  const double count = static_cast<double>(errors.instants.size());
-  errors.force_nrmse = {std::sqrt(error2 / count) / peak_n, known(std::sqrt(band2 / count) / peak_n)};
+  errors.force_nrmse = squares.over(peak_n);
   errors.force_peak_rel = {(errors.force_peak_fast_n - peak_n) / peak_n, known(band_at_peak_n / peak_n)};
   if (deep_instants > 0 && !deep_without_force) errors.force_rel_deep = deep.relative();
 }
@@ -122,6 +94,47 @@ std::vector<scene::Vec3> contact_points_m(const scene::Shape& body, const refere
   return points_m;
 }
 
+/// Faces of the body, which meet at edges, by patch; empty for a body of one smooth face or a surface with other
+/// patches than the body's.
+std::vector<int> faces_of_patches(const scene::Shape& body, const scene::Surface& surface) {
+  std::vector<int> face(static_cast<std::size_t>(body.patch_count()));
+  if (surface.patch_begin.size() != face.size() + 1) return {};
+  if (dynamic_cast<const scene::Box*>(&body) != nullptr) {
+    std::iota(face.begin(), face.end(), 0);
+    return face;
+  }
+  const auto* revolution = dynamic_cast<const scene::Revolution*>(&body);
+  if (revolution == nullptr) return {};
+  int faces = 1;
+  for (int piece = 0; piece < revolution->piece_count(); ++piece) {
+    const scene::RevolutionPiece& here = revolution->piece(piece);
+    constexpr double edge_rad = 1e-6;
+    if (piece > 0 && std::abs(here.start_angle - revolution->piece(piece - 1).end_angle) > edge_rad) ++faces;
+    std::fill_n(face.begin() + here.first_patch, here.patch_count(), faces - 1);
+  }
+  return faces > 1 ? face : std::vector<int>();
+}
+
+/// Rest points of the faces that are nowhere touched at any instant; empty where the body has one face only.
+std::vector<bool> on_side_faces(const scene::Shape& body, const scene::Surface& surface,
+                                const reference::Result& result, const Errors& errors) {
+  const std::vector<int> face = faces_of_patches(body, surface);
+  if (face.empty()) return {};
+  std::set<int> touched;
+  for (std::size_t t = 0; t < errors.instants.size(); ++t) {
+    if (!errors.instants[t].in_contact) continue;
+    for (const scene::Vec3& contact_m : contact_points_m(body, result, t)) {
+      touched.insert(face[static_cast<std::size_t>(body.query(contact_m).patch)]);
+    }
+  }
+  std::vector<bool> on_side(static_cast<std::size_t>(surface.points_m.cols()));
+  for (std::size_t patch = 0; patch < face.size(); ++patch) {
+    std::fill(on_side.begin() + surface.patch_begin[patch], on_side.begin() + surface.patch_begin[patch + 1],
+              !touched.contains(face[patch]));
+  }
+  return on_side;
+}
+
 void compare_shapes(const scene::Scene& scene, const fast::Run& run, const reference::Result& result, Errors& errors) {
   const auto body = scene::body_shape(scene.body);
   const auto tool = reference::tool_distance(scene.tool);
@@ -129,7 +142,9 @@ void compare_shapes(const scene::Scene& scene, const fast::Run& run, const refer
   const Eigen::Index points = surface.points_m.cols();
   const double rest_m3 = enclosed_volume_m3(surface, Eigen::Matrix3Xd::Zero(3, points));
 
-  SquareSums all, inside, outside;
+  const std::vector<bool> on_side = on_side_faces(*body, surface, result, errors);
+  SquareSums all, inside, outside, side;
+  double normals2 = 0.0, normals_area_m2 = 0.0;
   double uncertainty_max_m = 0.0, hausdorff_max_m = 0.0, max_over_depth = 0.0, uncertainty_over_depth = 0.0;
   bool any_deep = false;
   double both_m2 = 0.0, either_m2 = 0.0;
@@ -153,6 +168,7 @@ void compare_shapes(const scene::Scene& scene, const fast::Run& run, const refer
         keep_larger(e.penetration_fast_m, -fast_gap_m[i]);
       }
     }
+    const Eigen::VectorXd turn_rad = angles_rad(moved_normals(surface, fast_m), moved_normals(surface, reference_m));
     SquareSums now;
     double now_both_m2 = 0.0, now_either_m2 = 0.0, now_uncertainty_max_m = 0.0;
     for (Eigen::Index i = 0; i < points; ++i) {
@@ -167,6 +183,9 @@ void compare_shapes(const scene::Scene& scene, const fast::Run& run, const refer
           return (surface.points_m.col(i) - contact_m).norm() <= scene.fast.r_R_m;
         });
         (near ? inside : outside).add(area_m2, error_m, uncertainty_m[i], scale_m);
+        if (!on_side.empty() && on_side[at]) side.add(area_m2, error_m, uncertainty_m[i], scale_m);
+        normals2 += area_m2 * turn_rad[i] * turn_rad[i];
+        normals_area_m2 += area_m2;
       }
       if (std::isnan(error_m) || error_m > e.shape_max_m) {
         e.shape_max_m = error_m;
@@ -197,6 +216,8 @@ void compare_shapes(const scene::Scene& scene, const fast::Run& run, const refer
   errors.shape_rel_l2 = all.relative();
   errors.shape_inside_r_rel_l2 = inside.relative();
   errors.shape_outside_r_rel_l2 = outside.relative();
+  errors.shape_side_faces_rel_l2 = side.relative();
+  if (normals_area_m2 > 0.0) errors.shape_normals_rms_rad = {std::sqrt(normals2 / normals_area_m2), std::nullopt};
   if (inside.error + outside.error > 0.0) {
     errors.shape_error_outside_share = outside.error / (inside.error + outside.error);
   }
@@ -229,6 +250,7 @@ Errors compute_errors(const scene::Scene& scene, const fast::Run& run, const ref
   }
   errors.reference = reference_quality(result);
   compare_forces(run, result, errors);
+  compare_contacts(scene, run, result, errors);
   compare_shapes(scene, run, result, errors);
   return errors;
 }

@@ -35,6 +35,9 @@ struct InstantErrors {
   double force_reference_n = 0.0;         ///< |F_r|
   double force_uncertainty_n = 0.0;       ///< half width of the reference's band; infinite where unknown
   double force_error_n = 0.0;             ///< |F_f - F_r|, of the vectors
+  double friction_fast_n = 0.0;           ///< |T_f|, the part of F_f along the surface; zero without friction
+  double friction_reference_n = 0.0;      ///< |T_r|
+  double way_m = 0.0;                     ///< of the tool's point at the contact since the first instant, with friction
   std::optional<double> force_error_rel;  ///< |F_f - F_r| / |F_r|; absent where apart or |F_r| = 0
   Measure shape_rel_l2;                   ///< sqrt(sum A |u_f - u_r|^2 / sum A |u_r|^2); absent where apart or u_r = 0
   double shape_max_m = 0.0;               ///< largest |u_f - u_r|
@@ -45,6 +48,13 @@ struct InstantErrors {
   double volume_change_reference_surface_rel = 0.0;   ///< the same surface with the reference's displacements
   std::vector<bool> touched_fast, touched_reference;  ///< per rest point; see contact_tolerance_share
   std::optional<double> contact_area_iou;             ///< area touched on both sides / on either; absent where none is
+};
+
+/// One contact region over the track, where there are several at once on either side.
+struct RegionErrors {
+  int id = 0;              ///< the reference's
+  Measure force_nrmse;     ///< as Errors::force_nrmse, of this region's force and its own peak
+  Measure force_peak_rel;  ///< as Errors::force_peak_rel. The reference has no band for a single region.
 };
 
 /// Every figure that compares the two sides, and how good the reference is.
@@ -61,12 +71,33 @@ struct Errors {
   Measure force_peak_rel;
   /// sqrt(mean over deep instants of (|F_f - F_r| / |F_r|)^2). Uncertainty: the same with the band's half width.
   Measure force_rel_deep;
+
+  bool friction = false;  ///< the scene has it; without, the figures up to the slip's are absent
+  /// As force_nrmse, of the friction and its peak. Uncertainty: the band of the whole force, of which it is a part.
+  Measure force_friction_nrmse;
+  /// (W_f - W_r) / |W_r|, W the work of the tool against friction over the track, at the tool's point in the middle of
+  /// the reference's contact: the area of the loop where the track turns back. Uncertainty: the band's work.
+  Measure force_friction_work_rel;
+  /// Way at the first deep instant at which a region slides; absent where the side never does.
+  std::optional<double> slip_onset_fast_m, slip_onset_reference_m;
+  Measure slip_onset_error_m;  ///< their difference; uncertainty: the way between the instants
+  /// As force_nrmse, of the torque about the tool's mass centre and the largest |F_r| times the distance of the contact
+  /// from there. Uncertainty: the force's band at that distance.
+  Measure force_torque_nrmse;
+  std::vector<RegionErrors> regions;  ///< by rising id; empty where there is never more than one
+
   /// sqrt(sum over instants and rest points of A |u_f - u_r|^2 / the same of A |u_r|^2). Uncertainty: of u_r, same sum.
   Measure shape_rel_l2;
   /// The same sums over rest points within, and beyond, fast.r_R_m of a contact point, instants in contact.
   /// Contact points are the points of the rest surface nearest to the middles of the reference's regions, to the tool's
   /// centre where it has none; the distance is straight, at rest, to the nearest.
   Measure shape_inside_r_rel_l2, shape_outside_r_rel_l2;
+  /// The same sums, instants in contact, over the faces that no contact point lies on at any instant, where edges
+  /// divide the surface into faces: of a box, of a surface of revolution. Absent elsewhere.
+  Measure shape_side_faces_rel_l2;
+  /// Angle between the normals of the two moved surfaces, root mean square by area over the instants in contact; see
+  /// moved_normals. The reference has no band for it.
+  Measure shape_normals_rms_rad;
   /// Share of the summed squared shape error that lies beyond fast.r_R_m; absent where there is no error.
   std::optional<double> shape_error_outside_share;
   /// Largest |u_f - u_r| / depth over deep instants and rest points. Uncertainty: of u_r, same maximum.

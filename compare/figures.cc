@@ -9,6 +9,9 @@
 namespace touchstone::compare {
 namespace {
 
+/// Of a single region's figures, before its number.
+constexpr std::string_view region_prefix = "force.region";
+
 struct Meaning {
   std::string_view key, text;
   bool count = false;  ///< a number of things; other figures without a unit are ratios
@@ -19,6 +22,20 @@ constexpr Meaning meanings[] = {
     {"force.peak_rel", "Error of the largest force of the track; negative: the fast model is too weak."},
     {"force.rel_above_10pct_depth",
      "Root mean square of the relative force error where the depth is above 10 % of its largest."},
+    {"force.friction_nrmse",
+     "Root mean square of the friction's error over all instants, relative to the reference's peak friction."},
+    {"force.friction_work_rel",
+     "Error of the work done against friction along the track, the area of the loop where it turns back."},
+    {"force.slip_onset_error_m",
+     "Way of the tool at which the fast model begins to slide, less the reference's; known to the way between "
+     "instants."},
+    {"force.slip_onset_fast_m", "That way, fast model."},
+    {"force.slip_onset_reference_m", "That way, reference."},
+    {"force.torque_nrmse",
+     "Root mean square of the torque's error, relative to the reference's peak force times its distance from the mass "
+     "centre."},
+    {"force.region.nrmse", "As force.nrmse, of this contact region alone; regions are numbered by the reference."},
+    {"force.region.peak_rel", "As force.peak_rel, of this contact region alone."},
     {"force.peak_fast_n", "Largest force on the tool, fast model."},
     {"force.peak_reference_n", "Largest force on the tool, reference."},
     {"shape.rel_l2",
@@ -26,6 +43,8 @@ constexpr Meaning meanings[] = {
     {"shape.max_over_depth", "Largest displacement error of any point, relative to the depth at that instant."},
     {"shape.inside_r_rel_l2", "As shape.rel_l2, for points nearer to the contact than the local radius fast.r_R_m."},
     {"shape.outside_r_rel_l2", "As shape.rel_l2, for points farther away than that."},
+    {"shape.side_faces_rel_l2", "As shape.rel_l2, for the body's faces that are never touched."},
+    {"shape.normals_rms_rad", "Angle between the normals of both deformed surfaces, root mean square by area."},
     {"shape.hausdorff_m",
      "Largest distance between the two deformed surfaces, whichever points lie there; from each surface's vertices."},
     {"shape.volume_change_rel",
@@ -88,9 +107,14 @@ constexpr Meaning meanings[] = {
 };
 
 /// Null for a key that is not ours.
-const Meaning* find_meaning(std::string_view key) {
-  if (key.ends_with(uncertainty_suffix)) {
-    key.remove_suffix(uncertainty_suffix.size());
+const Meaning* find_meaning(std::string_view given) {
+  if (given.ends_with(uncertainty_suffix)) {
+    given.remove_suffix(uncertainty_suffix.size());
+  }
+  std::string key(given);
+  if (key.starts_with(region_prefix)) {
+    const std::size_t number = region_prefix.size();
+    key.erase(number, std::min(key.find('.', number), key.size()) - number);
   }
   const auto found =
       std::find_if(std::begin(meanings), std::end(meanings), [&](const Meaning& m) { return m.key == key; });
@@ -112,9 +136,13 @@ class Collector {
     number_or_why(std::move(key), value, absent_);
   }
   void measure(const std::string& key, const Measure& measure, const std::string& unit = "") {
+    measure_or_why(key, measure, absent_, unit);
+  }
+  void measure_or_why(const std::string& key, const Measure& measure, const std::string& why,
+                      const std::string& unit = "") {
     if (!measure.value) {
-      text(key, absent_);
-      text(key + std::string(uncertainty_suffix), absent_);
+      text(key, why);
+      text(key + std::string(uncertainty_suffix), why);
       return;
     }
     number(key, *measure.value, unit);
@@ -130,20 +158,52 @@ class Collector {
   scene::Figures figures_;
 };
 
+/// Why there is no difference of slip onsets.
+std::string without_slip(const Errors& errors) {
+  if (errors.slip_onset_reference_m) return "undefined: the fast model never slides";
+  return errors.slip_onset_fast_m ? "undefined: the reference never slides" : "undefined: neither side ever slides";
+}
+
+/// Friction where the scene has it, torque, single regions where there are several.
+void add_contact_figures(const Errors& errors, Collector& out) {
+  if (errors.friction) {
+    out.measure("force.friction_nrmse", errors.force_friction_nrmse);
+    out.measure("force.friction_work_rel", errors.force_friction_work_rel);
+    out.measure_or_why("force.slip_onset_error_m", errors.slip_onset_error_m, without_slip(errors), "m");
+    if (errors.slip_onset_fast_m) out.number("force.slip_onset_fast_m", *errors.slip_onset_fast_m, "m");
+    if (errors.slip_onset_reference_m) out.number("force.slip_onset_reference_m", *errors.slip_onset_reference_m, "m");
+  } else {
+    for (const char* key : {"force.friction_nrmse", "force.friction_work_rel", "force.slip_onset_error_m"}) {
+      out.measure_or_why(key, {}, "undefined: the scene has no friction");
+    }
+  }
+  out.measure("force.torque_nrmse", errors.force_torque_nrmse);
+  for (const RegionErrors& region : errors.regions) {
+    const std::string key = std::string(region_prefix) + std::to_string(region.id);
+    out.measure(key + ".nrmse", region.force_nrmse);
+    out.measure(key + ".peak_rel", region.force_peak_rel);
+  }
+}
+
 }  // namespace
 
 scene::Figures make_figures(const Errors& errors, const fast::Run& run, const reference::Result& result) {
-  Collector out(errors.force_peak_reference_n == 0.0 ? "undefined: the reference is never in contact"
-                                                     : "undefined: nothing to relate it to");
+  const bool contact = errors.force_peak_reference_n > 0.0;
+  const std::string apart = "undefined: the reference is never in contact";
+  Collector out(contact ? "undefined: nothing to relate it to" : apart);
   out.measure("force.nrmse", errors.force_nrmse);
   out.measure("force.peak_rel", errors.force_peak_rel);
   out.measure("force.rel_above_10pct_depth", errors.force_rel_deep);
+  add_contact_figures(errors, out);
   out.number("force.peak_fast_n", errors.force_peak_fast_n, "N");
   out.number("force.peak_reference_n", errors.force_peak_reference_n, "N");
   out.measure("shape.rel_l2", errors.shape_rel_l2);
   out.measure("shape.max_over_depth", errors.shape_max_over_depth);
   out.measure("shape.inside_r_rel_l2", errors.shape_inside_r_rel_l2);
   out.measure("shape.outside_r_rel_l2", errors.shape_outside_r_rel_l2);
+  out.measure_or_why("shape.side_faces_rel_l2", errors.shape_side_faces_rel_l2,
+                     contact ? "undefined: every face is touched" : apart);
+  out.measure("shape.normals_rms_rad", errors.shape_normals_rms_rad, "rad");
   out.measure("shape.hausdorff_m", errors.shape_hausdorff_m, "m");
   out.number("shape.volume_change_rel", errors.volume_change_fast_rel);
   out.number_or_absent("contact.penetration_rel", errors.penetration_fast_rel);

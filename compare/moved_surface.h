@@ -16,6 +16,14 @@ namespace touchstone::compare {
 [[nodiscard]] double hausdorff_m(const scene::Surface& surface, const Eigen::Matrix3Xd& displacement_a_m,
                                  const Eigen::Matrix3Xd& displacement_b_m);
 
+/// Unit normals of the moved surface at its vertices: the mean of the adjacent moved triangles' by area, turned as the
+/// rest triangles' mean must be to give the shape's own normal, so that an unmoved surface has that. A vertex whose
+/// triangles are crushed keeps the rest normal.
+[[nodiscard]] Eigen::Matrix3Xd moved_normals(const scene::Surface& surface, const Eigen::Matrix3Xd& displacement_m);
+
+/// Angle between each pair of columns [rad], 0 to pi.
+[[nodiscard]] Eigen::VectorXd angles_rad(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b);
+
 /// Signed distance of every moved rest point from the tool's surface [m], negative inside the tool, infinite far away.
 [[nodiscard]] Eigen::VectorXd tool_gaps_m(const scene::Surface& surface, const Eigen::Matrix3Xd& displacement_m,
                                           const reference::ToolDistance& tool, const scene::Pose& pose);

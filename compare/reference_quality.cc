@@ -1,16 +1,13 @@
 #include "compare/reference_quality.h"
 
+#include "compare/error_sums.h"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 namespace touchstone::compare {
 namespace {
-
-/// Keeps the larger; once NaN, stays NaN, so that no bad number is lost in a maximum.
-void keep_larger(std::optional<double>& largest, double value) {
-  if (!largest || std::isnan(value) || value > *largest) largest = value;
-}
 
 scene::Figure ratio_or_why(const std::string& key, const std::optional<double>& value) {
   if (!value) return {key, 0.0, "undefined: the reference is never in contact", ""};

@@ -51,6 +51,29 @@ Plot force_plot(const Errors& errors, const std::string& title, const std::strin
   return plot;
 }
 
+/// Friction of both sides over the tool's way along the surface.
+Plot friction_plot(const Errors& errors) {
+  Plot plot;
+  plot.title = "Friction over the way";
+  plot.x_label = "way of the tool at the contact [mm]";
+  plot.y_label = "friction on the tool [N]";
+  const std::vector<double> way_mm = series(errors, [](const InstantErrors& e) { return 1e3 * e.way_m; });
+  plot.curves.push_back({"reference", Look::reference, way_mm,
+                         series(errors, [](const InstantErrors& e) { return e.friction_reference_n; })});
+  plot.curves.push_back(
+      {"fast model", Look::fast, way_mm, series(errors, [](const InstantErrors& e) { return e.friction_fast_n; })});
+  return plot;
+}
+
+/// Where each side begins to slide.
+std::string slip_note(const Errors& errors) {
+  const auto begins = [](const std::string& side, const std::optional<double>& way_m) {
+    return side + (way_m ? " slides from " + quantity_text(*way_m, "m") + " on" : " never slides");
+  };
+  return begins("The fast model", errors.slip_onset_fast_m) + ", " +
+         begins("the reference", errors.slip_onset_reference_m) + ".";
+}
+
 /// An error in percent with the reference's uncertainty in the same norm, over depth. Logarithmic where the
 /// sizes differ too much for one linear axis.
 Plot error_plot(const Errors& errors, const std::string& title, const std::string& y_label,
@@ -144,6 +167,7 @@ std::string force_section(const ReportContent& c) {
   out += figure(to_svg(both_logarithmic),
                 "A power law is a straight line here, and a small force is not lost beside a large one.");
   out += figure(to_svg(force_plot(errors, "Force over time", "time [s]", time_s)), "");
+  if (errors.friction) out += figure(to_svg(friction_plot(errors)), slip_note(errors));
   out += figure(to_svg(relative), "Relative to the reference's force at the same instant.");
   return out + "</div>\n";
 }

@@ -129,6 +129,13 @@ Curve result_curve(const Entry& entry, std::size_t at, Look look, std::vector<do
   return curve;
 }
 
+/// Both sides of one result over the same x.
+void add_curves(Plot& plot, const Entry& entry, std::size_t at, const std::vector<double>& x,
+                std::vector<double> reference, std::vector<double> fast) {
+  plot.curves.push_back(result_curve(entry, at, Look::reference, x, std::move(reference)));
+  plot.curves.push_back(result_curve(entry, at, Look::fast, x, std::move(fast)));
+}
+
 double largest(const std::vector<double>& values) {
   double found = 0.0;
   for (const double v : values) found = std::max(found, std::isfinite(v) ? v : 0.0);
@@ -153,11 +160,9 @@ Plot share_plot(const std::vector<Entry>& entries) {
     const double peak_n = largest(reference_n);
     const double length_s = time_s.back() - time_s.front();
     if (peak_n == 0.0 || length_s == 0.0) continue;
-    const std::vector<double> share = scaled(time_s, time_s.front(), 100.0 / length_s);
-    plot.curves.push_back(
-        result_curve(entries[i], i, Look::reference, share, scaled(reference_n, 0.0, 100.0 / peak_n)));
-    plot.curves.push_back(result_curve(entries[i], i, Look::fast, share,
-                                       scaled(result.required_column("fast_force_n"), 0.0, 100.0 / peak_n)));
+    add_curves(plot, entries[i], i, scaled(time_s, time_s.front(), 100.0 / length_s),
+               scaled(reference_n, 0.0, 100.0 / peak_n),
+               scaled(result.required_column("fast_force_n"), 0.0, 100.0 / peak_n));
   }
   return plot;
 }
@@ -173,9 +178,8 @@ Plot depth_plot(const std::vector<Entry>& entries) {
     const ResultFolder& result = entries[i].result;
     std::vector<double> depth_mm = scaled(result.required_column("depth_m"), 0.0, 1e3);
     for (double& depth : depth_mm) depth = depth > 1e3 * grazing_depth_m ? depth : no_value;
-    plot.curves.push_back(
-        result_curve(entries[i], i, Look::reference, depth_mm, result.required_column("reference_force_n")));
-    plot.curves.push_back(result_curve(entries[i], i, Look::fast, depth_mm, result.required_column("fast_force_n")));
+    add_curves(plot, entries[i], i, depth_mm, result.required_column("reference_force_n"),
+               result.required_column("fast_force_n"));
   }
   return plot;
 }

@@ -400,6 +400,10 @@ std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model
           percent_text(*e.shape_inside_r_rel_l2.value), percent_text(*e.shape_outside_r_rel_l2.value),
           percent_text(*e.shape_error_outside_share));
     }
+    if (e.shape_side_faces_rel_l2.value) {
+      text += fmt::format(" On the faces that are not touched, which hear only the anchor points, it is {}.",
+                          percent_text(*e.shape_side_faces_rel_l2.value));
+    }
     limits.push_back(std::move(text));
   }
   return limits;

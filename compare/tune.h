@@ -81,8 +81,9 @@ struct Tuning {
                           const std::function<void(const std::string&)>& say = {});
 
 /// Keys of summary.json: of a comparison under training. and held_out., the worst of the contacts, with
-/// training.<contact>. and held_out.<contact>. for each; the parameters and what is known of them. All of the first
-/// model; of every model again behind its name.
+/// training.<contact>. and held_out.<contact>. for each, with force.nrmse_against_ceiling and
+/// shape.rel_l2_against_ceiling (see ceilings.h) where there are ceilings; the parameters and what is known of them.
+/// All of the first model; of every model again behind its name.
 [[nodiscard]] scene::Figures tuning_figures(const Tuning& tuning);
 
 /// The model's values as a file that a scene can include.

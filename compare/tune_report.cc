@@ -1,5 +1,6 @@
 #include "compare/tune_report.h"
 
+#include "compare/ceilings.h"
 #include "compare/page.h"
 #include "compare/svg_plot.h"
 #include "compare/text.h"
@@ -16,11 +17,13 @@ namespace {
 
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
-std::string measure_text(const Measure& measure) {
-  if (!measure.value) return "–";
-  std::string text = percent_text(*measure.value);
-  if (measure.uncertainty) text += " ± " + percent_text(*measure.uncertainty);
-  return measure.distinguishable() ? text : text + ", not distinguishable";
+std::string measure_cell(const Measure& measure, const std::string& unit) {
+  if (!measure.value) return number_cell("–");
+  const auto under = [](const std::string& text) { return tag("span", text, "class=\"under\""); };
+  std::string out = escape_xml(quantity_text(*measure.value, unit));
+  if (measure.uncertainty) out += under("± " + quantity_text(*measure.uncertainty, unit));
+  if (!measure.distinguishable()) out += under("not distinguishable");
+  return "<td class=\"n\">" + out + "</td>";
 }
 
 /// The worst of the contacts in one figure; null where none has it.
@@ -57,24 +60,54 @@ std::string head_section(const Tuning& tuning) {
   return out + "</div>\n";
 }
 
+/// A column of the errors' tables.
+struct ErrorColumn {
+  const char* head;
+  Measure Errors::*figure;
+  const char* unit = "";
+};
+
+constexpr ErrorColumn error_columns[] = {{"force, of the peak", &Errors::force_nrmse},
+                                         {"force, at the peak", &Errors::force_peak_rel},
+                                         {"force, relative", &Errors::force_rel_deep},
+                                         {"friction, of its peak", &Errors::force_friction_nrmse},
+                                         {"slip onset", &Errors::slip_onset_error_m, "m"},
+                                         {"shape", &Errors::shape_rel_l2},
+                                         {"within the local radius", &Errors::shape_inside_r_rel_l2},
+                                         {"beyond it", &Errors::shape_outside_r_rel_l2},
+                                         {"on the side faces", &Errors::shape_side_faces_rel_l2},
+                                         {"largest, of the depth", &Errors::shape_max_over_depth}};
+
+/// Those that some contact has a figure for.
+std::vector<ErrorColumn> columns_in_use(const Tuning& tuning) {
+  std::vector<ErrorColumn> columns;
+  for (const ErrorColumn& column : error_columns) {
+    const bool in_use = std::any_of(tuning.models.begin(), tuning.models.end(), [&](const TunedModel& model) {
+      return worst(tuning, model, true, column.figure) != nullptr ||
+             worst(tuning, model, false, column.figure) != nullptr;
+    });
+    if (in_use) columns.push_back(column);
+  }
+  return columns;
+}
+
 std::string errors_table(const Tuning& tuning, bool held_out) {
-  std::string out =
-      tag("h2", held_out ? "On held-out contacts" : "On training contacts") +
-      "\n<div class=\"scroll\"><table>\n<tr><th>Contact</th>" + std::string(held_out ? "<th>differs in</th>" : "") +
-      "<th class=\"n\">force, of the peak</th><th class=\"n\">force, at the peak</th><th class=\"n\">force, relative"
-      "</th><th class=\"n\">shape</th><th class=\"n\">within the local radius</th><th class=\"n\">beyond it</th>"
-      "<th class=\"n\">largest, of the depth</th></tr>\n";
+  const std::vector<ErrorColumn> columns = columns_in_use(tuning);
+  std::string out = tag("h2", held_out ? "On held-out contacts" : "On training contacts") +
+                    "\n<div class=\"scroll\"><table>\n<tr><th>Contact</th>" +
+                    std::string(held_out ? "<th>differs in</th>" : "");
+  for (const ErrorColumn& column : columns) out += tag("th", column.head, "class=\"wrap\"");
+  out += "</tr>\n";
   for (const TunedModel& model : tuning.models) {
-    out += fmt::format("<tr class=\"group\"><th colspan=\"{}\">{}</th></tr>\n", held_out ? 9 : 8,
+    out += fmt::format("<tr class=\"group\"><th colspan=\"{}\">{}</th></tr>\n", columns.size() + (held_out ? 2 : 1),
                        escape_xml(model.name()));
     for (const TuningOutcome& outcome : model.outcomes) {
       const TuningData& data = tuning.data[outcome.data];
       if (data.held_out() != held_out) continue;
       const Errors& e = outcome.errors;
       out += "<tr>" + cell(data.contact.name) + (held_out ? cell(data.contact.differs) : "");
-      for (const Measure* one : {&e.force_nrmse, &e.force_peak_rel, &e.force_rel_deep, &e.shape_rel_l2,
-                                 &e.shape_inside_r_rel_l2, &e.shape_outside_r_rel_l2, &e.shape_max_over_depth}) {
-        out += number_cell(measure_text(*one));
+      for (const ErrorColumn& column : columns) {
+        out += measure_cell(e.*column.figure, column.unit);
       }
       out += "</tr>\n";
     }
@@ -84,7 +117,8 @@ std::string errors_table(const Tuning& tuning, bool held_out) {
              "Behind ± stands the reference's own uncertainty in the same norm. Force of the peak: root mean square "
              "over "
              "the instants, relative to the largest force; relative: root mean square where the depth is above 10 % of "
-             "its largest. Shape: of the displacement, by area and over the instants.",
+             "its largest. Shape: of the displacement, by area and over the instants; side faces are those that are "
+             "never touched, where edges make faces.",
              "class=\"dim\"") +
          "\n";
 }
@@ -315,9 +349,34 @@ std::string regime_section(const Tuning& tuning, const TunedModel& model) {
          "\n";
 }
 
+std::string ceilings_section(const Tuning& tuning, const TunedModel& model) {
+  std::string out =
+      tag("h3", "Against what can be expected") + "\n" +
+      tag("p",
+          fmt::format(
+              "A prototype tuned on one contact came within {} of the peak force there with the Duffing law and "
+              "{} with the area-aware law, and was {} to {} and {} to {} off on other contacts. Its shape was {} "
+              "to {} off, and exact displacements of the anchor points would have left {} to {}.",
+              percent_text(expected_force(scene::ContactLaw::duffing, false).high),
+              percent_text(expected_force(scene::ContactLaw::area_aware, false).high),
+              number_text(100.0 * expected_force(scene::ContactLaw::duffing, true).low),
+              percent_text(expected_force(scene::ContactLaw::duffing, true).high),
+              number_text(100.0 * expected_force(scene::ContactLaw::area_aware, true).low),
+              percent_text(expected_force(scene::ContactLaw::area_aware, true).high),
+              number_text(100.0 * expected_shape.low), percent_text(expected_shape.high),
+              number_text(100.0 * expected_exact_anchors.low), percent_text(expected_exact_anchors.high)),
+          "class=\"dim\"") +
+      "\n<ul>\n";
+  for (const TuningOutcome& outcome : model.outcomes) {
+    out += tag("li", ceiling_sentence(tuning, model, outcome)) + "\n";
+  }
+  return out + "</ul>\n";
+}
+
 std::string model_section(const Tuning& tuning, const TunedModel& model) {
   std::string out = tag("h2", "The " + model.name() + " model") + "\n";
   for (const std::string& sentence : model.limits) out += tag("p", sentence) + "\n";
+  out += ceilings_section(tuning, model);
   for (const StageFit& stage : model.stages) out += stage_section(stage);
   out += tag("h3", "Fit and held-out forces") + "\n<div class=\"plots\">\n";
   out += figure(to_svg(residual_plot(tuning, model)), "A pattern here is the law's form, not noise.");

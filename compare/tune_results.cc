@@ -1,6 +1,7 @@
 // What a tuning leaves in its folder, but for the page.
 #include "compare/tune.h"
 
+#include "compare/ceilings.h"
 #include "compare/figures.h"
 #include "compare/tune_report.h"
 #include "scene/fields.h"
@@ -59,8 +60,9 @@ const scene::Figure* find(const scene::Figures& figures, const std::string& key)
 scene::Figures worst_of(const std::vector<scene::Figures>& contacts) {
   scene::Figures out;
   for (const scene::Figure& first : contacts.front()) {
-    if (first.key.starts_with("reference.") || first.key.ends_with(uncertainty_suffix) || first.key.ends_with("_n"))
-      continue;
+    const bool of_one_side = first.key.ends_with("_n") || first.key.ends_with("_fast_m") ||
+                             first.key.ends_with("_reference_m") || first.key.starts_with("reference.");
+    if (of_one_side || first.key.ends_with(uncertainty_suffix)) continue;
     const bool smallest = first.key == "contact.area_iou";
     const scene::Figures* from = nullptr;
     const scene::Figure* worst = nullptr;
@@ -96,7 +98,15 @@ scene::Figures model_figures(const Tuning& tuning, const TunedModel& model) {
       const TuningData& data = tuning.data[outcome.data];
       if (data.held_out() != held_out) continue;
       contacts.push_back(contact_figures(tuning, outcome));
-      add(each, group + slug(data.contact.name) + ".", contacts.back());
+      const std::string prefix = group + slug(data.contact.name) + ".";
+      add(each, prefix, contacts.back());
+      if (!has_ceiling(data.contact.scene)) continue;
+      const auto place = [&](const char* key, const Measure& error, const Expected& expected) {
+        const std::string found(against(error, expected));
+        if (!found.empty()) each.push_back({prefix + key, 0.0, found, ""});
+      };
+      place("force.nrmse_against_ceiling", outcome.errors.force_nrmse, expected_force(model.law, held_out));
+      place("shape.rel_l2_against_ceiling", outcome.errors.shape_rel_l2, expected_shape);
     }
     if (contacts.empty()) continue;
     add(out, group, worst_of(contacts));

@@ -8,18 +8,22 @@
 
 namespace touchstone::scene {
 
-toml::table read_document(const std::filesystem::path& file) {
-  const std::optional<std::string> text = read_file(file);
-  if (!text) {
-    throw InputError({{file.string(), 0, 0, "cannot read the study; expected a readable TOML file"}});
-  }
+toml::table parse_document(std::string_view text, const std::filesystem::path& file) {
   try {
-    return toml::parse(*text, file.string());
+    return toml::parse(text, file.string());
   } catch (const toml::parse_error& error) {
     const toml::source_position where = error.source().begin;
     throw InputError({{file.string(), static_cast<int>(where.line), static_cast<int>(where.column),
                        "not valid TOML: " + std::string(error.description())}});
   }
+}
+
+toml::table read_document(const std::filesystem::path& file) {
+  const std::optional<std::string> text = read_file(file);
+  if (!text) {
+    throw InputError({{file.string(), 0, 0, "cannot read the study; expected a readable TOML file"}});
+  }
+  return parse_document(*text, file);
 }
 
 std::string value_text(const toml::node& node) {

@@ -8,9 +8,13 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace touchstone::scene {
+
+/// The text's document. @param file  for messages. @throws InputError when it is no TOML
+[[nodiscard]] toml::table parse_document(std::string_view text, const std::filesystem::path& file);
 
 /// The file's document. @throws InputError when it cannot be read or is no TOML
 [[nodiscard]] toml::table read_document(const std::filesystem::path& file);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace touchstone::compare {
 namespace {
@@ -268,6 +269,212 @@ TEST(Errors, QualityOfTheReferenceIsItsWorstWhereDeep) {
   EXPECT_NEAR(*e.reference.between_nodes_rel, 0.05, 1e-14);
   EXPECT_EQ(*e.reference.equilibrium_rel, 1e-9);
   EXPECT_EQ(e.reference.volume_change_rel, -2e-6);
+}
+
+/// A tool drawn along x by 4 mm an instant at constant depth, five instants; forces and friction are to be filled in.
+Sides with_friction() {
+  Sides sides = testing::small();
+  sides.scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
+  const auto repeat = [](auto& list) { list.assign(5, list.back()); };
+  repeat(sides.run.instants);
+  repeat(sides.run.normals);
+  repeat(sides.result.instants);
+  repeat(sides.result.region_middles_m);
+  repeat(sides.result.force_uncertainty_n);
+  repeat(sides.result.displacement_uncertainty_m);
+  for (auto* list : {&sides.result.residual_penetration_m, &sides.result.between_nodes_penetration_m,
+                     &sides.result.equilibrium_rel, &sides.result.volume_change_rel}) {
+    repeat(*list);
+  }
+  for (std::size_t t = 0; t < 5; ++t) {
+    for (scene::InstantRecord* record : {&sides.run.instants[t], &sides.result.instants[t]}) {
+      record->time_s = static_cast<double>(t);
+      record->tool.position_m.x() = 4e-3 * static_cast<double>(t);
+      set_force(*record, Vec3(0.0, 0.0, 10.0));
+    }
+    sides.result.region_middles_m[t] = {sides.result.instants[t].tool.position_m - Vec3(0.0, 0.0, 0.01)};
+  }
+  return sides;
+}
+
+void set_friction(scene::InstantRecord& record, double along_x_n, bool sliding) {
+  record.regions[0].friction_n = Vec3(along_x_n, 0.0, 0.0);
+  record.regions[0].force_n.x() = along_x_n;
+  record.regions[0].sliding = sliding;
+}
+
+TEST(Errors, FrictionIsRelativeToItsOwnPeakWithTheForcesBand) {
+  Sides sides = with_friction();
+  set_friction(sides.result.instants[2], -4.0, false);
+  set_friction(sides.run.instants[2], -1.0, false);
+  sides.result.force_uncertainty_n[3] = 0.5;
+  const Errors e = errors_of(sides);
+  EXPECT_NEAR(*e.force_friction_nrmse.value, std::sqrt(9.0 / 5.0) / 4.0, 1e-14);
+  EXPECT_NEAR(*e.force_friction_nrmse.uncertainty, std::sqrt(0.25 / 5.0) / 4.0, 1e-14);
+  EXPECT_EQ(e.instants[2].friction_fast_n, 1.0);
+  EXPECT_NEAR(e.instants[4].way_m, 16e-3, 1e-15);
+}
+
+TEST(Errors, FrictionFiguresNeedFriction) {
+  const Errors without = errors_of(with_forces());
+  EXPECT_FALSE(without.friction || without.force_friction_nrmse.value || without.slip_onset_error_m.value);
+  // Pressed straight, friction in all directions leaves rounding.
+  Sides straight = with_friction();
+  set_friction(straight.result.instants[2], -1e-9, false);
+  EXPECT_FALSE(errors_of(straight).force_friction_nrmse.value);
+}
+
+TEST(Errors, WorkAgainstFrictionIsTheLoopsArea) {
+  Sides sides = with_friction();
+  // There and back: 8 mm against 2 N each way on the reference's side, against 3 N on the other.
+  for (std::size_t t = 0; t < 5; ++t) {
+    const double x_m = 4e-3 * static_cast<double>(t < 3 ? t : 4 - t);
+    sides.run.instants[t].tool.position_m.x() = sides.result.instants[t].tool.position_m.x() = x_m;
+    const double against = t == 2 ? 0.0 : t < 2 ? -1.0 : 1.0;
+    set_friction(sides.result.instants[t], 2.0 * against, true);
+    set_friction(sides.run.instants[t], 3.0 * against, true);
+  }
+  Errors e = errors_of(sides);
+  EXPECT_NEAR(*e.force_friction_work_rel.value, 0.5, 1e-13);
+  // Spring-like friction gives back on the way back what it took.
+  for (std::size_t t = 0; t < 5; ++t) {
+    const double x_m = sides.run.instants[t].tool.position_m.x();
+    set_friction(sides.run.instants[t], -1e3 * x_m, false);
+  }
+  e = errors_of(sides);
+  EXPECT_NEAR(*e.force_friction_work_rel.value, -1.0, 1e-13);
+}
+
+TEST(Errors, FrictionWorksWhereTheToolsSurfaceMoves) {
+  Sides sides = with_friction();
+  // Turning about y over the contact 10 mm below its centre, which stands still.
+  for (std::size_t t = 0; t < 5; ++t) {
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.1 * static_cast<double>(t), Vec3::UnitY()));
+    for (scene::InstantRecord* record : {&sides.run.instants[t], &sides.result.instants[t]}) {
+      record->tool.position_m = Vec3(0.0, 0.0, 0.06);
+      record->tool.orientation = turn;
+    }
+    sides.result.region_middles_m[t] = {Vec3(0.0, 0.0, 0.05)};
+    set_friction(sides.result.instants[t], -2.0, true);
+  }
+  EXPECT_NEAR(errors_of(sides).instants[4].way_m, 4 * 2 * 0.01 * std::sin(0.05), 1e-12);
+}
+
+TEST(Errors, SlipBeginsAtAWayKnownToTheInstants) {
+  Sides sides = with_friction();
+  for (const std::size_t t : {1u, 2u, 3u, 4u}) sides.run.instants[t].regions[0].sliding = true;
+  EXPECT_FALSE(errors_of(sides).slip_onset_error_m.value);
+  EXPECT_NEAR(*errors_of(sides).slip_onset_fast_m, 4e-3, 1e-15);
+  sides.result.instants[3].regions[0].sliding = true;
+  const Errors e = errors_of(sides);
+  EXPECT_NEAR(*e.slip_onset_error_m.value, -8e-3, 1e-15);
+  EXPECT_NEAR(*e.slip_onset_error_m.uncertainty, 4e-3, 1e-15);
+  EXPECT_TRUE(e.slip_onset_error_m.distinguishable());
+  // A graze that slips is no onset.
+  sides.run.instants[0].depth_m = sides.result.instants[0].depth_m = 1e-4;
+  sides.result.instants[0].regions[0].sliding = true;
+  EXPECT_NEAR(*errors_of(sides).slip_onset_reference_m, 12e-3, 1e-15);
+}
+
+TEST(Errors, TorqueIsRelativeToForceTimesDistance) {
+  Sides sides = with_forces();
+  sides.result.region_middles_m[1] = {sides.result.instants[1].tool.position_m + Vec3(0.02, 0.0, 0.0)};
+  sides.result.instants[1].regions[0].torque_nm = Vec3(0.0, -0.2, 0.0);
+  sides.run.instants[1].regions[0].torque_nm = Vec3(0.0, -0.2, 0.1);
+  const Errors e = errors_of(sides);
+  EXPECT_NEAR(*e.force_torque_nrmse.value, std::sqrt(0.01 / 2.0) / 0.2, 1e-13);
+  EXPECT_NEAR(*e.force_torque_nrmse.uncertainty, std::sqrt(0.5 * 0.5 * 0.02 * 0.02 / 2.0) / 0.2, 1e-13);
+  EXPECT_FALSE(errors_of(testing::small()).force_torque_nrmse.value);
+}
+
+/// Two regions at x = 10 and -10 mm, straight up, the reference's with 4 and 6 N and the fast model's with 5 and 6.
+Sides with_regions(bool swapped) {
+  Sides sides = testing::small();
+  for (std::size_t t = 0; t < 2; ++t) {
+    const Vec3 tool_m = sides.result.instants[t].tool.position_m;
+    const auto region = [](double x_m, double force_n, int id) {
+      scene::RegionRecord out;
+      out.force_n = Vec3(0.0, 0.0, force_n);
+      out.torque_nm = Vec3(x_m, 0.0, 0.0).cross(out.force_n);
+      out.id = id;
+      return out;
+    };
+    sides.result.instants[t].regions = {region(0.01, 4.0, 0), region(-0.01, 6.0, 1)};
+    sides.result.region_middles_m[t] = {tool_m + Vec3(0.01, 0.0, -0.01), tool_m + Vec3(-0.01, 0.0, -0.01)};
+    sides.run.instants[t].regions = {region(0.01, 5.0, swapped ? 1 : 0), region(-0.01, 6.0, swapped ? 0 : 1)};
+    if (swapped) std::swap(sides.run.instants[t].regions[0], sides.run.instants[t].regions[1]);
+  }
+  return sides;
+}
+
+TEST(Errors, RegionsArePairedByWhereTheyActNotByNumber) {
+  for (const bool swapped : {false, true}) {
+    const Errors e = errors_of(with_regions(swapped));
+    ASSERT_EQ(e.regions.size(), 2u);
+    EXPECT_NEAR(*e.regions[0].force_nrmse.value, 0.25, 1e-13);
+    EXPECT_NEAR(*e.regions[0].force_peak_rel.value, 0.25, 1e-13);
+    EXPECT_NEAR(*e.regions[1].force_nrmse.value, 0.0, 1e-13);
+    EXPECT_FALSE(e.regions[0].force_nrmse.uncertainty);
+  }
+  EXPECT_TRUE(errors_of(with_forces()).regions.empty());
+}
+
+TEST(Errors, ARegionTheFastModelLacksHasNoForceThere) {
+  Sides sides = with_regions(false);
+  for (scene::InstantRecord& record : sides.run.instants) record.regions.resize(1);
+  const Errors e = errors_of(sides);
+  ASSERT_EQ(e.regions.size(), 2u);
+  EXPECT_NEAR(*e.regions[1].force_nrmse.value, 1.0, 1e-13);
+  EXPECT_NEAR(*e.regions[1].force_peak_rel.value, -1.0, 1e-13);
+}
+
+TEST(Errors, SideFacesAreThoseNoContactLiesOn) {
+  Sides sides = testing::pressed(3, 2000);
+  sides.run.instants = sides.result.instants;
+  EXPECT_EQ(*errors_of(sides).shape_side_faces_rel_l2.value, 0.0);
+  const scene::Surface& surface = sides.run.surface;
+  // The top's error is none of the sides'; an error in proportion on one side is that share of it.
+  const auto on_top = [&](Eigen::Index i) { return i >= surface.patch_begin[5]; };
+  for (Eigen::Index i = 0; i < surface.points_m.cols(); ++i) {
+    if (on_top(i)) sides.run.instants[2].displacement_m.col(i) *= 3.0;
+  }
+  EXPECT_EQ(*errors_of(sides).shape_side_faces_rel_l2.value, 0.0);
+  for (std::size_t t = 0; t < 3; ++t)
+    sides.run.instants[t].displacement_m = 1.25 * sides.result.instants[t].displacement_m;
+  EXPECT_NEAR(*errors_of(sides).shape_side_faces_rel_l2.value, 0.25, 1e-12);
+  // A contact on +x: then the top is a side face.
+  for (auto& middles_m : sides.result.region_middles_m) middles_m = {Vec3(0.03, 0.0, 0.03)};
+  for (std::size_t t = 0; t < 3; ++t) {
+    sides.run.instants[t].displacement_m = sides.result.instants[t].displacement_m;
+    for (Eigen::Index i = 0; i < surface.points_m.cols(); ++i) {
+      if (on_top(i)) sides.run.instants[t].displacement_m.col(i) *= 3.0;
+    }
+  }
+  EXPECT_GT(*errors_of(sides).shape_side_faces_rel_l2.value, 0.5);
+}
+
+TEST(Errors, ABodyWithoutEdgesHasNoSideFaces) {
+  Sides sides = testing::small();
+  sides.scene.body.shape = scene::BodyShape::sphere;
+  sides.scene.body.radius_m = 0.03;
+  EXPECT_FALSE(errors_of(sides).shape_side_faces_rel_l2.value);
+}
+
+TEST(Errors, NormalsTellTurningFromMoving) {
+  Sides sides = testing::pressed(3, 2000);
+  sides.run.instants = sides.result.instants;
+  EXPECT_EQ(*errors_of(sides).shape_normals_rms_rad.value, 0.0);
+  // Moved as a whole: no turn. Turned as a whole about x by 0.1 rad: that everywhere.
+  sides.run.instants[2].displacement_m.colwise() += Vec3(1e-3, 2e-3, 3e-3);
+  EXPECT_NEAR(*errors_of(sides).shape_normals_rms_rad.value, 0.0, 1e-9);
+  const Eigen::AngleAxisd turn(0.1, Vec3::UnitX());
+  for (std::size_t t = 0; t < 3; ++t) {
+    const Eigen::Matrix3Xd& rest_m = sides.run.surface.points_m;
+    sides.result.instants[t].displacement_m.setZero();
+    sides.run.instants[t].displacement_m = turn.toRotationMatrix() * rest_m - rest_m;
+  }
+  // The faces -x and +x turn about their own normal, the other four by the whole angle.
+  EXPECT_NEAR(*errors_of(sides).shape_normals_rms_rad.value, 0.1 * std::sqrt(2.0 / 3.0), 1e-9);
 }
 
 TEST(Errors, RefuseSidesThatDoNotBelongTogether) {

@@ -25,6 +25,8 @@ TEST(Figures, HoldEveryKeyOfTheDesignInItsOrder) {
   const char* const keys[] = {"force.nrmse",
                               "force.peak_rel",
                               "force.rel_above_10pct_depth",
+                              "force.friction_nrmse",
+                              "force.slip_onset_error_m",
                               "shape.rel_l2",
                               "shape.max_over_depth",
                               "shape.inside_r_rel_l2",
@@ -65,6 +67,33 @@ TEST(Figures, AreUniqueAndEachHasAMeaning) {
     EXPECT_FALSE(figure_meaning(figure.key).empty()) << figure.key;
   }
   EXPECT_TRUE(figure_meaning("no.such_key").empty());
+}
+
+TEST(Figures, NameEveryRegionAndItsMeaning) {
+  testing::Sides sides = testing::pressed(5, 200);
+  for (const bool fast : {true, false}) {
+    scene::InstantRecord& record = fast ? sides.run.instants[4] : sides.result.instants[4];
+    record.regions.push_back(record.regions[0]);
+    record.regions.back().id = 12;
+    record.regions.back().torque_nm = scene::Vec3(0.0, 1.0, 0.0);
+  }
+  sides.result.region_middles_m[4] = {scene::Vec3(0.0, 0.0, 0.06), scene::Vec3(0.01, 0.0, 0.06)};
+  const scene::Figures figures = figures_of(sides);
+  EXPECT_TRUE(find(figures, "force.region12.nrmse").text.empty());
+  EXPECT_EQ(find(figures, "force.region12.nrmse_uncertainty").text, "unknown");
+  EXPECT_FALSE(figure_meaning("force.region12.nrmse").empty());
+  EXPECT_TRUE(figure_meaning("force.region12.no_such").empty());
+}
+
+TEST(Figures, SayWhyThereIsNoSlipOnset) {
+  testing::Sides sides = testing::pressed(5, 200);
+  EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").text, "undefined: the scene has no friction");
+  sides.scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
+  EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").text, "undefined: neither side ever slides");
+  sides.result.instants[4].regions[0].sliding = true;
+  EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").text, "undefined: the fast model never slides");
+  sides.run.instants[4].regions[0].sliding = true;
+  EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").number, 0.0);
 }
 
 TEST(Figures, CarryTheErrorsTheirUncertaintyAndUnits) {

@@ -49,7 +49,7 @@ TEST(GateFile, EveryFaultIsToldAtOnceWithItsLine) {
       "title = \"t\"\nrun = \"compare\"\nscene = 3\n[[gate]]\nname = \"g\"\nkind = \"truth\"\nquantty = \"x\"\n"
       "limit = -1\nunit = \"\"\nreason = \"\"\nred = []\n");
   EXPECT_THAT(told, HasSubstr("gates/a.toml:2:"));
-  EXPECT_THAT(told, HasSubstr("run: expected \"fast\" or \"reference\""));
+  EXPECT_THAT(told, HasSubstr("run = \"compare\"; expected \"fast\" or \"reference\""));
   EXPECT_THAT(told, HasSubstr("gates/a.toml:3:"));
   EXPECT_THAT(told, HasSubstr("gates/a.toml:7:1: unknown key \"gate.quantty\"; did you mean \"gate.quantity\"?"));
   EXPECT_THAT(told, HasSubstr("gates/a.toml:8:9: gate.limit: expected a number above 0"));

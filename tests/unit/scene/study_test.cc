@@ -2,12 +2,10 @@
 #include "scene/study.h"
 
 #include "scene/scene_io.h"
+#include "unit/scene/study_file_test.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <fstream>
 
 namespace touchstone::scene {
 namespace {
@@ -18,30 +16,12 @@ using testing::HasSubstr;
 const std::string base = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/ball-on-cube-press.toml";
 const std::string head = "scene = \"" + base + "\"\nrun = \"fast\"\n";
 
-class StudyTest : public testing::Test {
+class StudyTest : public StudyFileTest {
  protected:
-  StudyTest() : file_(std::filesystem::temp_directory_path() / ("study-" + std::to_string(::getpid()) + ".toml")) {}
-  ~StudyTest() override { std::filesystem::remove(file_); }
-
-  Study read(const std::string& text) {
-    std::ofstream(file_) << text;
-    return load_study(file_);
-  }
-  /// What is said about a bad study, without the file's name.
+  Study read(const std::string& text) { return load_study(written(text)); }
   std::string refusal(const std::string& text) {
-    try {
-      const Study study = read(text);
-      (void)load_cases(study);
-    } catch (const InputError& error) {
-      std::string message = error.what();
-      for (std::size_t at; (at = message.find(file_.string() + ":")) != std::string::npos;) {
-        message.erase(at, file_.string().size() + 1);
-      }
-      return message;
-    }
-    return "accepted";
+    return refusal_of([&] { (void)load_cases(read(text)); });
   }
-  std::filesystem::path file_;
 };
 
 std::vector<std::string> names(const Study& study) {

@@ -1,11 +1,10 @@
 // Tuning studies: what they mean, and what is said about bad ones.
 #include "scene/tuning_study.h"
 
+#include "unit/scene/study_file_test.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <fstream>
 
 namespace touchstone::scene {
 namespace {
@@ -20,30 +19,12 @@ const std::string held_out = "[[held_out]]\nname = \"larger\"\ndiffers = \"tool\
                              "ball-on-cube-press.toml\"\nset = { tool.radius_m = 0.0104 }\ndepth_m = [0.001, 0.003]\n";
 const std::string stiffness = "[[parameter]]\nkey = \"contact.k1_n_per_m\"\nbounds = [1.0e3, 1.0e7]\n";
 
-class TuningStudyTest : public testing::Test {
+class TuningStudyTest : public StudyFileTest {
  protected:
-  TuningStudyTest()
-      : file_(std::filesystem::temp_directory_path() / ("tuning-" + std::to_string(::getpid()) + ".toml")) {}
-  ~TuningStudyTest() override { std::filesystem::remove(file_); }
-
-  TuningStudy read(const std::string& text) {
-    std::ofstream(file_) << text;
-    return load_tuning_study(file_);
-  }
-  /// What is said about a bad study, without the file's name.
+  TuningStudy read(const std::string& text) { return load_tuning_study(written(text)); }
   std::string refusal(const std::string& text) {
-    try {
-      (void)read(text);
-    } catch (const InputError& error) {
-      std::string message = error.what();
-      for (std::size_t at; (at = message.find(file_.string() + ":")) != std::string::npos;) {
-        message.erase(at, file_.string().size() + 1);
-      }
-      return message;
-    }
-    return "";
+    return refusal_of([&] { (void)read(text); });
   }
-  std::filesystem::path file_;
 };
 
 TEST_F(TuningStudyTest, HoldsContactsParametersAndWhatFollowsFromThem) {
