@@ -15,6 +15,7 @@
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -248,14 +249,20 @@ TEST_F(StudyFolderTest, WorkersThatRaceRunEveryCaseOnce) {
 
 TEST_F(StudyFolderTest, AFailureIsNotRepeatedByEveryWorkerOfOneRace) {
   const StudyManifest manifest = expanded("[0.0]");
+  // Nobody fails before both are there.
+  int both_there[2];
+  ASSERT_EQ(::pipe(both_there), 0);
   const auto fails = [&](const path& scene_file, const path& result) -> int {
+    char there[2];
+    for (ssize_t count = 0; count < 2; count += std::max<ssize_t>(0, ::read(both_there[0], there, 2 - count))) continue;
+    EXPECT_EQ(::write(both_there[1], there, 2), 2);
     (void)counting_run(std::chrono::milliseconds(300))(scene_file, result);
     return fast::not_converged;
   };
   std::vector<pid_t> workers;
   for (int worker = 0; worker < 2; ++worker) {
     workers.push_back(::fork());
-    if (workers.back() == 0) ::_exit(run_all(manifest, fails));
+    if (workers.back() == 0) ::_exit(::write(both_there[1], "+", 1) == 1 ? run_all(manifest, fails) : 0);
   }
   for (const pid_t worker : workers) {
     int status = 0;
