@@ -255,8 +255,8 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     report.trouble = "the starting state turns an element inside out";
     return report;
   }
-  // With friction the nodes' status may come round again and again, as Newton steps over an answer and back: half a step
-  // leads out.
+  // With friction the nodes' status may come round again and again. Where Newton steps over an answer and back, half a
+  // step leads out; tried at every turn it only makes the circle larger.
   constexpr int most_cycles = 4;
   int cycles = 0;
   std::set<std::string> passed;
@@ -380,7 +380,7 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     }
     // Shorten the step only as far as every element stays admissible.
     const State<dim> before = state;
-    double share = comes_round ? 0.5 : 1.0;
+    double share = comes_round && cycles == 1 ? 0.5 : 1.0;
     for (int halvings = 0;; ++halvings, share *= 0.5) {
       state.u_m = before.u_m + share * du_m;
       state.p_pa = before.p_pa + share * dp_pa;
