@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <set>
+#include <stdexcept>
 
 namespace touchstone::reference {
 namespace {
@@ -393,6 +394,32 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
       }
     }
   }
+}
+
+template <int dim>
+Eigen::Matrix<double, dim, Eigen::Dynamic> ContactProblem<dim>::linear_displacement_m(const Nodal& force_n) {
+  if (!holds_rest_factor_) {
+    assemble_tangent(rest(), Tangent::consistent);
+    if (!solver_->factorise(matrix_)) throw std::runtime_error("the stiffness at rest is singular");
+    holds_rest_factor_ = true;
+  }
+  Eigen::VectorXd x(unknowns_);
+  for (int node = 0; node < mesh_.node_count(); ++node) {
+    for (int i = 0; i < dim; ++i) {
+      if (const int unknown = unknown_[node * dim + i]; unknown >= 0) x[unknown] = force_n(i, node);
+    }
+  }
+  solver_->solve(x);
+  Nodal u_m = Nodal::Zero(dim, mesh_.node_count());
+  for (int node = 0; node < mesh_.node_count(); ++node) {
+    for (int i = 0; i < dim; ++i) {
+      if (const int unknown = unknown_[node * dim + i]; unknown >= 0) u_m(i, node) = x[unknown];
+    }
+  }
+  for (const auto& hanging : mesh_.hanging) {
+    for (const auto& [master, weight] : hanging.masters) u_m.col(hanging.node) += weight * u_m.col(master);
+  }
+  return u_m;
 }
 
 template class ContactProblem<2>;
