@@ -56,14 +56,19 @@ std::string paper_sentence(const Trade& trade, TradeError error, const std::stri
   const auto of_paper = [](const TradeRow& row) { return row.family == TradeFamily::paper; };
   const TradeRow* paper = most_accurate(trade, error, of_paper);
   if (paper == nullptr) return "The paper's model has no " + what + " that could be judged.";
-  const std::vector<std::size_t> front = pareto_front(trade.rows, error);
-  const bool on_front = std::any_of(front.begin(), front.end(), [&](std::size_t k) { return of_paper(trade.rows[k]); });
   const std::string best = fmt::format("In {} the best of the paper's model is {}", what, with_numbers(*paper, error));
-  if (!on_front) {
-    const std::optional<std::size_t> by =
-        dominating(trade.rows, error)[static_cast<std::size_t>(paper - trade.rows.data())];
-    return fmt::format("{}. It loses outright: {} is no slower and no worse.", best,
-                       with_numbers(trade.rows[*by], error));
+  const std::optional<std::size_t> by =
+      dominating(trade.rows, error)[static_cast<std::size_t>(paper - trade.rows.data())];
+  if (by && !of_paper(trade.rows[*by])) {
+    std::string text =
+        fmt::format("{}. It loses: {} is no slower and no worse.", best, with_numbers(trade.rows[*by], error));
+    const std::vector<std::size_t> front = pareto_front(trade.rows, error);
+    const auto left = std::find_if(front.begin(), front.end(), [&](std::size_t k) { return of_paper(trade.rows[k]); });
+    if (left != front.end()) {
+      text += fmt::format(" Of the paper's model only what is faster and worse stays on the front, such as {}.",
+                          with_numbers(trade.rows[*left], error));
+    }
+    return text;
   }
   const TradeRow* rival = most_accurate(trade, error, [&](const TradeRow& row) {
     return !of_paper(row) && row.family != TradeFamily::reference && row.step_p999_us <= trade.tick_us;

@@ -67,9 +67,9 @@ struct Trade {
 };
 
 struct TradeOptions {
-  std::vector<std::filesystem::path> parameters;  ///< files that tune left, each a row more
-  std::filesystem::path held_out;                 ///< a tuning study; empty: judged on the scene
-  bool quick = false;                             ///< few steps, small sizes
+  std::vector<std::filesystem::path> parameters{};  ///< files that tune left, each a row more
+  std::filesystem::path held_out{};                 ///< a tuning study; empty: judged on the scene
+  bool quick = false;                               ///< few steps, small sizes
 };
 
 /// Builds, measures and judges every row.

@@ -297,6 +297,9 @@ class Ladder {
         row.size = response.unknowns;
         row.note =
             fmt::format("{}, {} nodes may be touched; displacements only, no normals", response.model, model->nodes());
+        if (response.model.starts_with("axisymmetric")) {
+          row.note += "; a tool that leaves the axis would need the whole body";
+        }
         bool solved = true;
         judge(row, {}, true, [&](const TuningData& data) {
           std::unique_ptr<LinearContact> own;
@@ -437,7 +440,7 @@ class Ladder {
         const auto touches = [](const scene::InstantRecord& r) { return r.depth_m > grazing_depth_m; };
         touching += static_cast<int>(std::count_if(run.instants.begin(), run.instants.end(), touches));
         row.size = data.result.levels[static_cast<std::size_t>(level - 1)].unknowns;
-        dim = data.result.model.starts_with("axi") ? 2 : 3;
+        dim = data.result.model.starts_with("axisymmetric") ? 2 : 3;
         return run;
       });
       row.step_p50_us = 1e6 * wall_s / touching;

@@ -68,27 +68,32 @@ LinearResponse condense(const scene::Scene& scene, const ModelChoice& choice, co
   out.force_on_tool.resize(3, n);
   out.compliance_m_per_n.resize(n, n);
   out.displacement_m_per_n.resize(3 * rest_points_m.cols(), n);
-  using Nodal = Eigen::Matrix<double, dim, Eigen::Dynamic>;
-  Nodal force_n = Nodal::Zero(dim, problem.mesh().node_count());
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const int node = nodes[static_cast<std::size_t>(j)];
-    const Eigen::Matrix<double, dim, 1> N = problem.surface_normal(node);
-    out.nodes_m.col(j) = in_world<dim>(problem.mesh().points_m.col(node));
-    out.normals.col(j) = in_world<dim>(N);
-    scene::Vec3 on_tool = images * in_world<dim>(N);
-    if (dim == 2 || mirror_x) on_tool.x() = 0.0;
-    if (mirror_y) on_tool.y() = 0.0;
-    out.force_on_tool.col(j) = on_tool;
-
-    force_n.col(node) = -N;
-    const Nodal u_m = problem.linear_displacement_m(force_n);
-    force_n.col(node).setZero();
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const int other = nodes[static_cast<std::size_t>(i)];
-      out.compliance_m_per_n(i, j) = -problem.surface_normal(other).dot(u_m.col(other));
+  // As many columns at a time as keep the factor in use while it is in the cache.
+  constexpr Eigen::Index block = 32;
+  for (Eigen::Index first = 0; first < n; first += block) {
+    const Eigen::Index count = std::min(block, n - first);
+    std::vector<typename ContactProblem<dim>::NodeForce> forces;
+    for (Eigen::Index j = first; j < first + count; ++j) {
+      const int node = nodes[static_cast<std::size_t>(j)];
+      const Eigen::Matrix<double, dim, 1> N = problem.surface_normal(node);
+      forces.push_back({node, -N});
+      out.nodes_m.col(j) = in_world<dim>(problem.mesh().points_m.col(node));
+      out.normals.col(j) = in_world<dim>(N);
+      scene::Vec3 on_tool = images * in_world<dim>(N);
+      if (dim == 2 || mirror_x) on_tool.x() = 0.0;
+      if (mirror_y) on_tool.y() = 0.0;
+      out.force_on_tool.col(j) = on_tool;
     }
-    out.displacement_m_per_n.col(j) = sampler.displacement_m(u_m).reshaped();
-    if (progress) progress(static_cast<double>(j + 1) / static_cast<double>(n));
+    const auto displacements_m = problem.linear_displacements_m(forces);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const auto& u_m = displacements_m[static_cast<std::size_t>(k)];
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const int other = nodes[static_cast<std::size_t>(i)];
+        out.compliance_m_per_n(i, first + k) = -problem.surface_normal(other).dot(u_m.col(other));
+      }
+      out.displacement_m_per_n.col(first + k) = sampler.displacement_m(u_m).reshaped();
+    }
+    if (progress) progress(static_cast<double>(first + count) / static_cast<double>(n));
   }
   // Symmetric by Betti's theorem; now also in the last digits.
   out.compliance_m_per_n = (0.5 * (out.compliance_m_per_n + out.compliance_m_per_n.transpose())).eval();

@@ -153,13 +153,17 @@ class ContactProblem : public ranks::Part {
   /// support's force where displacement is prescribed, zero elsewhere but for contact.
   [[nodiscard]] Eigen::Matrix<double, dim, Eigen::Dynamic> internal_forces(const State<dim>& state) const;
 
-  /// The displacement that forces on the nodes bring about by the stiffness at rest: one linear solve, the matrix
-  /// factorised at the first call, after which no new place may be prescribed and nothing else be solved. Prescribed
-  /// places stay. The bulk modulus is the tangent's, see MixedMaterial.
-  /// @param force_n  one column per node, zero at hanging ones
+  /// A force on one node, which must not hang.
+  struct NodeForce {
+    int node = 0;
+    Eigen::Matrix<double, dim, 1> force_n = Eigen::Matrix<double, dim, 1>::Zero();
+  };
+  /// The nodal displacements that each force alone brings about by the stiffness at rest, the matrix factorised at the
+  /// first call, after which no new place may be prescribed and nothing else be solved. Prescribed places stay. The
+  /// bulk modulus is the tangent's, see MixedMaterial.
   /// @throws std::runtime_error when the stiffness is singular
-  [[nodiscard]] Eigen::Matrix<double, dim, Eigen::Dynamic> linear_displacement_m(
-      const Eigen::Matrix<double, dim, Eigen::Dynamic>& force_n);
+  [[nodiscard]] std::vector<Eigen::Matrix<double, dim, Eigen::Dynamic>> linear_displacements_m(
+      const std::vector<NodeForce>& forces);
 
   /// The nodes that contact looks at, and the outward normal of the surface at rest at one of them.
   [[nodiscard]] const std::vector<int>& contact_nodes() const noexcept { return contact_nodes_; }
