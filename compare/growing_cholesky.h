@@ -16,20 +16,22 @@ class GrowingCholesky {
   /// Indices of the part, in the order of the factor's rows.
   [[nodiscard]] const std::vector<Eigen::Index>& part() const noexcept { return part_; }
 
+  /// A part at once: cheaper than one by one where much of it is new. @returns false, the part empty, when it is not
+  /// positive definite
+  bool assign(const std::vector<Eigen::Index>& part);
+
   /// @returns false, nothing changed, when the part would no longer be positive definite
   bool add(Eigen::Index index);
 
   /// @param row  place in part()
   void remove(Eigen::Index row);
 
-  void clear() noexcept { part_.clear(); }
-
   /// In place. @param x one entry per index of the part
   void solve(Eigen::Ref<Eigen::VectorXd> x) const;
 
  private:
   const Eigen::MatrixXd& matrix_;
-  Eigen::MatrixXd lower_;  ///< the leading part().size() rows and columns hold L
+  Eigen::MatrixXd upper_;  ///< U of U' U, in the leading part().size() rows and columns; below it anything
   std::vector<Eigen::Index> part_;
 };
 

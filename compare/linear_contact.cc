@@ -53,6 +53,47 @@ void LinearContact::solve_touching() {
   factor_.solve(f);
 }
 
+void LinearContact::change_all() {
+  // One by one while few change, which is nearly always.
+  constexpr std::size_t few = 16;
+  const std::vector<Eigen::Index>& part = factor_.part();
+  next_.clear();
+  for (const Eigen::Index i : part) {
+    if (node_force_n_[i] >= 0.0) next_.push_back(i);
+  }
+  const std::size_t kept = next_.size(), leaving = part.size() - kept;
+  for (Eigen::Index i = 0; i < gap_m_.size(); ++i) {
+    if (gap_m_[i] < -gap_tolerance_m) next_.push_back(i);
+  }
+  const std::size_t joining = next_.size() - kept;
+  solved_ = leaving + joining == 0;
+  if (leaving + joining > few) {
+    factor_.assign(next_);
+    return;
+  }
+  for (std::size_t k = part.size(); k-- > 0;) {
+    if (node_force_n_[part[k]] < 0.0) factor_.remove(static_cast<Eigen::Index>(k));
+  }
+  for (std::size_t k = kept; k < next_.size(); ++k) factor_.add(next_[k]);
+}
+
+void LinearContact::change_worst() {
+  const std::vector<Eigen::Index>& part = factor_.part();
+  Eigen::Index row = -1, node = -1;
+  for (std::size_t k = 0; k < part.size(); ++k) {
+    const double force_n = node_force_n_[part[k]];
+    if (force_n < 0.0 && (row < 0 || force_n < node_force_n_[part[static_cast<std::size_t>(row)]])) {
+      row = static_cast<Eigen::Index>(k);
+    }
+  }
+  solved_ = row < 0 && gap_m_.minCoeff(&node) >= -gap_tolerance_m;
+  if (row >= 0) {
+    factor_.remove(row);
+  } else if (!solved_) {
+    factor_.add(node);
+  }
+}
+
 void LinearContact::step(const scene::Pose& pose) {
   find_rest_gaps(pose);
   for (std::size_t k = factor_.part().size(); k-- > 0;) {
@@ -74,34 +115,10 @@ void LinearContact::step(const scene::Pose& pose) {
     }
     for (const Eigen::Index i : part) gap_m_[i] = 0.0;
 
-    Eigen::Index worst_row = -1, worst_node = -1;
-    double worst_n = 0.0, worst_m = -gap_tolerance_m;
-    solved_ = true;
-    for (std::size_t k = part.size(); k-- > 0;) {
-      const double force_n = part_n_[static_cast<Eigen::Index>(k)];
-      if (force_n >= 0.0) continue;
-      solved_ = false;
-      if (!one_only) {
-        factor_.remove(static_cast<Eigen::Index>(k));
-      } else if (force_n < worst_n) {
-        worst_n = force_n;
-        worst_row = static_cast<Eigen::Index>(k);
-      }
-    }
-    for (Eigen::Index i = 0; i < gap_m_.size(); ++i) {
-      if (gap_m_[i] >= -gap_tolerance_m) continue;
-      solved_ = false;
-      if (!one_only) {
-        factor_.add(i);
-      } else if (gap_m_[i] < worst_m) {
-        worst_m = gap_m_[i];
-        worst_node = i;
-      }
-    }
-    if (worst_row >= 0) {
-      factor_.remove(worst_row);
-    } else if (worst_node >= 0) {
-      factor_.add(worst_node);
+    if (one_only) {
+      change_worst();
+    } else {
+      change_all();
     }
   }
   force_n_.setZero();

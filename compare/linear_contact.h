@@ -47,6 +47,10 @@ class LinearContact {
  private:
   void find_rest_gaps(const scene::Pose& pose);
   void solve_touching();
+  /// The next contact: lets every node go that pulls and takes in every one inside the tool, or the worst one alone.
+  /// Without any the contact is solved.
+  void change_all();
+  void change_worst();
 
   std::shared_ptr<const reference::ToolDistance> tool_;
   double ball_radius_m_ = 0.0;  ///< of a ball about its frame's origin, whose gap has a formula; 0: another tool
@@ -56,6 +60,7 @@ class LinearContact {
   GrowingCholesky factor_;
   Eigen::VectorXd rest_gap_m_, gap_m_, node_force_n_, part_n_;
   Eigen::VectorXf displacement_m_;
+  std::vector<Eigen::Index> next_;
   scene::Vec3 force_n_ = scene::Vec3::Zero();
   bool solved_ = true;
 };

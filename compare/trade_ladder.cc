@@ -280,7 +280,7 @@ class Ladder {
   }
 
   void compliances() {
-    const int levels = options_.quick ? 1 : 3;
+    const int levels = options_.quick ? 1 : 2;
     for (int level = 0; level < levels; ++level) {
       TradeRow row{.name = fmt::format("linear compliance, mesh {}", level + 1),
                    .key = fmt::format("compliance-{}", level + 1),

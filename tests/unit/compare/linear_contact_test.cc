@@ -154,11 +154,22 @@ TEST(GrowingCholesky, FollowsWhatJoinsAndLeaves) {
     factor.solve(x);
     EXPECT_LT((K(part, part) * x - b).norm(), 1e-10 * b.norm() * K.norm()) << change;
   }
+  const std::vector<Eigen::Index> part = {7, 3, 21, 4};
+  ASSERT_TRUE(factor.assign(part));
+  ASSERT_TRUE(factor.add(11));
+  factor.remove(1);
+  const std::vector<Eigen::Index> left = {7, 21, 4, 11};
+  EXPECT_EQ(factor.part(), left);
+  const Eigen::Vector4d b(1.0, -2.0, 3.0, 0.5);
+  Eigen::VectorXd x = b;
+  factor.solve(x);
+  EXPECT_LT((K(left, left) * x - b).norm(), 1e-10 * K.norm());
   const Eigen::MatrixXd singular = Eigen::MatrixXd::Ones(2, 2);
   GrowingCholesky cannot(singular);
   EXPECT_TRUE(cannot.add(0));
   EXPECT_FALSE(cannot.add(1));
   EXPECT_EQ(cannot.part().size(), 1u);
+  EXPECT_FALSE(cannot.assign({0, 1}));
 }
 
 }  // namespace

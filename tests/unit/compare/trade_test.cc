@@ -217,20 +217,27 @@ TEST_F(TradeTest, JudgesTheWorstHeldOutContactWithTunedValues) {
            "\"\nset = { compare.instants = 5, fast.triangles = 800, tool.radius_m = " + radius +
            ", \"track[1].position_m[2]\" = " + lowest + " }\n";
   };
-  const std::filesystem::path study = write(
-      "study.toml", "kind = \"tuning\"\n[[training]]\nname = \"given\"\nscene = \"" + scene_file + "\"\n" +
-                        contact("a little larger", "0.0102", "0.0662") + contact("half as large", "0.005", "0.062") +
-                        "[[parameter]]\nkey = \"contact.k1_n_per_m\"\nbounds = [1.0e3, 1.0e5]\n");
-  TradeOptions options;
-  options.parameters = {tuned};
-  const Trade own = run(ball_on_ball(1), options);
-  options.held_out = study;
-  const Trade held_out = run(ball_on_ball(1), options);
-  ASSERT_EQ(held_out.contacts.size(), 2u);
+  const auto held_out_on = [&](const std::string& contacts) {
+    TradeOptions options;
+    options.parameters = {tuned};
+    options.held_out =
+        write("study.toml", "kind = \"tuning\"\n[[training]]\nname = \"given\"\nscene = \"" + scene_file + "\"\n" +
+                                contacts + "[[parameter]]\nkey = \"contact.k1_n_per_m\"\nbounds = [1.0e3, 1.0e5]\n");
+    return run(ball_on_ball(1), options);
+  };
+  const std::string larger = contact("a little larger", "0.0102", "0.0662"),
+                    half = contact("half as large", "0.005", "0.062");
+  const Trade own = run(ball_on_ball(1), {.parameters = {tuned}});
   EXPECT_EQ(find(own, "tuned-tuned").force_contact, own.title);
-  EXPECT_EQ(find(held_out, "tuned-tuned").force_contact, "half as large");
-  EXPECT_GT(*find(held_out, "tuned-tuned").force_nrmse.value, *find(own, "tuned-tuned").force_nrmse.value);
   EXPECT_LT(*find(own, "tuned-tuned").force_nrmse.value, *find(own, "corrected-duffing").force_nrmse.value);
+  const Trade first = held_out_on(larger), second = held_out_on(half), held_out = held_out_on(larger + half);
+  ASSERT_EQ(held_out.contacts.size(), 2u);
+  for (const char* key : {"tuned-tuned", "published-duffing", "compliance-1"}) {
+    const double a = *find(first, key).force_nrmse.value, b = *find(second, key).force_nrmse.value;
+    EXPECT_NE(a, b) << key;
+    EXPECT_EQ(*find(held_out, key).force_nrmse.value, std::max(a, b)) << key;
+    EXPECT_EQ(find(held_out, key).force_contact, a > b ? "a little larger" : "half as large") << key;
+  }
   // The yardstick of one mesh does not know how good it is.
   EXPECT_FALSE(find(own, "reference-1").force_nrmse.value);
   EXPECT_THAT(trade_text(held_out), HasSubstr("half as large"));
