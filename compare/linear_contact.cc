@@ -36,7 +36,9 @@ void LinearContact::find_rest_gaps(const scene::Pose& pose) {
       const scene::Vec3 to_center_m = pose.position_m - nodes_m_.col(i);
       const double along_m = to_center_m.dot(normals_.col(i));
       const double half2_m2 = ball_radius_m_ * ball_radius_m_ - to_center_m.squaredNorm() + along_m * along_m;
-      rest_gap_m_[i] = half2_m2 >= 0.0 ? along_m - std::sqrt(half2_m2) : infinite;
+      // A ball wholly behind the node is seen through the body.
+      const bool met = half2_m2 >= 0.0 && along_m + std::sqrt(half2_m2) >= 0.0;
+      rest_gap_m_[i] = met ? along_m - std::sqrt(half2_m2) : infinite;
     }
     return;
   }

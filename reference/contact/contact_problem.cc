@@ -400,7 +400,7 @@ template <int dim>
 std::vector<Eigen::Matrix<double, dim, Eigen::Dynamic>> ContactProblem<dim>::linear_displacements_m(
     const std::vector<NodeForce>& forces) {
   if (!holds_rest_factor_) {
-    assemble_tangent(rest(), Tangent::consistent);
+    (void)assemble_tangent(rest(), Tangent::consistent);
     if (!solver_->factorise(matrix_)) throw std::runtime_error("the stiffness at rest is singular");
     holds_rest_factor_ = true;
   }

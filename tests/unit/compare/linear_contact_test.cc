@@ -102,6 +102,21 @@ TEST(LinearContact, GivesHertzsForce) {
   }
 }
 
+// The ball reaches below the top, where the normals of the cube's sides pass through it from behind.
+TEST(LinearContact, SeesNoToolThroughTheBody) {
+  const scene::Scene scene = load("ball-on-cube-press.toml", {"compare.instants=3", "reference.element_size_m=0.006"});
+  const reference::LinearResponse response =
+      reference::linear_response(scene, scene::tessellate(*scene::body_shape(scene.body), 200).points_m);
+  EXPECT_GT(response.nodes_m.cols(), 10);
+  EXPECT_LT((response.nodes_m.row(2).array() - 0.06).abs().maxCoeff(), 1e-9) << "all on the top";
+  LinearContact contact(response, scene.tool);
+  constexpr double depth_m = 0.005;
+  contact.step({{0.0, 0.0, 0.065}, Eigen::Quaterniond::Identity()});
+  const double hertz_n =
+      4.0 / 3.0 * scene.body.material.contact_modulus_pa() * std::sqrt(scene.tool.radius_m) * std::pow(depth_m, 1.5);
+  EXPECT_NEAR(contact.force_n().z(), hertz_n, 0.15 * hertz_n);
+}
+
 TEST(LinearContact, LeavesNoNodeInsideTheToolNorPulled) {
   const scene::Scene scene = load("ball-on-cube-press.toml", {"compare.instants=4", "reference.element_size_m=0.006"});
   const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), 200);
