@@ -57,7 +57,7 @@ TEST(BulletPeer, TellsHowFarEveryPlaceOfItsSurfaceMoved) {
   EXPECT_DOUBLE_EQ(-u_m(2, 0), peer.dent_m());
   EXPECT_LT(-u_m(2, 1), peer.dent_m());
   EXPECT_LT((u_m.col(2) - 0.5 * (u_m.col(0) + u_m.col(1))).norm(), 1e-12);
-  EXPECT_EQ(u_m.col(3).norm(), 0.0) << "the base is held";
+  EXPECT_LT(u_m.col(3).norm(), 1e-8) << "the base is held";
 }
 
 TEST(BulletPeer, ABallInsideItIsSeenToPierceIt) {

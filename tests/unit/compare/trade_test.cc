@@ -93,6 +93,9 @@ TEST(TradeVerdict, SaysWhoWins) {
   const std::string for_speed = said({paper, row("columns", 200.0, 0.02, 0.001, TradeFamily::compliance)});
   EXPECT_THAT(for_speed, HasSubstr("for its speed alone"));
   EXPECT_THAT(for_speed, HasSubstr("at 20 times the time of a step and one part in 15"));
+  TradeRow late = row("columns", 200.0, 0.02, 0.001, TradeFamily::compliance);
+  late.step_p999_us = 1200.0;
+  EXPECT_THAT(said({paper, late}), HasSubstr("(but for its slowest"));
   // Nobody wins by what a device cannot wait for.
   EXPECT_THAT(said({paper, row("columns", 5000.0, 0.02, 0.001, TradeFamily::compliance)}), HasSubstr("It wins"));
   EXPECT_THAT(said({paper, row("columns", 200.0, 0.4, 0.001, TradeFamily::compliance)}), HasSubstr("It wins"));
