@@ -3,6 +3,7 @@
 #include "compare/gate_verb.h"
 #include "compare/results_verb.h"
 #include "compare/study_verb.h"
+#include "compare/trade_verb.h"
 #include "compare/tune_verb.h"
 #include "compare/verbs.h"
 #include "compare/verify_verb.h"
@@ -80,6 +81,10 @@ int main(int argc, char** argv) {
   compare::add_view_verb(app, view_options, exit_code);
   compare::TuneOptions tune_options;
   add_reference(compare::add_tune_verb(app, tune_options, reference, exit_code));
+  compare::TradeOptions trade_options;
+  CLI::App* trade_verb = compare::add_trade_verb(app, options, trade_options, reference, exit_code);
+  trade_verb->add_option("--out", options.out, "result folder (default out/<scene>-trade)");
+  add_reference(trade_verb);
   compare::ExportOptions export_options;
   CLI::App* export_verb = compare::add_export_verb(app, options, export_options, reference, exit_code);
   export_verb->add_option("--out", options.out, "result folder (default out/<scene>-export)");

@@ -256,6 +256,55 @@ Legend legend(const Plot& plot, double left_px, double right_px, double top_px) 
   return out;
 }
 
+/// Each name at the first of some places about its point where it covers no point and no other name; a thin line leads
+/// to those further off.
+std::string point_names(const Plot& plot, const Axis& x, const Axis& y) {
+  struct Box {
+    double left, top, right, bottom;
+    [[nodiscard]] bool overlaps(const Box& other) const {
+      return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
+    }
+  };
+  constexpr double letter_px = 6.0, height_px = 13.0, gap_px = 6.0;
+  std::vector<Box> taken;
+  for (const Curve& curve : plot.curves) {
+    for (std::size_t i = 0; curve.markers && i < curve.x.size(); ++i) {
+      if (!x.can_show(curve.x[i]) || !y.can_show(curve.y[i])) continue;
+      const double px = x.px(curve.x[i]), py = y.px(curve.y[i]);
+      taken.push_back({px - 3.0, py - 3.0, px + 3.0, py + 3.0});
+    }
+  }
+  std::string out;
+  for (const PointName& one : plot.names) {
+    if (!x.can_show(one.x) || !y.can_show(one.y)) continue;
+    const double px = x.px(one.x), py = y.px(one.y), width_px = letter_px * static_cast<double>(one.name.size());
+    std::optional<Box> place;
+    for (int ring = 0; ring < 6 && !place; ++ring) {
+      const double away_px = ring * height_px;
+      for (const auto& [left, middle] :
+           {std::pair(px + gap_px, py), std::pair(px - gap_px - width_px, py), std::pair(px + gap_px, py - away_px),
+            std::pair(px + gap_px, py + away_px), std::pair(px - gap_px - width_px, py - away_px),
+            std::pair(px - gap_px - width_px, py + away_px), std::pair(px - 0.5 * width_px, py - away_px),
+            std::pair(px - 0.5 * width_px, py + away_px)}) {
+        const Box box{left, middle - 0.5 * height_px, left + width_px, middle + 0.5 * height_px};
+        const bool inside =
+            box.left >= x.from_px() && box.right <= x.to_px() && box.top >= y.to_px() && box.bottom <= y.from_px();
+        if (!inside || std::any_of(taken.begin(), taken.end(), [&](const Box& b) { return b.overlaps(box); })) continue;
+        place = box;
+        break;
+      }
+    }
+    if (!place) place = Box{px + gap_px, py - 0.5 * height_px, px + gap_px + width_px, py + 0.5 * height_px};
+    taken.push_back(*place);
+    const double middle_px = 0.5 * (place->top + place->bottom);
+    if (std::abs(middle_px - py) > height_px) {
+      out += grid_line(px, py, std::clamp(px, place->left, place->right), middle_px, 0.3);
+    }
+    out += text_at(place->left, middle_px + 4.0, "start", one.name, " font-size=\"11\"");
+  }
+  return out;
+}
+
 /// Widens the axis that has room so that a unit is as long on both.
 void give_same_scale(std::pair<double, double>& x, std::pair<double, double>& y, double width_px, double height_px) {
   const double per_px = std::max((x.second - x.first) / width_px, (y.second - y.first) / height_px);
@@ -359,6 +408,7 @@ std::string to_svg(const Plot& plot, int width_px, int height_px) {
   for (const Curve& curve : plot.curves) {
     if (curve.markers) out += curve_markers(curve, plot, x, y);
   }
+  out += point_names(plot, x, y);
   if (plot.cursor) {
     out += fmt::format(
         "<line class=\"cursor\" x1=\"{0:.1f}\" y1=\"{1}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" stroke=\"currentColor\" "

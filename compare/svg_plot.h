@@ -37,6 +37,12 @@ struct Span {
   double shade = 0.1;  ///< 0 to 1, of the text's colour
 };
 
+/// A name beside a point, where there is room for it.
+struct PointName {
+  std::string name;
+  double x = 0.0, y = 0.0;
+};
+
 struct Plot {
   std::string title;
   std::string x_label, y_label;  ///< with unit
@@ -47,6 +53,7 @@ struct Plot {
   std::vector<Span> spans;
   std::vector<Band> bands;
   std::vector<Curve> curves;
+  std::vector<PointName> names = {};
 };
 
 /// @returns one <svg> element, well-formed XML; without any point to draw it says "nothing to show"

@@ -28,7 +28,7 @@ void keep(std::vector<T>& list, const std::vector<std::size_t>& at) {
   list = std::move(kept);
 }
 
-void keep_instants(reference::Result& result, const std::vector<std::size_t>& at) {
+void keep_in_result(reference::Result& result, const std::vector<std::size_t>& at) {
   keep(result.instants, at);
   keep(result.region_middles_m, at);
   keep(result.force_uncertainty_n, at);
@@ -38,28 +38,6 @@ void keep_instants(reference::Result& result, const std::vector<std::size_t>& at
   keep(result.equilibrium_rel, at);
   keep(result.volume_change_rel, at);
   for (reference::LevelRecord& level : result.levels) keep(level.force_n, at);
-}
-
-TuningData tuning_data(const scene::TuningContact& contact, const SolveReference& solve) {
-  TuningData data{
-      contact, {}, {}, scene::tessellate(*scene::body_shape(contact.scene.body), contact.scene.fast.triangles)};
-  data.result = solve(contact.scene, data.surface);
-  for (std::size_t t = 0; t < data.result.instants.size(); ++t) {
-    const double depth_m = data.result.instants[t].depth_m;
-    const bool from_rest = contact.depth_m[0] == 0.0;
-    if ((from_rest || depth_m > contact.depth_m[0]) && depth_m <= contact.depth_m[1]) data.instants.push_back(t);
-  }
-  keep_instants(data.result, data.instants);
-  const auto touches = [](const scene::InstantRecord& record) {
-    return record.depth_m > grazing_depth_m && record.force_n().norm() > 0.0;
-  };
-  if (std::none_of(data.result.instants.begin(), data.result.instants.end(), touches)) {
-    throw scene::InputError(
-        fmt::format("contact \"{}\": the reference is never in contact at an instant that counts; "
-                    "expected some with a depth in depth_m",
-                    contact.name));
-  }
-  return data;
 }
 
 double peak_force_n(const TuningData& data) {
@@ -326,8 +304,7 @@ TuningOutcome outcome_of(const Tuning& tuning, const TunedModel& model, std::siz
   const TuningData& data = tuning.data[at];
   const scene::Scene scene = tuned_scene(data.contact.scene, model);
   TuningOutcome out{at, fast::run(scene), {}, {}};
-  keep(out.run.instants, data.instants);
-  keep(out.run.normals, data.instants);
+  keep_instants(out.run, data.instants);
   out.errors = compute_errors(scene, out.run, data.result);
   out.regime = regime_of(tuning, data, out.errors);
   return out;
@@ -410,6 +387,33 @@ std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model
 }
 
 }  // namespace
+
+TuningData tuning_data(const scene::TuningContact& contact, const SolveReference& solve) {
+  TuningData data{
+      contact, {}, {}, scene::tessellate(*scene::body_shape(contact.scene.body), contact.scene.fast.triangles)};
+  data.result = solve(contact.scene, data.surface);
+  for (std::size_t t = 0; t < data.result.instants.size(); ++t) {
+    const double depth_m = data.result.instants[t].depth_m;
+    const bool from_rest = contact.depth_m[0] == 0.0;
+    if ((from_rest || depth_m > contact.depth_m[0]) && depth_m <= contact.depth_m[1]) data.instants.push_back(t);
+  }
+  keep_in_result(data.result, data.instants);
+  const auto touches = [](const scene::InstantRecord& record) {
+    return record.depth_m > grazing_depth_m && record.force_n().norm() > 0.0;
+  };
+  if (std::none_of(data.result.instants.begin(), data.result.instants.end(), touches)) {
+    throw scene::InputError(
+        fmt::format("contact \"{}\": the reference is never in contact at an instant that counts; "
+                    "expected some with a depth in depth_m",
+                    contact.name));
+  }
+  return data;
+}
+
+void keep_instants(fast::Run& run, const std::vector<std::size_t>& instants) {
+  keep(run.instants, instants);
+  keep(run.normals, instants);
+}
 
 std::string TunedModel::name() const {
   return std::string(formulation == scene::Formulation::published ? "published" : "corrected") +

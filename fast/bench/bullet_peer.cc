@@ -198,6 +198,30 @@ bool BulletPeer::sound() const noexcept {
   return true;
 }
 
+Eigen::Matrix3Xd BulletPeer::displacement_m(const Eigen::Matrix3Xd& rest_points_m) const {
+  const int n = world_->scene.cells;
+  const double h = world_->scene.edge_m / n;
+  Eigen::Matrix3Xd u_m = Eigen::Matrix3Xd::Zero(3, rest_points_m.cols());
+  for (Eigen::Index k = 0; k < rest_points_m.cols(); ++k) {
+    const Vec3 at = (rest_points_m.col(k) - world_->rest_m.front()) / h;
+    std::array<int, 3> cell{};
+    Vec3 in_cell;
+    for (int axis = 0; axis < 3; ++axis) {
+      cell[static_cast<std::size_t>(axis)] = std::clamp(static_cast<int>(std::floor(at[axis])), 0, n - 1);
+      in_cell[axis] = std::clamp(at[axis] - cell[static_cast<std::size_t>(axis)], 0.0, 1.0);
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+      const int i = cell[0] + (corner & 1), j = cell[1] + ((corner >> 1) & 1), l = cell[2] + ((corner >> 2) & 1);
+      const int node = (l * (n + 1) + j) * (n + 1) + i;
+      double weight = 1.0;
+      for (int axis = 0; axis < 3; ++axis) weight *= (corner >> axis) & 1 ? in_cell[axis] : 1.0 - in_cell[axis];
+      u_m.col(k) +=
+          weight * (from_bullet(world_->body->m_nodes[node].m_x) - world_->rest_m[static_cast<std::size_t>(node)]);
+    }
+  }
+  return u_m;
+}
+
 double BulletPeer::dent_m() const noexcept {
   const int i = world_->top_middle;
   return world_->rest_m[static_cast<std::size_t>(i)].z() - from_bullet(world_->body->m_nodes[i].m_x).z();

@@ -40,6 +40,8 @@ class BulletPeer {
   [[nodiscard]] scene::Vec3 top_node_m() const noexcept;
   /// Every node stands at a finite place within twice the block's edge of its rest place.
   [[nodiscard]] bool sound() const noexcept;
+  /// Displacement at points of the block at rest, 3 x n: trilinear between the nodes of the grid.
+  [[nodiscard]] Eigen::Matrix3Xd displacement_m(const Eigen::Matrix3Xd& rest_points_m) const;
   /// How far that node has gone down [m].
   [[nodiscard]] double dent_m() const noexcept;
   /// How far the deepest node stands inside the ball [m]; 0 when none does.

@@ -245,6 +245,63 @@ class Reader : TomlReader {
   std::vector<const toml::table*> places_;  ///< of the parameters
 };
 
+class ParameterReader : TomlReader {
+ public:
+  using TomlReader::TomlReader;
+
+  Scene over(Scene scene) {
+    const ContactLaw before = scene.contact.law;
+    known_keys(document_, "", {"contact", "fast"});
+    take(document_, "", scene);
+    if (scene.contact.law != before && !linear_constant_) {
+      add(document_,
+          "contact.law is not the scene's, and its linear constant is missing; expected contact." +
+              std::string(scene.contact.law == ContactLaw::duffing ? "k1_n_per_m" : "k1_per_radius_n_per_m2"));
+    }
+    refuse_faults();
+    return scene;
+  }
+
+ private:
+  void take(const toml::table& table, const std::string& above, Scene& scene) {
+    for (const auto& [name, node] : table) {
+      const std::string key = above + std::string(name.str());
+      if (node.is_table()) {
+        take(*node.as_table(), key + ".", scene);
+      } else if (key == "contact.law") {
+        const std::string law = word(table, "law", {"duffing", "area_aware"});
+        scene.contact.law = law == "area_aware" ? ContactLaw::area_aware : ContactLaw::duffing;
+      } else if (key == "fast.formulation") {
+        const std::string formulation = word(table, "formulation", {"published", "corrected"});
+        scene.fast.formulation = formulation == "published" ? Formulation::published : Formulation::corrected;
+      } else {
+        take_number(key, node, name.source(), scene);
+      }
+    }
+  }
+
+  void take_number(const std::string& key, const toml::node& node, const toml::source_region& source, Scene& scene) {
+    const Tunable* what = tunable(key);
+    if (what == nullptr) {
+      std::vector<std::string> names = {"contact.law", "fast.formulation"};
+      for (const Tunable& each : tunables) names.emplace_back(each.key);
+      add(source,
+          "\"" + key + "\" is no parameter of the fast model; did you mean \"" + nearest_name(key, names) + "\"?");
+      return;
+    }
+    const Range& range = scene_field(what->scene_key).range;
+    const double value = node.is_number() ? *node.value<double>() : NAN;
+    if (!range.contains(value)) {
+      add(node, key + " = " + value_text(node) + "; expected a number in " + range.text());
+      return;
+    }
+    linear_constant_ = linear_constant_ || what->law.has_value();
+    if (!key.starts_with("contact.friction.") || scene.contact.friction) set_parameter(scene, key, value);
+  }
+
+  bool linear_constant_ = false;
+};
+
 }  // namespace
 
 bool applies(const TuningParameter& parameter, ContactLaw law) {
@@ -260,6 +317,11 @@ void set_parameter(Scene& scene, const std::string& key, double value) {
   } else {
     std::get<double& (*)(Scene&)>(scene_field(key).access)(scene) = value;
   }
+}
+
+Scene with_parameters(Scene scene, const std::filesystem::path& file) {
+  const toml::table document = read_document(file);
+  return ParameterReader(document, file).over(std::move(scene));
 }
 
 TuningStudy load_tuning_study(const std::filesystem::path& file,

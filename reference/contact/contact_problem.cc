@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <set>
+#include <stdexcept>
 
 namespace touchstone::reference {
 namespace {
@@ -395,6 +396,38 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
       }
     }
   }
+}
+
+template <int dim>
+std::vector<Eigen::Matrix<double, dim, Eigen::Dynamic>> ContactProblem<dim>::linear_displacements_m(
+    const std::vector<NodeForce>& forces) {
+  if (!holds_rest_factor_) {
+    (void)assemble_tangent(rest(), Tangent::consistent);
+    if (!solver_->factorise(matrix_)) throw std::runtime_error("the stiffness at rest is singular");
+    holds_rest_factor_ = true;
+  }
+  const auto count = static_cast<Eigen::Index>(forces.size());
+  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(unknowns_, count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const NodeForce& one = forces[static_cast<std::size_t>(k)];
+    for (int i = 0; i < dim; ++i) {
+      if (const int unknown = unknown_[one.node * dim + i]; unknown >= 0) x(unknown, k) = one.force_n[i];
+    }
+  }
+  solver_->solve_columns(x);
+  std::vector<Nodal> displacements_m(forces.size(), Nodal::Zero(dim, mesh_.node_count()));
+  for (Eigen::Index k = 0; k < count; ++k) {
+    Nodal& u_m = displacements_m[static_cast<std::size_t>(k)];
+    for (int node = 0; node < mesh_.node_count(); ++node) {
+      for (int i = 0; i < dim; ++i) {
+        if (const int unknown = unknown_[node * dim + i]; unknown >= 0) u_m(i, node) = x(unknown, k);
+      }
+    }
+    for (const auto& hanging : mesh_.hanging) {
+      for (const auto& [master, weight] : hanging.masters) u_m.col(hanging.node) += weight * u_m.col(master);
+    }
+  }
+  return displacements_m;
 }
 
 template class ContactProblem<2>;

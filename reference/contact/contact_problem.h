@@ -153,6 +153,22 @@ class ContactProblem : public ranks::Part {
   /// support's force where displacement is prescribed, zero elsewhere but for contact.
   [[nodiscard]] Eigen::Matrix<double, dim, Eigen::Dynamic> internal_forces(const State<dim>& state) const;
 
+  /// A force on one node, which must not hang.
+  struct NodeForce {
+    int node = 0;
+    Eigen::Matrix<double, dim, 1> force_n = Eigen::Matrix<double, dim, 1>::Zero();
+  };
+  /// The nodal displacements that each force alone brings about by the stiffness at rest, the matrix factorised at the
+  /// first call, after which no new place may be prescribed and nothing else be solved. Prescribed places stay. The
+  /// bulk modulus is the tangent's, see MixedMaterial.
+  /// @throws std::runtime_error when the stiffness is singular
+  [[nodiscard]] std::vector<Eigen::Matrix<double, dim, Eigen::Dynamic>> linear_displacements_m(
+      const std::vector<NodeForce>& forces);
+
+  /// The nodes that contact looks at, and the outward normal of the surface at rest at one of them.
+  [[nodiscard]] const std::vector<int>& contact_nodes() const noexcept { return contact_nodes_; }
+  [[nodiscard]] Eigen::Matrix<double, dim, 1> surface_normal(int node) const { return surface_normal_.col(node); }
+
   [[nodiscard]] const Mesh<dim>& mesh() const noexcept { return mesh_; }
   [[nodiscard]] int unknowns() const noexcept { return unknowns_; }
   [[nodiscard]] std::string linear_solver() const { return solver_->description(); }
@@ -304,6 +320,7 @@ class ContactProblem : public ranks::Part {
   std::unique_ptr<LinearSolver> solver_;  // after lead_
   double assembly_s_ = 0.0;
   SymmetricMatrix matrix_;  // this rank's part
+  bool holds_rest_factor_ = false;
   std::vector<Lane> lanes_;
 
   // Of the current Newton iteration.

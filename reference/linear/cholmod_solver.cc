@@ -39,17 +39,19 @@ struct CholmodSolver::State {
   }
 
   /// @param system CHOLMOD's name of the matrix to solve with
-  void solve(int system, Eigen::VectorXd& x) {
+  template <class Matrix>
+  void solve(int system, Matrix& x) {
     cholmod_dense right{};
-    right.nrow = right.nzmax = right.d = static_cast<std::size_t>(x.size());
-    right.ncol = 1;
+    right.nrow = right.d = static_cast<std::size_t>(x.rows());
+    right.ncol = static_cast<std::size_t>(x.cols());
+    right.nzmax = static_cast<std::size_t>(x.size());
     right.x = x.data();
     right.xtype = CHOLMOD_REAL;
     right.dtype = CHOLMOD_DOUBLE;
     if (!cholmod_l_solve2(system, factor, &right, nullptr, &solution, nullptr, &permuted, &supernode, &common)) {
       throw std::runtime_error("CHOLMOD could not solve: out of memory");
     }
-    x = Eigen::Map<const Eigen::VectorXd>(static_cast<const double*>(solution->x), x.size());
+    x = Eigen::Map<const Matrix>(static_cast<const double*>(solution->x), x.rows(), x.cols());
   }
 };
 static_assert(sizeof(SuiteSparse_long) == sizeof(std::int64_t));
@@ -89,6 +91,8 @@ bool CholmodSolver::factorise(const SymmetricMatrix& matrix) {
 }
 
 void CholmodSolver::solve(Eigen::VectorXd& x) { state_->solve(CHOLMOD_A, x); }
+
+void CholmodSolver::solve_columns(Eigen::MatrixXd& x) { state_->solve(CHOLMOD_A, x); }
 
 void CholmodSolver::solve_lower(Eigen::VectorXd& x) {
   state_->solve(CHOLMOD_P, x);

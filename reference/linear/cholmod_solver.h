@@ -23,6 +23,7 @@ class CholmodSolver : public LinearSolver {
   void analyse(const SymmetricMatrix& matrix) override;
   [[nodiscard]] bool factorise(const SymmetricMatrix& matrix) override;
   void solve(Eigen::VectorXd& x) override;
+  void solve_columns(Eigen::MatrixXd& x) override;
 
   /// The two halves of solve(), for the matrix is P' L L' P: L^-1 P x, and P' L^-T x.
   void solve_lower(Eigen::VectorXd& x);

@@ -40,6 +40,15 @@ class LinearSolver {
   /// Solves with the last factor. @param x in: right-hand side; out: solution
   virtual void solve(Eigen::VectorXd& x) = 0;
 
+  /// The same for every column, where the library can at less than the price of one by one.
+  virtual void solve_columns(Eigen::MatrixXd& x) {
+    for (Eigen::Index k = 0; k < x.cols(); ++k) {
+      Eigen::VectorXd column = x.col(k);
+      solve(column);
+      x.col(k) = column;
+    }
+  }
+
   /// Solves for one right-hand side, by whatever is cheapest.
   /// @param tolerance_rel  |L^-1 P (b - K x)| <= tolerance_rel |L^-1 P b| at least, P' L L' P the factor of K or of an
   ///                       older one like it: the residual as an energy

@@ -22,6 +22,7 @@ class TangentSolver : public LinearSolver {
   void analyse(const SymmetricMatrix& pattern) override;
   [[nodiscard]] bool factorise(const SymmetricMatrix& K) override;
   void solve(Eigen::VectorXd& x) override;
+  void solve_columns(Eigen::MatrixXd& x) override { cholesky_.solve_columns(x); }
 
   /// By the factor there is and conjugate gradients, or by a new factor.
   /// @param tolerance_rel of the energy norm |x| = sqrt(x' K x), with a K that may be an earlier one: the error of x

@@ -98,7 +98,11 @@ Gap<dim> RigidTool<dim>::gap(const Point& x_m) const {
 template <int dim>
 Gap<dim> RigidTool<dim>::gap_along(const Point& X_m, const Point& N, const Point& u_m) const {
   Gap<dim> g;
-  g.value_m = first_hit_m(*distance_, in_tool_frame(X_m), turned_into_tool_frame(N)) - N.dot(u_m);
+  const Vec3 X_T_m = in_tool_frame(X_m);
+  double along_m = first_hit_m(*distance_, X_T_m, turned_into_tool_frame(N));
+  // A tool that lies behind the place and does not hold it is seen through the body, from another side of it.
+  if (along_m < 0.0 && distance_->at(X_T_m).value_m > 0.0) along_m = std::numeric_limits<double>::infinity();
+  g.value_m = along_m - N.dot(u_m);
   g.gradient = -N;
   return g;
 }

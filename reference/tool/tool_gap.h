@@ -48,7 +48,7 @@ class RigidTool {
 
   /// Small kinematics: distance along the body's rest normal N from the point X + u to the tool's surface above the
   /// rest place X, g = s(X) - N . u. This is the boundary condition of Hertz's and Sneddon's problems. A line that
-  /// passes the tool by has no gap.
+  /// passes the tool by has no gap, nor has one that meets it only behind X, within the body.
   [[nodiscard]] Gap<dim> gap_along(const Point& X_m, const Point& N, const Point& u_m) const;
 
   /// A point of the world as a point of the tool, and back [m].

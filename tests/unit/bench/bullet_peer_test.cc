@@ -45,6 +45,21 @@ TEST(BulletPeer, GivesWayUnderTheBallAndIsNotPierced) {
   EXPECT_LT(peer.pierced_m(), 0.2 * depth_m);
 }
 
+TEST(BulletPeer, TellsHowFarEveryPlaceOfItsSurfaceMoved) {
+  BulletPeer peer(small_block());
+  for (int k = 1; k <= 40; ++k) peer.step(peer.top_node_m() + scene::Vec3(0, 0, 0.010 - 0.0025 * k / 40));
+  const scene::Vec3 node_m = peer.top_node_m();
+  const double spacing_m = small_block().edge_m / small_block().cells;
+  const scene::Vec3 next_m = node_m + scene::Vec3(spacing_m, 0, 0);
+  Eigen::Matrix3Xd places_m(3, 4);
+  places_m << node_m, next_m, 0.5 * (node_m + next_m), scene::Vec3(0.2 * spacing_m, 0.1 * spacing_m, 0.0);
+  const Eigen::Matrix3Xd u_m = peer.displacement_m(places_m);
+  EXPECT_DOUBLE_EQ(-u_m(2, 0), peer.dent_m());
+  EXPECT_LT(-u_m(2, 1), peer.dent_m());
+  EXPECT_LT((u_m.col(2) - 0.5 * (u_m.col(0) + u_m.col(1))).norm(), 1e-12);
+  EXPECT_LT(u_m.col(3).norm(), 1e-8) << "the base is held";
+}
+
 TEST(BulletPeer, ABallInsideItIsSeenToPierceIt) {
   BulletPeer peer(small_block());
   // One step is too short for the body to make way.
