@@ -256,8 +256,7 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     report.trouble = "the starting state turns an element inside out";
     return report;
   }
-  // With friction the nodes' status may come round again and again. Where Newton steps over an answer and back, half a
-  // step leads out; tried at every turn it only makes the circle larger.
+  // With friction the nodes' status may come round again and again.
   constexpr int most_cycles = 4;
   int cycles = 0;
   std::set<std::string> passed;
@@ -277,13 +276,12 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
         if (normal2 > 0.0) lambda_n_[node] /= normal2;
       }
     }
-    bool changed = false, comes_round = false;
+    bool changed = false;
     const std::vector<char> before_touching = friction_ ? state.touching : std::vector<char>();
     double open_m = update_touching(state, cycles > 0 || iteration > largest_iterations / 2, changed);
     if (friction_) {
       open_m = std::max(open_m, update_slipping(state, before_touching, current.nodal_n, iteration, changed));
-      comes_round = changed && !passed.insert(status_text(state)).second;
-      if (comes_round) ++cycles;
+      if (changed && !passed.insert(status_text(state)).second) ++cycles;
     }
     double still_to_move_m = 0.0;
     for (int node = 0; node < mesh_.node_count(); ++node) {
@@ -381,7 +379,7 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     }
     // Shorten the step only as far as every element stays admissible.
     const State<dim> before = state;
-    double share = comes_round && cycles == 1 ? 0.5 : 1.0;
+    double share = 1.0;
     for (int halvings = 0;; ++halvings, share *= 0.5) {
       state.u_m = before.u_m + share * du_m;
       state.p_pa = before.p_pa + share * dp_pa;
