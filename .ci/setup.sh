@@ -19,6 +19,7 @@ install_packages() {
   while read -r name; do
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
   done < <(grep -v '^#' .ci/packages)
+  command -v npm >/dev/null || missing+=(npm)  # Debian's is not added beside another one
   [ ${#missing[@]} -gt 0 ] || return 0
   echo "== Adding Debian packages: ${missing[*]}"
   [ "$(id -u)" = 0 ] || fail "these packages are missing and only root can add them; run it as root, or: sudo apt-get install ${missing[*]}"

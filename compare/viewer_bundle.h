@@ -1,4 +1,4 @@
-// The script of the report's view in space, as the build took it from viewer/viewer.bundle.js.
+// The script of the report's view in space, with what it uses of vtk.js, as viewer/bundle.js made it.
 #pragma once
 
 #include <string_view>

@@ -1,10 +1,8 @@
-// npm ci && npm run bundle: viewer.js and the parts of vtk.js it uses as one file, viewer.bundle.js.
-// The first line carries the sources' hashes, which a test compares with the files; the licences of what is bundled follow.
+// npm run bundle: viewer.js and the parts of vtk.js it uses as one script, in viewer_bundle.cc. The licences of what is
+// bundled come first.
 import { build } from 'esbuild';
-import { createHash } from 'node:crypto';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 
-const sha256 = (file) => createHash('sha256').update(readFileSync(file)).digest('hex');
 const result = await build({
   entryPoints: ['viewer.js'],
   bundle: true,
@@ -16,7 +14,6 @@ const result = await build({
   metafile: true,
   write: false,
 });
-const sources = ['viewer.js', 'package-lock.json'].map((file) => `${file} ${sha256(file)}`).join(', ');
 const packages = Object.keys(Object.values(result.metafile.outputs)[0].inputs)
   .map((file) => file.match(/^node_modules\/((?:@[^/]+\/)?[^/]+)/)?.[1])
   .filter(Boolean);
@@ -34,4 +31,15 @@ const notice = licences.join('\n\n').replaceAll('*/', '* /').replaceAll(/[^\n\x2
 // The page is XML too, where this would end the script.
 const code = result.outputFiles[0].text.replaceAll(']]>', ']] >');
 if (/<\/script|<!--/i.test(code)) throw new Error('the bundle holds text that would end the script early');
-writeFileSync('viewer.bundle.js', `/* sources: ${sources} */\n/*\n${notice}\n*/\n${code}`);
+if (code.includes(')bundle"')) throw new Error('the bundle holds text that would end the string early');
+writeFileSync('viewer_bundle.cc', `#include "compare/viewer_bundle.h"
+
+namespace touchstone::compare {
+
+const std::string_view viewer_bundle = R"bundle(/*
+${notice}
+*/
+${code})bundle";
+
+}  // namespace touchstone::compare
+`);

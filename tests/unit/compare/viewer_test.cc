@@ -82,10 +82,8 @@ TEST(Viewer, IsWellFormedAndItsDataEndsNoScript) {
   EXPECT_NE(section.find(viewer_bundle), std::string::npos);
 }
 
-TEST(Viewer, HoldsTheBundleThatIsKept) {
-  const auto file = scene::read_file(TOUCHSTONE_SOURCE_DIR "/compare/viewer/viewer.bundle.js");
-  ASSERT_TRUE(file.has_value());
-  EXPECT_EQ(viewer_bundle, *file);
+TEST(Viewer, HoldsVtkJsWithItsLicence) {
+  EXPECT_NE(viewer_bundle.find("with @kitware/vtk.js:\n"), std::string_view::npos);
   EXPECT_EQ(viewer_bundle.find("]]>"), std::string_view::npos);
 }
 
