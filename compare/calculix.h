@@ -19,6 +19,11 @@ struct CalculixStep {
 /// Reads a .dat file: as many steps as are complete in it, none when there is no such file.
 [[nodiscard]] std::vector<CalculixStep> read_calculix(const std::filesystem::path& dat, const reference::Deck& deck);
 
+/// Largest length of a column.
+[[nodiscard]] inline double longest_m(const Eigen::Matrix3Xd& vectors_m) {
+  return vectors_m.colwise().norm().maxCoeff();
+}
+
 struct CalculixRun {
   std::vector<CalculixStep> steps;  ///< fewer than the deck's when it did not converge
   double wall_s = 0.0, cpu_s = 0.0;

@@ -13,9 +13,6 @@
 namespace touchstone::compare {
 namespace {
 
-/// Largest length of a column.
-double longest_m(const Eigen::Matrix3Xd& vectors_m) { return vectors_m.colwise().norm().maxCoeff(); }
-
 /// Both codes at the instants that CalculiX reached, as a table for people and as columns.
 struct SideBySide {
   std::string text;

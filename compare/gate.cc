@@ -1,18 +1,11 @@
 #include "compare/gate.h"
 
-#include "compare/errors.h"
 #include "compare/figures.h"
 #include "compare/stored_reference.h"
-#include "fast/results.h"
-#include "fast/run.h"
-#include "reference/verification/closed_forms.h"
 #include "scene/scene_io.h"
-#include "scene/surface.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -64,119 +57,6 @@ bool is_asked(const scene::GateFile& file, const GateNames& names) {
   return std::ranges::any_of(file.gates, [&](const scene::Gate& g) { return is_asked(file.name, g.name, names); });
 }
 
-std::vector<std::string> with(std::vector<std::string> settings, const std::vector<std::string>& change) {
-  settings.insert(settings.end(), change.begin(), change.end());
-  return settings;
-}
-
-scene::Surface rest_surface(const scene::Scene& scene) {
-  return scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
-}
-
-/// A folder for solves that must not find the answers of earlier ones.
-class EmptyStore {
- public:
-  EmptyStore() : path_(std::filesystem::temp_directory_path() / ("touchstone-gate-" + std::to_string(::getpid()))) {
-    std::filesystem::remove_all(path_);
-  }
-  ~EmptyStore() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  EmptyStore(const EmptyStore&) = delete;
-  EmptyStore& operator=(const EmptyStore&) = delete;
-  [[nodiscard]] const path& folder() const noexcept { return path_; }
-
- private:
-  path path_;
-};
-
-/// Is the top of the body a plane? Then a small enough contact sees a half space.
-bool flat_top(const scene::Body& body) {
-  if (body.shape == scene::BodyShape::box) return true;
-  if (body.shape != scene::BodyShape::revolution || !body.profile.arc_radius_m.empty()) return false;
-  const auto& rz_m = body.profile.rz_m;
-  return rz_m.size() >= 2 && rz_m[rz_m.size() - 2].y() == rz_m.back().y();
-}
-
-/// Of a ball on a half space in small strain [N]; nothing for other scenes.
-std::optional<double> half_space_force_n(const scene::Scene& scene, double depth_m) {
-  const scene::Material& material = scene.body.material;
-  if (scene.tool.shape != scene::ToolShape::sphere || !flat_top(scene.body) || !scene.body.inclusions.empty() ||
-      scene.reference.kinematics != scene::Kinematics::small) {
-    return std::nullopt;
-  }
-  const double E_star_pa = material.youngs_modulus_pa / (1.0 - material.poissons_ratio * material.poissons_ratio);
-  return verification::hertz(E_star_pa, scene.tool.radius_m, depth_m).force_n;
-}
-
-std::size_t deepest(const std::vector<scene::InstantRecord>& instants) {
-  const auto at = std::ranges::max_element(instants, {}, &scene::InstantRecord::depth_m);
-  return static_cast<std::size_t>(at - instants.begin());
-}
-
-double peak_n(const std::vector<scene::InstantRecord>& instants) {
-  double peak = 0.0;
-  for (const scene::InstantRecord& record : instants) {
-    const double force_n = record.force_n().norm();
-    if (std::isnan(force_n) || force_n > peak) peak = force_n;
-  }
-  return peak;
-}
-
-scene::Figures fast_figures(const scene::GateFile& file, const scene::Scene& own, const scene::Scene& changed) {
-  if (file.reference.empty()) {
-    const fast::Run run = fast::run(changed);
-    scene::Figures figures = fast::figures(run);
-    figures.push_back({"force.peak_fast_n", peak_n(run.instants), "", "N"});
-    return figures;
-  }
-  const reference::Result stored = stored_reference(file.reference, own, rest_surface(own));
-  const fast::Run run = fast::run(changed);
-  return make_figures(compute_errors(changed, run, stored), run, stored);
-}
-
-/// Distance of a fresh answer from the stored one.
-void add_resolved(const reference::Result& result, const reference::Result& stored,
-                  const std::vector<double>& vertex_area_m2, scene::Figures& figures) {
-  if (result.instants.size() != stored.instants.size()) throw std::logic_error("another number of instants");
-  double force_n = 0.0, error = 0.0, scale = 0.0;
-  for (std::size_t t = 0; t < result.instants.size(); ++t) {
-    const scene::InstantRecord &now = result.instants[t], &then = stored.instants[t];
-    const double off_n = (now.force_n() - then.force_n()).norm();
-    if (std::isnan(off_n) || off_n > force_n) force_n = off_n;
-    for (std::size_t i = 0; i < vertex_area_m2.size(); ++i) {
-      const auto column = static_cast<Eigen::Index>(i);
-      const scene::Vec3 then_m = then.displacement_m.col(column);
-      error += vertex_area_m2[i] * (now.displacement_m.col(column) - then_m).squaredNorm();
-      scale += vertex_area_m2[i] * then_m.squaredNorm();
-    }
-  }
-  figures.push_back({"resolved.force_rel", force_n / peak_n(stored.instants), "", ""});
-  figures.push_back({"resolved.shape_rel_l2", std::sqrt(error / scale), "", ""});
-}
-
-scene::Figures reference_side_figures(const scene::GateFile& file, const scene::Scene& own,
-                                      const scene::Scene& changed) {
-  const scene::Surface surface = rest_surface(own);
-  std::optional<reference::Result> stored;
-  if (!file.reference.empty()) stored = stored_reference(file.reference, own, surface);
-  const EmptyStore store;
-  ReferenceOptions options;
-  options.store = store.folder();
-  const reference::Result result = solve_with_progress(changed, surface, options, true);
-  scene::Figures figures = reference_figures(result, reference_quality(result));
-  figures.push_back({"reference.force_peak_n", peak_n(result.instants), "", "N"});
-  const std::size_t at = deepest(result.instants);
-  if (const auto hertz_n = half_space_force_n(own, result.instants[at].depth_m)) {
-    const std::string key = "hertz.force_rel";
-    figures.push_back({key, result.instants[at].force_n().norm() / *hertz_n - 1.0, "", ""});
-    figures.push_back({key + std::string(uncertainty_suffix), result.force_uncertainty_n[at] / *hertz_n, "", ""});
-  }
-  if (stored) add_resolved(result, *stored, surface.vertex_area_m2, figures);
-  return figures;
-}
-
 /// The figures, or why there are none.
 struct Answer {
   scene::Figures figures;
@@ -214,7 +94,7 @@ GateRecord judged(const GateFolder& folder, const scene::GateFile& file, const s
 }
 
 std::string hash_of(const scene::GateFile& file) {
-  return scene::scene_hash(scene::load_scene(file.scene_file, file.set));
+  return scene::scene_hash(scene_of(file));
 }
 
 bool is_drift(const GateFolder& folder, const std::string& name) {
@@ -232,8 +112,7 @@ std::vector<scene::Fault> scene_faults(const scene::GateFile& file) {
   const auto check = [&](const std::vector<std::string>& change, const std::string& whose) {
     std::vector<scene::Fault> found;
     try {
-      const scene::Scene scene = scene::load_scene(file.scene_file, with(file.set, change));
-      if (file.run == scene::GateRun::reference || !file.reference.empty()) found = reference::unsupported(scene);
+      found = unsupported_by_gate(file, scene_of(file, change));
     } catch (const scene::InputError& error) {
       found = error.faults();
     }
@@ -304,13 +183,6 @@ GateFolder load_gates(const path& folder) {
   std::ranges::sort(out.files, {}, &scene::GateFile::name);
   find_unused(out);
   return out;
-}
-
-scene::Figures gate_figures(const scene::GateFile& file, const std::vector<std::string>& change) {
-  const scene::Scene own = scene::load_scene(file.scene_file, file.set);
-  const scene::Scene changed = scene::load_scene(file.scene_file, with(file.set, change));
-  return file.run == scene::GateRun::fast ? fast_figures(file, own, changed)
-                                          : reference_side_figures(file, own, changed);
 }
 
 GateRecord judge(const std::string& file, const scene::Gate& gate, const scene::Figures& figures,
@@ -414,7 +286,7 @@ std::vector<std::string> regenerate(const GateFolder& folder, const GateNames& n
   std::set<path> written;
   for (const scene::GateFile& file : folder.files) {
     if (file.reference.empty() || !is_asked(file, names) || !written.insert(file.reference).second) continue;
-    const scene::Scene scene = scene::load_scene(file.scene_file, file.set);
+    const scene::Scene scene = scene_of(file);
     const scene::Surface surface = rest_surface(scene);
     std::string before = "new";
     try {

@@ -7,6 +7,7 @@
 //   GATES/reference/accepted.json  the last accepted value of every drift gate
 #pragma once
 
+#include "compare/gate_figures.h"
 #include "compare/reference_run.h"
 #include "scene/gate_file.h"
 #include "scene/results.h"
@@ -57,20 +58,6 @@ struct GateRecord {
   [[nodiscard]] bool within() const noexcept { return margin() >= 0.0; }
   [[nodiscard]] bool passes() const noexcept { return failure.empty() && within(); }
 };
-
-/// Figures of a gate file's scene, computed anew. The fast model's are those of `touchstone compare` against the
-/// committed reference data, where the file names them, else those of `touchstone fast` and force.peak_fast_n. The
-/// reference's, always solved from nothing, are those of `touchstone reference`, reference.force_peak_n, and
-///   hertz.force_rel        force over Hertz's closed form - 1 at the deepest instant, where that applies: a ball on a
-///                          flat top in small strain; with its uncertainty
-///   resolved.force_rel, resolved.shape_rel_l2
-///                          its distance from the committed reference data, relative to the largest force and, by
-///                          area over points and instants, to the displacement
-/// What is compared with stays that of the file's own scene.
-/// @param change  values over the file's own, as for --set
-/// @throws scene::InputError, UnusableReference, reference::NotConverged, std::logic_error when `change` makes the
-///         answer incomparable
-[[nodiscard]] scene::Figures gate_figures(const scene::GateFile& file, const std::vector<std::string>& change = {});
 
 /// Holds one gate against figures. A key that is absent or no number, another unit, a truth without an uncertainty and
 /// a drift without an accepted value of this scene are red.

@@ -58,6 +58,7 @@ struct LevelRecord {
 /// How far a sensitivity measured on the coarsest level holds on the finer ones.
 enum class Carries {
   wholly,         ///< refinement does not touch it
+  first_order,    ///< nor this, of which a quarter as much would be left after the change
   far_field,      ///< it shrinks with the far field's cells
   in_the_levels,  ///< the differences between the levels show it already
 };

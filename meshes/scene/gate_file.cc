@@ -19,11 +19,17 @@ class Reader : TomlReader {
     out.name = file_.stem().string();
     known_keys(document_, "", {"title", "run", "scene", "set", "reference", "gate"});
     out.title = given_text(document_, "title");
-    out.run = word(document_, "run", {"fast", "reference"}) == "reference" ? GateRun::reference : GateRun::fast;
+    const std::string run = word(document_, "run", {"fast", "reference", "second_code"});
+    for (const GateRun one : {GateRun::fast, GateRun::reference, GateRun::second_code}) {
+      if (run == name_of(one)) out.run = one;
+    }
     out.scene_file = (file_.parent_path() / given_text(document_, "scene")).lexically_normal();
     if (document_.contains("set")) out.set = given_settings(document_, "set");
     if (document_.contains("reference")) {
       out.reference = (file_.parent_path() / given_text(document_, "reference")).lexically_normal();
+      if (out.run == GateRun::second_code) {
+        add(document_, "reference is never looked at with run = \"second_code\"; expected none");
+      }
     }
     std::set<std::string> names;
     for (const toml::table* table : rows("gate")) {
@@ -111,7 +117,17 @@ class Reader : TomlReader {
 
 const char* name_of(GateKind kind) { return kind == GateKind::truth ? "truth" : "drift"; }
 
-const char* name_of(GateRun run) { return run == GateRun::fast ? "fast" : "reference"; }
+const char* name_of(GateRun run) {
+  switch (run) {
+    case GateRun::fast:
+      return "fast";
+    case GateRun::reference:
+      return "reference";
+    case GateRun::second_code:
+      return "second_code";
+  }
+  return "";
+}
 
 GateFile parse_gate_file(std::string_view text, const std::filesystem::path& file) {
   const toml::table document = parse_document(text, file);

@@ -36,7 +36,7 @@
 namespace touchstone::scene {
 
 enum class GateKind { truth, drift };
-enum class GateRun { fast, reference };
+enum class GateRun { fast, reference, second_code };
 
 /// As the gate file spells them.
 [[nodiscard]] const char* name_of(GateKind kind);

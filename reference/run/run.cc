@@ -129,15 +129,37 @@ class Run {
     if (scene_.reference.levels) return solved_levels() < *scene_.reference.levels;
     result_.refinement.reached = small_enough(result_.force_uncertainty_rel) &&
                                  small_enough(result_.shape_uncertainty_rel) && solved_levels() >= fewest_levels;
-    if (!result_.refinement.reached) return true;
     std::ostringstream text;
-    text << "force and shape are known to " << scene_.reference.error << " after " << solved_levels() << " levels";
-    return stop_at(text.str());
+    if (result_.refinement.reached) {
+      text << "force and shape are known to " << scene_.reference.error << " after " << solved_levels() << " levels";
+      return stop_at(text.str());
+    }
+    if (const Sensitivity* one = too_sensitive()) {
+      text << not_started(solved_levels()) << "finer meshes do not help, since " << one->part << ' ' << one->change
+           << " changes the force by " << one->force_rel << " and the shape by " << one->shape_rel;
+      if (one->carries == Carries::first_order) text << "; more instants would";
+      return stop_at(text.str());
+    }
+    return true;
   }
 
   /// Nothing to be uncertain about is small enough, too.
   [[nodiscard]] bool small_enough(const std::optional<double>& uncertainty_rel) const {
     return uncertainty_rel.value_or(0.0) <= scene_.reference.error;
+  }
+
+  /// The largest of the sensitivities that refinement does not touch, when these alone exceed the error asked for.
+  [[nodiscard]] const Sensitivity* too_sensitive() const {
+    const Sensitivity* largest = nullptr;
+    double force_rel = 0.0, shape_rel = 0.0;
+    const auto size = [](const Sensitivity& one) { return std::max(one.force_rel, one.shape_rel); };
+    for (const Sensitivity& one : result_.sensitivities) {
+      if (one.carries != Carries::wholly && one.carries != Carries::first_order) continue;
+      force_rel += share_at(one, most_levels) * one.force_rel;
+      shape_rel += share_at(one, most_levels) * one.shape_rel;
+      if (!largest || size(one) > size(*largest)) largest = &one;
+    }
+    return std::max(force_rel, shape_rel) > scene_.reference.error ? largest : nullptr;
   }
 
   bool stop_at(std::string why) {

@@ -31,7 +31,7 @@ struct SensitivityCase {
 
 using SensitivityWatch = std::function<void(const std::string& part, int iteration)>;
 
-/// One after another: the load step halved, the active set's contact parameter and the numerical bulk modulus of the
+/// One after another: the load step halved, with friction a quarter as long, the active set's contact parameter and the numerical bulk modulus of the
 /// tangent ten times as large, the grid of a mesh tool's distance half as wide, cells at inclusions half as large, and
 /// cells far from the contact half as large. Parts that the scene has not are left out, and the last one is measured
 /// everywhere. Solved once per scene: the store keeps them.

@@ -19,10 +19,11 @@ struct Both {
   double poissons_ratio, depth_m;
   int steps, deck_level, reference_levels;
   std::optional<double> element_size_m;
-  double force_limit;  ///< share of the reference's force
+  double force_limit;               ///< share of the reference's force
+  double surface_limit = 0.02;      ///< of the largest displacement
+  std::optional<double> coulomb{};  ///< friction coefficient
   friend void PrintTo(const Both& both, std::ostream* out) { *out << both.name; }
 };
-constexpr double surface_limit = 0.02;  // of the largest displacement
 
 class BothCodes : public testing::TestWithParam<Both> {
  protected:
@@ -39,6 +40,7 @@ TEST_P(BothCodes, GiveOneForceAndOneSurface) {
   scene::Scene scene = pressed(both.body(both.poissons_ratio), both.depth_m, both.steps);
   scene.reference.levels = both.reference_levels;
   scene.reference.element_size_m = both.element_size_m;
+  if (both.coulomb) scene.contact.friction = scene::Friction{.K = *both.coulomb, .beta = 1.0, .mu_D = *both.coulomb};
   const reference::Deck deck = reference::calculix_deck(scene, {.level = both.deck_level});
   std::ofstream(root_ / "pressed.inp") << deck.text;
   const compare::CalculixRun run = compare::run_calculix(root_, "pressed", deck);
@@ -56,21 +58,23 @@ TEST_P(BothCodes, GiveOneForceAndOneSurface) {
     const double largest_m = record.displacement_m.colwise().norm().maxCoeff();
     EXPECT_NEAR(largest_m, record.depth_m, 0.02 * record.depth_m);
     const double apart_m = (theirs.displacement_m - record.displacement_m).colwise().norm().maxCoeff();
-    EXPECT_LT(apart_m, surface_limit * largest_m);
+    EXPECT_LT(apart_m, both.surface_limit * largest_m);
     RecordProperty("force_" + std::to_string(step), std::to_string(theirs.force_n.z() / force_n - 1.0));
     RecordProperty("surface_" + std::to_string(step), std::to_string(apart_m / largest_m));
   }
 }
 
 constexpr double quarter_size_m = 0.0024;
-INSTANTIATE_TEST_SUITE_P(Pressed, BothCodes,
-                         testing::Values(Both{"CylinderCompressible", cylinder, 0.3, 0.003, 3, 2, 3, {}, 0.005},
-                                         Both{"CylinderRubber", cylinder, 0.49, 0.003, 3, 1, 3, {}, 0.005},
-                                         Both{"BallRubber", ball, 0.49, 0.003, 3, 1, 3, {}, 0.005},
-                                         Both{"QuarterBlockCompressible", block, 0.3, 0.004, 2, 0, 2, quarter_size_m,
-                                              0.02},
-                                         Both{"QuarterBlockRubber", block, 0.49, 0.004, 2, 0, 2, quarter_size_m, 0.02}),
-                         [](const auto& one) { return one.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Pressed, BothCodes,
+    testing::Values(Both{"CylinderCompressible", cylinder, 0.3, 0.003, 3, 2, 3, {}, 0.005},
+                    Both{"CylinderRubber", cylinder, 0.49, 0.003, 3, 1, 3, {}, 0.005},
+                    Both{"BallRubber", ball, 0.49, 0.003, 3, 1, 3, {}, 0.005},
+                    Both{"QuarterBlockCompressible", block, 0.3, 0.004, 2, 0, 2, quarter_size_m, 0.02},
+                    Both{"QuarterBlockRubber", block, 0.49, 0.004, 2, 0, 2, quarter_size_m, 0.02},
+                    // In both codes of first order in the steps.
+                    Both{"CylinderWithFriction", cylinder, 0.49, 0.003, 8, 1, 3, {}, 0.005, 0.06, 0.3}),
+    [](const auto& one) { return one.param.name; });
 
 }  // namespace
 }  // namespace touchstone::second_code

@@ -121,6 +121,29 @@ TEST_F(UncertaintyBand, HoldsItUnderAPin) {
   expect_held(solved("coarse", 0.003, 3), exact, 0.05);
 }
 
+/// The increments of friction are of first order, and the meshes' differences do not show them.
+TEST_F(UncertaintyBand, HoldsWhatFewLoadStepsDoToFriction) {
+  scene_.body.shape = scene::BodyShape::revolution;
+  scene_.body.profile = {{{0.0, 0.0}, {0.05, 0.0}, {0.05, 0.05}, {0.0, 0.05}}, {}};
+  scene_.body.material.poissons_ratio = 0.49;
+  scene_.contact.friction = scene::Friction{.K = 0.3, .beta = 1.0, .mu_D = 0.3};
+  scene_.track = {{0.0, {{0.0, 0.0, 0.0605}, Eigen::Quaterniond::Identity()}},
+                  {0.7, {{0.0, 0.0, 0.0570}, Eigen::Quaterniond::Identity()}}};
+  const auto with_steps = [&](int instants) {
+    scene_.compare.instants = instants;
+    return solved("steps", 0.0014, 3);
+  };
+  const Result few = with_steps(4), many = with_steps(22);
+  const double error_n = (few.instants.back().force_n() - many.instants.back().force_n()).norm();
+  double load_step_rel = 0.0;
+  for (const Sensitivity& one : few.sensitivities) {
+    if (one.part == "load_step") load_step_rel = one.force_rel;
+  }
+  EXPECT_GT(error_n, 1e-3 * many.instants.back().force_n().norm());
+  EXPECT_LT(error_n, 1.5 * 4.0 / 3.0 * load_step_rel * many.instants.back().force_n().norm());
+  EXPECT_LE(error_n, few.force_uncertainty_n.back());
+}
+
 TEST_F(UncertaintyBand, HoldsTheErrorInSpace) {
   scene_.track = {{0.0, {{0.0, 0.0, 0.0690}, Eigen::Quaterniond::Identity()}},
                   {1.0, {{0.0, 0.0, 0.0662}, Eigen::Quaterniond::Identity()}}};

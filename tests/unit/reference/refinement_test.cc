@@ -193,6 +193,18 @@ TEST_F(RefinementTest, SensitivitiesWidenTheBand) {
   }
 }
 
+/// With friction in few steps no mesh helps.
+TEST_F(RefinementTest, EndsWhereMeshesDoNotHelp) {
+  scene_.contact.friction = scene::Friction{.K = 0.3, .beta = 1.0, .mu_D = 0.3};
+  scene_.compare.instants = 4;
+  const Result result = run_to(5e-4);
+  EXPECT_FALSE(result.refinement.reached);
+  EXPECT_EQ(result.levels.size(), 3u);
+  EXPECT_NE(result.refinement.why_ended.find("finer meshes do not help"), std::string::npos)
+      << result.refinement.why_ended;
+  EXPECT_NE(result.refinement.why_ended.find("more instants would"), std::string::npos) << result.refinement.why_ended;
+}
+
 /// One formulation serves every Poisson's ratio, and near one half nothing locks.
 TEST_F(RefinementTest, EveryPoissonsRatioReachesTheError) {
   double before_n = 0.0;

@@ -44,12 +44,18 @@ TEST(GateFile, MeansWhatItSays) {
   EXPECT_THAT(file.gates[0].red, ElementsAre("contact.k1_n_per_m=1"));
 }
 
+TEST(GateFile, ASecondCodeNeedsNoCommittedData) {
+  const std::string both = "title = \"t\"\nrun = \"second_code\"\nscene = \"a.toml\"\n";
+  EXPECT_EQ(parse_gate_file(both + gate, "gates/a.toml").run, GateRun::second_code);
+  EXPECT_THAT(refusal(both + "reference = \"reference/a\"\n" + gate), HasSubstr("reference is never looked at"));
+}
+
 TEST(GateFile, EveryFaultIsToldAtOnceWithItsLine) {
   const std::string told = refusal(
       "title = \"t\"\nrun = \"compare\"\nscene = 3\n[[gate]]\nname = \"g\"\nkind = \"truth\"\nquantty = \"x\"\n"
       "limit = -1\nunit = \"\"\nreason = \"\"\nred = []\n");
   EXPECT_THAT(told, HasSubstr("gates/a.toml:2:"));
-  EXPECT_THAT(told, HasSubstr("run = \"compare\"; expected \"fast\" or \"reference\""));
+  EXPECT_THAT(told, HasSubstr("run = \"compare\"; expected \"fast\" or \"reference\" or \"second_code\""));
   EXPECT_THAT(told, HasSubstr("gates/a.toml:3:"));
   EXPECT_THAT(told, HasSubstr("gates/a.toml:7:1: unknown key \"gate.quantty\"; did you mean \"gate.quantity\"?"));
   EXPECT_THAT(told, HasSubstr("gates/a.toml:8:9: gate.limit: expected a number above 0"));
