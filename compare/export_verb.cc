@@ -3,6 +3,7 @@
 #include "compare/calculix.h"
 #include "compare/reference_run.h"
 #include "compare/time_to_error.h"
+#include "reference/calculix/deck.h"
 #include "scene/results.h"
 
 #include <fmt/format.h>
@@ -64,7 +65,9 @@ int export_deck(const fast::VerbOptions& options, const ExportOptions& export_op
       return fast::done;
     });
   }
-  const reference::Deck deck = reference::calculix_deck(scene, export_options.deck);
+  const reference::Deck deck = reference::calculix_deck(
+      scene,
+      {.level = export_options.mesh - 1, .contact_stiffness_pa_per_m = export_options.contact_stiffness_pa_per_m});
   const std::filesystem::path file = folder / (scene.name + ".inp");
   scene::write_file(file, deck.text);
   std::cout << fmt::format("Deck: {}, {} steps, {} nodes of the body in {}\n", deck.model, deck.instants.size(),
@@ -104,10 +107,10 @@ CLI::App* add_export_verb(CLI::App& app, fast::VerbOptions& options, ExportOptio
   CLI::App* verb = fast::add_verb(
       app, "export", "the scene as an input deck for CalculiX, an independent finite element code", options,
       [&options, &export_options, &reference] { return export_deck(options, export_options, reference); }, exit_code);
-  verb->add_option("--level", export_options.deck.level, "mesh of the refinement sequence, 0 the coarsest")
-      ->check(CLI::Range(0, 5))
+  verb->add_option("--mesh", export_options.mesh, "of the reference's meshes, 1 the coarsest")
+      ->check(CLI::Range(1, 6))
       ->capture_default_str();
-  verb->add_option("--contact-stiffness", export_options.deck.contact_stiffness_pa_per_m,
+  verb->add_option("--contact-stiffness", export_options.contact_stiffness_pa_per_m,
                    "contact pressure over overclosure [Pa/m] (default: costs about a thousandth of the force)")
       ->check(CLI::PositiveNumber);
   verb->add_option("--time-to-error", export_options.time_to_error,

@@ -3,13 +3,15 @@
 
 #include "compare/reference_run.h"
 #include "fast/command_line.h"
-#include "reference/calculix/deck.h"
+
+#include <optional>
 
 namespace touchstone::compare {
 
 struct ExportOptions {
-  reference::DeckOptions deck;
-  bool run = false;       ///< run CalculiX on it, solve the reference, and print both
+  int mesh = 1;                                        ///< of the reference's, 1 the coarsest
+  std::optional<double> contact_stiffness_pa_per_m{};  ///< see reference::DeckOptions
+  bool run = false;                                    ///< run CalculiX on it, solve the reference, and print both
   int time_to_error = 0;  ///< instead: on this many meshes, what a force error costs with either
 };
 

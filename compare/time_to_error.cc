@@ -73,11 +73,14 @@ TimeToError time_to_error(const scene::Scene& scene, int meshes, const std::file
 
   TimeToError times;
   const std::vector<double>& exact_n = result.levels.back().force_n;
+  double wall_s = 0.0, cpu_s = 0.0;  // a mesh starts from the coarser one's solution
   for (int level = 0; level < meshes; ++level) {
     const double error = largest_error(result.levels[level].force_n, exact_n);
-    times.ours.push_back({level, error, watch.of(level).wall_s, watch.of(level).cpu_s});
+    wall_s += watch.of(level).wall_s;
+    cpu_s += watch.of(level).cpu_s;
+    times.ours.push_back({level, error, wall_s, cpu_s});
     const reference::Deck deck = reference::calculix_deck(scene, {.level = level});
-    const std::string name = fmt::format("level-{}", level);
+    const std::string name = fmt::format("mesh-{}", level + 1);
     scene::write_file(folder / (name + ".inp"), deck.text);
     const CalculixRun run = run_calculix(folder, name, deck);
     if (run.steps.size() < deck.instants.size()) continue;
@@ -94,7 +97,7 @@ std::string time_to_error_text(const TimeToError& times) {
   std::string text;
   for (const auto& [name, meshes] : {std::pair("ours", &times.ours), std::pair("CalculiX", &times.calculix)}) {
     for (const MeshCost& mesh : *meshes) {
-      text += fmt::format("{:9} mesh {}: force error {:7.3f} %, CPU {:8.2f} s, wall {:8.2f} s\n", name, mesh.level,
+      text += fmt::format("{:9} mesh {}: force error {:7.3f} %, CPU {:8.2f} s, wall {:8.2f} s\n", name, mesh.level + 1,
                           100.0 * mesh.error, mesh.cpu_s, mesh.wall_s);
     }
   }
@@ -124,10 +127,10 @@ std::string time_to_error_svg(const TimeToError& times, const std::string& title
 
 std::vector<scene::Column> time_to_error_columns(const TimeToError& times) {
   std::vector<scene::Column> columns{
-      {"calculix", {}}, {"level", {}}, {"force_error", {}}, {"wall_s", {}}, {"cpu_s", {}}};
+      {"calculix", {}}, {"mesh", {}}, {"force_error", {}}, {"wall_s", {}}, {"cpu_s", {}}};
   for (const auto& [code, meshes] : {std::pair(0, &times.ours), std::pair(1, &times.calculix)}) {
     for (const MeshCost& mesh : *meshes) {
-      const double row[] = {static_cast<double>(code), static_cast<double>(mesh.level), mesh.error, mesh.wall_s,
+      const double row[] = {static_cast<double>(code), static_cast<double>(mesh.level + 1), mesh.error, mesh.wall_s,
                             mesh.cpu_s};
       for (std::size_t k = 0; k < columns.size(); ++k) columns[k].values.push_back(row[k]);
     }
