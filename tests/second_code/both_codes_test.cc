@@ -72,6 +72,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Both{"BallRubber", ball, 0.49, 0.003, 3, 1, 3, {}, 0.005},
                     Both{"QuarterBlockCompressible", block, 0.3, 0.004, 2, 0, 2, quarter_size_m, 0.02},
                     Both{"QuarterBlockRubber", block, 0.49, 0.004, 2, 0, 2, quarter_size_m, 0.02},
+                    Both{"CylinderAroundSoftBall", cylinder_around_soft_ball, 0.3, 0.003, 3, 1, 3, {}, 0.005},
                     // In both codes of first order in the steps.
                     Both{"CylinderWithFriction", cylinder, 0.49, 0.003, 8, 1, 3, {}, 0.005, 0.06, 0.3}),
     [](const auto& one) { return one.param.name; });

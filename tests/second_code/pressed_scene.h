@@ -29,6 +29,18 @@ inline scene::Body cylinder(double poissons_ratio) {
   return body;
 }
 
+/// A ball ten times softer inside, 15 mm below the top.
+inline scene::Body cylinder_around_soft_ball(double poissons_ratio) {
+  scene::Body body = cylinder(poissons_ratio);
+  scene::Inclusion inclusion;
+  inclusion.shape = scene::BodyShape::sphere;
+  inclusion.radius_m = 0.008;
+  inclusion.center_m = {0.0, 0.0, 0.035};
+  inclusion.material = {3e5, poissons_ratio};
+  body.inclusions = {inclusion};
+  return body;
+}
+
 inline scene::Body ball(double poissons_ratio) {
   scene::Body body;
   body.shape = scene::BodyShape::sphere;
