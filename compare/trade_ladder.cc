@@ -52,6 +52,7 @@ class Poses {
     const std::size_t n = poses_.size(), k = step % (2 * n);
     return poses_[k < n ? k : 2 * n - 1 - k];
   }
+  [[nodiscard]] std::size_t round_trip() const { return 2 * poses_.size(); }
 
  private:
   std::vector<scene::Pose> poses_;
@@ -62,26 +63,27 @@ struct Timed {
   std::size_t row = 0;
   std::function<void(const scene::Pose&)> step;
   std::size_t next = 0;  ///< pose
-  int block = 32;
+  std::size_t block = 32;
   std::vector<double> step_us{};
 };
 
-/// All models by turns, a block of each, so that a machine that drifts does it to all; the first steps of a block bring
-/// back what the others drove out of the caches.
+/// All models by turns, so that a machine that drifts does it to all, and each there and back at least once. Of every
+/// turn the last steps are measured: the first ones bring back what the others drove out of the caches.
 void measure(std::vector<Timed>& models, const Poses& poses, bool quick, std::vector<TradeRow>& rows) {
-  constexpr int warming_steps = 2;
+  constexpr std::size_t warming_steps = 2;
   constexpr double slow_us = 2000.0;
-  const int rounds = quick ? 6 : 64;
+  const std::size_t rounds = quick ? 6 : 64;
   for (Timed& model : models) {
     const Clock::time_point begin = Clock::now();
     model.step(poses.at(model.next++));
     model.step(poses.at(model.next++));
     if (0.5e6 * seconds_since(begin) > slow_us) model.block = 2;
   }
-  for (int round = 0; round < rounds; ++round) {
+  for (std::size_t round = 0; round < rounds; ++round) {
     for (Timed& model : models) {
-      for (int k = 0; k < warming_steps; ++k) model.step(poses.at(model.next++));
-      for (int k = 0; k < model.block; ++k) {
+      const std::size_t steps = std::max(warming_steps + model.block, poses.round_trip() / rounds + 1);
+      for (std::size_t k = model.block; k < steps; ++k) model.step(poses.at(model.next++));
+      for (std::size_t k = 0; k < model.block; ++k) {
         const scene::Pose& pose = poses.at(model.next++);
         const Clock::time_point begin = Clock::now();
         model.step(pose);

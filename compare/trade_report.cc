@@ -50,14 +50,14 @@ std::string error_text(const Measure& error) {
   return error.distinguishable() ? text : text + ", not distinguishable";
 }
 
-/// What dominates a row, per figure; "front" on it and a dash where there is nothing to judge.
-std::vector<std::array<std::string, 2>> standing(const Trade& trade) {
+/// The name of what dominates a row, per figure; "front" on it and a dash where there is nothing to judge.
+std::vector<std::array<std::string, 2>> standing(const Trade& trade, std::string TradeRow::*name) {
   std::vector<std::array<std::string, 2>> out(trade.rows.size());
   for (std::size_t f = 0; f < 2; ++f) {
     const auto by = dominating(trade.rows, judged[f].error);
     const auto front = pareto_front(trade.rows, judged[f].error);
     for (std::size_t i = 0; i < trade.rows.size(); ++i) {
-      out[i][f] = by[i]                                                     ? trade.rows[*by[i]].name
+      out[i][f] = by[i]                                                     ? trade.rows[*by[i]].*name
                   : std::find(front.begin(), front.end(), i) != front.end() ? "front"
                                                                             : std::string(nothing);
     }
@@ -104,7 +104,8 @@ std::string table(const Trade& trade) {
       "<div class=\"scroll\"><table>\n<tr><th>Model</th><th class=\"n\">step p50</th><th class=\"n\">p99.9</th>"
       "<th class=\"n\">set-up</th><th class=\"n\">memory</th><th class=\"n\">size</th><th class=\"n\">force</th>"
       "<th>dominated in force by</th><th class=\"n\">shape</th><th>dominated in shape by</th></tr>\n";
-  const auto stands = standing(trade);
+  const auto stands = standing(trade, &TradeRow::label);
+  const auto error_cell = [](const Measure& error) { return tag("td", error_text(error), "class=\"t\""); };
   for (std::size_t i = 0; i < trade.rows.size(); ++i) {
     const TradeRow& row = trade.rows[i];
     out += "<tr>" + cell(row.name);
@@ -114,8 +115,8 @@ std::string table(const Trade& trade) {
     }
     out += number_cell(number(row.step_p50_us, "us")) + number_cell(number(row.step_p999_us, "us")) +
            number_cell(number(row.setup_s, "s")) + number_cell(number(row.memory_bytes, "byte")) +
-           number_cell(number_text(row.size, 6)) + number_cell(error_text(row.force_nrmse)) + cell(stands[i][0]) +
-           number_cell(error_text(row.shape_rel_l2)) + cell(stands[i][1]) + "</tr>\n";
+           number_cell(number_text(row.size, 6)) + error_cell(row.force_nrmse) + cell(stands[i][0]) +
+           error_cell(row.shape_rel_l2) + cell(stands[i][1]) + "</tr>\n";
   }
   return out + "</table></div>\n";
 }
@@ -175,7 +176,7 @@ std::string csv(const Trade& trade) {
   std::string out =
       "key,name,size,step_p50_us,step_p999_us,steps,setup_s,memory_bytes,force_nrmse,force_nrmse_uncertainty,"
       "shape_rel_l2,shape_rel_l2_uncertainty,dominated_force_by,dominated_shape_by,absent\n";
-  const auto stands = standing(trade);
+  const auto stands = standing(trade, &TradeRow::name);
   for (std::size_t i = 0; i < trade.rows.size(); ++i) {
     const TradeRow& row = trade.rows[i];
     out += row.key + "," + quoted(row.name) + fmt::format(",{},", row.size);
@@ -235,7 +236,7 @@ scene::Figures trade_figures(const Trade& trade) {
 std::string trade_text(const Trade& trade) {
   std::vector<std::vector<std::string>> rows = {{"model", "p50 [us]", "p99.9 [us]", "set-up [s]", "memory [MB]",
                                                  "force [%]", "shape [%]", "dominated by (force | shape)"}};
-  const auto stands = standing(trade);
+  const auto stands = standing(trade, &TradeRow::name);
   const auto text = [](double value, int digits = 3) {
     return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : std::string("-");
   };
