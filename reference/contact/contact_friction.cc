@@ -2,6 +2,7 @@
 #include "reference/contact/contact_problem.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace touchstone::reference {
@@ -135,6 +136,11 @@ void ContactProblem<dim>::begin_increment(State<dim>& state) {
   state.sliding.resize(mesh_.node_count(), 0);
   const Eigen::Vector3d nowhere = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   anchors_m_ = nowhere.replicate(1, mesh_.node_count());
+  slip_direction_ = Nodal::Zero(dim, mesh_.node_count());
+  slip_stiffness_n_per_m_.assign(mesh_.node_count(), 0.0);
+  for (const int node : contact_nodes_) {
+    slip_stiffness_n_per_m_[node] = material_.youngs_modulus_pa * std::sqrt(area_m2_[node]);
+  }
   if (state.on_tool_m.cols() == 0 || !tool_) return;
   for (const int node : contact_nodes_) {
     if (!state.touching[node]) continue;
@@ -157,7 +163,9 @@ double ContactProblem<dim>::update_slipping(State<dim>& state, const std::vector
   double unplaced_m = 0.0;
   if (!tool_) return unplaced_m;
   constexpr double steepest_turning = 1e4;
-  const double c_pa_per_m = material_.youngs_modulus_pa / tool_->half_width_m();
+  // How much k_n falls where a slip turns round without coming to rest: it was above twice what the body resists with,
+  // and the slip would swing between two sides for ever.
+  constexpr double softer = 0.25;
   std::vector<NodeContact<dim>> contacts = contacts_of(state, forces_n, touching_points(state, region_gap_m_));
   double acting_n = 0.0;
   for (const NodeContact<dim>& contact : contacts) acting_n += std::abs(contact.normal_n);
@@ -173,9 +181,13 @@ double ContactProblem<dim>::update_slipping(State<dim>& state, const std::vector
     }
     Point to_anchor_m = tool_->in_world(anchors_m_.col(node)) - x_m;
     contact.slip_m = -along_surface(node, contact.normal, to_anchor_m);
-    const double c_n_per_m = c_pa_per_m * area_m2_[node];
     const double limit_n = contact.coefficient * std::max(contact.normal_n, 0.0);
-    const Point trial_n = contact.friction_n - c_n_per_m * contact.slip_m;
+    const auto trial = [&]() -> Point { return contact.friction_n - slip_stiffness_n_per_m_[node] * contact.slip_m; };
+    Point trial_n = trial();
+    if (before[node] && trial_n.norm() > limit_n && trial_n.dot(slip_direction_.col(node)) < 0.0) {
+      slip_stiffness_n_per_m_[node] *= softer;
+      trial_n = trial();
+    }
     // A node that comes to touch has no normal force yet: for one iteration it has no friction either.
     contact.slips = state.slipping[node] != 0 || !before[node];
     if (iteration > 0 && before[node]) {
@@ -188,9 +200,10 @@ double ContactProblem<dim>::update_slipping(State<dim>& state, const std::vector
     if (contact.slips && before[node]) {
       slip.direction = trial_n / std::max(trial_n.norm(), std::numeric_limits<double>::min());
       slip.turning_n_per_m =
-          c_n_per_m * limit_n /
+          slip_stiffness_n_per_m_[node] * limit_n /
           std::max(trial_n.norm() - limit_n, limit_n / steepest_turning + std::numeric_limits<double>::min());
     }
+    slip_direction_.col(node) = slip.direction;
     if (!contact.slips) {
       if (kinematics_ == scene::Kinematics::small) {
         to_anchor_m = -contact.slip_m - gaps_[node].value_m * contact.normal;

@@ -12,10 +12,12 @@
 //
 // With friction a touching node has a force t along the surface besides N n, |t| <= m N, and a slip s: its way over the
 // tool since the last solved state, along the surface. It sticks (s = 0; its displacement is eliminated) or slips,
-//   t = m N tau / |tau|,  tau = t - c w_n s,
-// and is taken to slip when |tau| > m N. Newton's method on this is that of S. Hueeber, G. Stadler, B. I. Wohlmuth,
-// SIAM J. Sci. Comput. 30 (2008) 572-596; the part of its tangent that is not symmetric is in friction.h. One solve is
-// one increment of the backward Euler rule: t opposes the whole slip, so that no increment gives energy back.
+//   t = m N tau / |tau|,  tau = t - k_n s,
+// and is taken to slip when |tau| > m N. k_n = E sqrt(w_n) is near what the body resists a shift of the node's patch
+// with: much less lets a slipping node stick again far from its place; where it is too much, slip turns round for ever
+// and k_n is lowered. Newton's method on this is that of S. Hueeber, G. Stadler, B. I. Wohlmuth, SIAM J. Sci. Comput.
+// 30 (2008) 572-596; the part of its tangent that is not symmetric is in friction.h. One solve is one increment of the
+// backward Euler rule: t opposes the whole slip, so that no increment gives energy back.
 #pragma once
 
 #include "reference/contact/element.h"
@@ -346,7 +348,9 @@ class ContactProblem : public ranks::Part {
   std::vector<int> contact_of_;  // per node: index into contacts_, or -1
   std::vector<int> slip_row_;    // per node: row of SlipCoupling, or -1
   int slip_rows_ = 0;
-  Nodal stick_m_;  // what sticking nodes still have to move
+  std::vector<double> slip_stiffness_n_per_m_;  // per node: k_n of tau
+  Nodal slip_direction_;                        // tau / |tau| of the last iteration; zero where nothing slipped
+  Nodal stick_m_;                               // what sticking nodes still have to move
 };
 
 }  // namespace touchstone::reference

@@ -17,7 +17,7 @@ using scene::Scene;
 constexpr const char* method_version = "touchstone reference 4: Q2-P1disc u-p, primal-dual active set";
 
 /// Raised alike, for scenes with friction alone.
-constexpr const char* friction_method = "2";
+constexpr const char* friction_method = "3";
 
 std::string tool_text(const scene::Tool& tool) {
   std::ostringstream text;

@@ -26,6 +26,19 @@ class FlatTool : public ToolDistance {
   [[nodiscard]] double half_width_m() const override { return 0.01; }
 };
 
+/// A ball of 4 mm at the end of a tool ten times as wide, like the tail of a mallet.
+class Tail : public ToolDistance {
+ public:
+  static constexpr double radius_m = 0.004;
+  [[nodiscard]] Gap<3> at(const Vec3& p_T_m) const override {
+    const double r_m = p_T_m.norm();
+    const Vec3 out = p_T_m / r_m;
+    return {r_m - radius_m, out, (scene::Mat3::Identity() - out * out.transpose()) / r_m};
+  }
+  [[nodiscard]] scene::Bounds bounds() const override { return {{-0.04, -0.04, -radius_m}, {0.04, 0.04, 0.08}}; }
+  [[nodiscard]] double half_width_m() const override { return 0.04; }
+};
+
 /// One half of a block of 40 x 40 x 20 mm, its top at z = 0.
 ContactProblem<3> block(double cell_m, double poissons_ratio, double disc_m = 0.012) {
   BlockSpec spec{{-0.02, 0.0, -0.02}, {0.02, 0.02, 0.0}, false, true, {{}, 0.9, 0.01}};
@@ -280,6 +293,35 @@ TEST(Friction, CattaneoAndMindlin) {
                        std::to_string(stick_radius_of_share(step.stuck_share)) + " " +
                        std::to_string(mindlin_stick_radius(exact)) + " " + std::to_string(step.newton_iterations));
   }
+}
+
+TEST(Friction, ATailBeginsToSlide) {
+  // Of a tool whose width says nothing about its contact, pressed by half its radius, so that the contact's wall is
+  // steep, and moved on by a quarter of its radius at a time.
+  ContactProblem<3> body = block(0.0015, 0.5, 0.006);
+  body.set_friction({1.0, 0.75, 0.5}, 0.004);
+  const auto tail = std::make_shared<Tail>();
+  const auto at = [&](double x_m, double depth_m) {
+    return RigidTool<3>(tail, {Vec3(x_m, 0.0, Tail::radius_m - depth_m), Eigen::Quaterniond::Identity()});
+  };
+  State<3> state = body.rest();
+  body.note_places(at(-0.002, -1e-5), state);
+  int iterations = 0, most = 0;
+  const auto move = [&](double x_m, double depth_m) {
+    body.set_tool(at(x_m, depth_m));
+    const double before_j = state.dissipated_j;
+    const NewtonReport report = body.solve(state);
+    ASSERT_TRUE(report.converged) << report.trouble << " at x = " << x_m;
+    iterations += report.iterations;
+    most = std::max(most, report.iterations);
+    EXPECT_GE(state.dissipated_j, before_j);
+    const Sums sum = sums(body, state);
+    EXPECT_LT(sum.excess_n, 1e-8 * sum.normal_n);
+  };
+  for (int step = 1; step <= 8; ++step) move(-0.002, 0.00025 * step);
+  for (int step = 1; step <= 4; ++step) move(-0.002 + 0.001 * step, 0.002);
+  EXPECT_TRUE(sums(body, state).all_slip);
+  RecordProperty("iterations", std::to_string(iterations) + " most " + std::to_string(most));
 }
 
 TEST(Friction, ALoopDissipatesItsArea) {
