@@ -88,6 +88,15 @@ class Training {
         }
       }
       one.shape_scale = std::sqrt(one.shape_scale / static_cast<double>(one.touching.size()));
+      one.weight_per_m = Eigen::Map<const Eigen::VectorXd>(data.surface.vertex_area_m2.data(),
+                                                           static_cast<Eigen::Index>(data.surface.vertex_area_m2.size()))
+                             .cwiseSqrt() /
+                         (one.shape_scale * one.shape_uncertainty);
+      for (const std::size_t t : one.touching) {
+        one.touching_in_track.push_back(data.instants[t]);
+        one.weighted_reference.push_back(data.result.instants[t].displacement_m * one.weight_per_m.asDiagonal());
+        shape_rows_ += one.weighted_reference.back().size();
+      }
       observations_ += static_cast<int>(one.touching.size());
     }
   }
@@ -118,30 +127,24 @@ class Training {
   /// (shape.rel_l2 / the reference's uncertainty of it)^2.
   std::optional<Eigen::VectorXd> shape(const std::vector<scene::TuningParameter>& parameters,
                                        const Eigen::VectorXd& values) {
-    std::vector<Eigen::VectorXd> parts;
-    Eigen::Index rows = 0;
+    Eigen::VectorXd out(shape_rows_);
+    Eigen::Index row = 0;
     for (Contact& one : contacts_) {
       scene::Scene scene = one.scene;
       set_values(scene, parameters, values);
       if (!scene::broken_constants(scene, deepest_m_).empty()) return std::nullopt;
       if (!one.forces_known) (void)one.replay->forces_n(scene);
       one.forces_known = true;
-      const std::vector<Eigen::Matrix3Xd> displacement_m = one.replay->displacements_m(scene);
-      for (const std::size_t t : one.touching) {
-        Eigen::Matrix3Xd error_m = displacement_m[one.data->instants[t]] - one.data->result.instants[t].displacement_m;
-        for (Eigen::Index i = 0; i < error_m.cols(); ++i) {
-          error_m.col(i) *= std::sqrt(one.data->surface.vertex_area_m2[static_cast<std::size_t>(i)]) /
-                            (one.shape_scale * one.shape_uncertainty);
+      one.replay->displacements(scene, one.touching_in_track, [&](std::size_t k, const fast::Columns3& displacement_m) {
+        const Eigen::Matrix3Xd& weighted = one.weighted_reference[k];
+        for (Eigen::Index i = 0; i < weighted.cols(); ++i) {
+          const auto v = static_cast<std::size_t>(i);
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            out[row++] = static_cast<double>(displacement_m[axis][v]) * one.weight_per_m[i] -
+                         weighted(static_cast<Eigen::Index>(axis), i);
+          }
         }
-        parts.emplace_back(error_m.reshaped());
-        rows += parts.back().size();
-      }
-    }
-    Eigen::VectorXd out(rows);
-    Eigen::Index row = 0;
-    for (const Eigen::VectorXd& part : parts) {
-      out.segment(row, part.size()) = part;
-      row += part.size();
+      });
     }
     return out;
   }
@@ -151,15 +154,19 @@ class Training {
     const TuningData* data = nullptr;
     scene::Scene scene;
     std::unique_ptr<fast::Replay> replay;
-    std::vector<std::size_t> touching;  ///< of the instants that count
+    std::vector<std::size_t> touching;           ///< of the instants that count
+    std::vector<std::size_t> touching_in_track;  ///< the same of all instants
     double force_floor_n = 0.0;
     double shape_uncertainty = 0.0;
-    double shape_scale = 0.0;  ///< root mean square over the instants of sqrt(sum A |u|^2) [m^2]
+    double shape_scale = 0.0;      ///< root mean square over the instants of sqrt(sum A |u|^2) [m^2]
+    Eigen::VectorXd weight_per_m;  ///< per rest point: sqrt(A) over the scale and the uncertainty
+    std::vector<Eigen::Matrix3Xd> weighted_reference;  ///< per touching instant
     bool forces_known = false;
   };
   double deepest_m_;
   std::vector<Contact> contacts_;
   int observations_ = 0;
+  Eigen::Index shape_rows_ = 0;
 };
 
 std::string value_text(double value, const std::string& unit) {

@@ -47,7 +47,8 @@ void FastModel::set_constants(const scene::Scene& scene) {
   skeleton = beam_skeleton(*anchors, scene);
   local = {scene.fast.C_n, scene.fast.C_r_m, scene.fast.r_R_m};
   formulas = formulas_of(scene, skeleton);
-  if (max_regions > 1) clusters = std::make_unique<const ClusterGrid>(cluster_grid(tool, scene.fast.r_th_m));
+  if (max_regions > 1 && clusters->r_th_m != scene.fast.r_th_m)
+    clusters = std::make_unique<const ClusterGrid>(cluster_grid(tool, scene.fast.r_th_m));
 }
 
 std::size_t FastModel::memory_bytes() const noexcept {

@@ -53,23 +53,49 @@ Vec3 next_direction(const ContactRegion& region, const InsideSummary& inside) no
   return region.depth_rel < direction_kept_rel ? follow_direction(region.d, inside) : region.d;
 }
 
-StepStatus press(const FastModel& model, const Motion& motion, bool created, ContactRegion& region,
-                 FastState& state) noexcept {
-  region.force = RegionForce{};
-  region.displacement_m.setZero();
+bool find_one_region(const FastModel& model, const Motion& motion, FastState& state) noexcept {
+  ContactRegion& region = state.regions[0];
+  RegionPoints points = state.store.window();
+  const InsideSummary inside =
+      model.detection.find_inside(*model.body, model.tool, motion.at, 0.0, model.tool.count(), points);
+  const bool created = points.count > 0 && !region.active;
+  if (points.count == 0) {
+    if (region.active) region.clear();
+    state.region_count = 0;
+    state.lap(Stage::detection);
+    return created;
+  }
+  if (created) {
+    region.active = true;
+    state.region_count = 1;
+    region.d = entry_direction(model, motion, inside, state);
+  } else {
+    region.d = next_direction(region, inside);
+  }
+  region.points = points;
+  return created;
+}
+
+StepStatus measure(const FastModel& model, const Motion& motion, ContactRegion& region, FastState& state) noexcept {
   region.extent = model.detection.measure_depths(*model.body, motion.at.R_WT, region.d, region.points);
   // Only the tool's back is inside: nothing pushes, but the region lives on with its direction.
   if (region.points.count == 0) return StepStatus::ok;
-  StepStatus status = StepStatus::ok;
   region.depth_rel = region.extent.deepest_m / region.extent.thickness_m;
   region.origin = deformation_origin(*model.body, model.detection.exit_distance_m, region.d, region.extent);
-  if (limit_depths(depth_limit_rel * region.extent.thickness_m, region.points)) status |= StepStatus::depth_limited;
+  const bool held = limit_depths(depth_limit_rel * region.extent.thickness_m, region.points);
   state.lap(Stage::detection);
-
   model.formulas.distribute_mass(motion.at.R_WT.transpose() * region.d, model.tool.spacing_m, region.points);
+  return held ? StepStatus::depth_limited : StepStatus::ok;
+}
+
+StepStatus push(const FastModel& model, const Motion& motion, bool created, ContactRegion& region,
+                FastState& state) noexcept {
+  region.force = RegionForce{};
+  region.displacement_m.setZero();
+  if (region.points.count == 0) return StepStatus::ok;
   const DuffingLaw law = model.law.at(contact_radius_m(region.extent.area_m2));
   region.force = region_force(law, motion.at.R_WT, region.d, region.points);
-  if (region.force.saturated) status |= StepStatus::law_saturated;
+  const StepStatus status = region.force.saturated ? StepStatus::law_saturated : StepStatus::ok;
   if (model.formulas.resolve_friction == nullptr) {
     region.displacement_m = law.depth_m(region.force.magnitude_n) * region.d;
     state.lap(Stage::force);
@@ -84,6 +110,12 @@ StepStatus press(const FastModel& model, const Motion& motion, bool created, Con
   region.origin = origin_at(*model.body, region.origin.p0_W_m - region.friction.stretch_m);
   state.lap(Stage::friction);
   return status;
+}
+
+StepStatus press(const FastModel& model, const Motion& motion, bool created, ContactRegion& region,
+                 FastState& state) noexcept {
+  const StepStatus measured = measure(model, motion, region, state);
+  return measured | push(model, motion, created, region, state);
 }
 
 ContactPoint contact_point(const FastModel& model, const ContactRegion& region) noexcept {

@@ -25,8 +25,17 @@ struct Motion {
 /// A region's direction in a further tick.
 [[nodiscard]] scene::Vec3 next_direction(const ContactRegion& region, const InsideSummary& inside) noexcept;
 
-/// Depths, shares, force with friction, and the equivalent point contact of a region whose points and direction are
-/// known. @param created in this tick: friction has no way behind it
+/// Finds the points and the direction of the first region, which has all of the tool that is inside.
+/// @returns whether the region has come into being in this tick; state.region_count is 0 where nothing is inside
+bool find_one_region(const FastModel&, const Motion&, FastState&) noexcept;
+
+/// Depths, origin and shares of a region whose points and direction are known: what no constant of the laws, the
+/// skeleton or the local factor has a part in.
+StepStatus measure(const FastModel&, const Motion&, ContactRegion&, FastState&) noexcept;
+/// Force with friction and the equivalent point contact of a region that has been measured.
+/// @param created in this tick: friction has no way behind it
+StepStatus push(const FastModel&, const Motion&, bool created, ContactRegion&, FastState&) noexcept;
+/// Both.
 StepStatus press(const FastModel&, const Motion&, bool created, ContactRegion&, FastState&) noexcept;
 
 /// The equivalent point contact as a point of the interpolation.

@@ -1,47 +1,66 @@
 #include "fast/replay.h"
 
+#include "fast/flush_tiny_numbers.h"
 #include "fast/step.h"
 
 namespace touchstone::fast {
 
-Replay::Replay(const scene::Scene& scene) : model_(scene), ticks_(ticks_of(scene)) {
+Replay::Replay(const scene::Scene& scene)
+    : model_(scene), state_(model_), r_th_m_(scene.fast.r_th_m), ticks_(ticks_of(scene)) {
   for (const Tick& tick : ticks_) poses_.push_back(scene::pose_at(scene.track, tick.time_s));
+  recorded_ = record_one_region(model_, ticks_, poses_);
 }
 
 std::vector<scene::Vec3> Replay::forces_n(const scene::Scene& scene) {
   model_.set_constants(scene);
-  FastState state(model_);
   std::vector<scene::Vec3> force_n;
+  // Which samples belong together hangs on r_th.
+  if (recorded_ && scene.fast.r_th_m != r_th_m_) recorded_.reset();
+  if (!recorded_) {
+    FastState state(model_);
+    for (std::size_t k = 0; k < ticks_.size(); ++k) {
+      step_force(model_, poses_[k], state);
+      if (ticks_[k].instant >= 0) force_n.push_back(total_force_n(state));
+    }
+    return force_n;
+  }
+  state_.regions[0].clear();
   regions_.clear();
-  for (std::size_t k = 0; k < ticks_.size(); ++k) {
-    const StepStatus status = step_force(model_, poses_[k], state);
-    // Several regions meet the surface that the others have left; one never meets its own.
-    if (model_.max_regions > 1 && status != StepStatus::not_finite) step_shape(model_, state);
-    if (ticks_[k].instant < 0) continue;
-    force_n.push_back(total_force_n(state));
-    if (model_.max_regions == 1) regions_.push_back(state.regions[0]);
+  for (const RecordedTick& tick : *recorded_) {
+    recall(tick, state_);
+    ContactRegion& region = state_.regions[0];
+    if (tick.in_region) push(model_, tick.motion, tick.created, region, state_);
+    if (tick.instant < 0) continue;
+    force_n.push_back(total_force_n(state_));
+    regions_.push_back(region);
   }
   return force_n;
 }
 
-std::vector<Eigen::Matrix3Xd> Replay::displacements_m(const scene::Scene& scene) {
+void Replay::displacements(const scene::Scene& scene, std::span<const std::size_t> instants,
+                           const std::function<void(std::size_t, const Columns3&)>& visit) {
   model_.set_constants(scene);
-  FastState state(model_);
-  std::vector<Eigen::Matrix3Xd> displacement_m;
-  if (model_.max_regions == 1) {
-    for (const ContactRegion& region : regions_) {
-      state.regions[0] = region;
-      state.region_count = region.active ? 1 : 0;
+  if (!recorded_) {
+    FastState state(model_);
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < ticks_.size() && next < instants.size(); ++k) {
+      step_force(model_, poses_[k], state);
+      if (ticks_[k].instant != static_cast<int>(instants[next])) continue;
       step_shape(model_, state);
-      displacement_m.push_back(matrix_of(state.field.displacement_m));
+      visit(next++, state.field.displacement_m);
     }
-    return displacement_m;
+    return;
   }
-  for (std::size_t k = 0; k < ticks_.size(); ++k) {
-    if (step_force(model_, poses_[k], state) != StepStatus::not_finite) step_shape(model_, state);
-    if (ticks_[k].instant >= 0) displacement_m.push_back(matrix_of(state.field.displacement_m));
+  for (std::size_t k = 0; k < instants.size(); ++k) {
+    state_.regions[0] = regions_[instants[k]];
+    if (state_.regions[0].pressing()) {
+      const FlushTinyNumbers flush;
+      displace(model_, state_);
+    } else {
+      state_.field.reset(model_.rest);
+    }
+    visit(k, state_.field.displacement_m);
   }
-  return displacement_m;
 }
 
 }  // namespace touchstone::fast

@@ -2,9 +2,11 @@
 // once; the constants of the laws, the skeleton and the local factor change from call to call.
 #pragma once
 
-#include "fast/state.h"
-#include "fast/ticks.h"
+#include "fast/recording.h"
 
+#include <functional>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace touchstone::fast {
@@ -17,15 +19,23 @@ class Replay {
   /// @param scene  that of the constructor but for the constants
   [[nodiscard]] std::vector<scene::Vec3> forces_n(const scene::Scene& scene);
 
-  /// Displacement at every instant, one column per rest point [m]; equal to run()'s bit for bit. Of a tool that can
-  /// have one region only, with the forces of the last call of forces_n(), which must have been one.
-  [[nodiscard]] std::vector<Eigen::Matrix3Xd> displacements_m(const scene::Scene& scene);
+  /// Displacement at some instants, equal to run()'s bit for bit. Where recorded(), with the forces of the last call of
+  /// forces_n(), which must have been one.
+  /// @param instants  in rising order; @param visit  gets a place among them and the displacement of all rest points [m]
+  void displacements(const scene::Scene& scene, std::span<const std::size_t> instants,
+                     const std::function<void(std::size_t, const Columns3&)>& visit);
+
+  /// Whether the regions could be found and measured beforehand, see record_one_region().
+  [[nodiscard]] bool recorded() const noexcept { return recorded_.has_value(); }
 
  private:
   FastModel model_;
+  FastState state_;
+  double r_th_m_;  ///< of the constructor's scene
   std::vector<Tick> ticks_;
-  std::vector<scene::Pose> poses_;      ///< at the ticks
-  std::vector<ContactRegion> regions_;  ///< of one-region tools, per instant; what the shape follows from
+  std::vector<scene::Pose> poses_;  ///< at the ticks
+  std::optional<std::vector<RecordedTick>> recorded_;
+  std::vector<ContactRegion> regions_;  ///< where recorded, per instant; what the shape follows from
 };
 
 }  // namespace touchstone::fast

@@ -21,26 +21,8 @@ bool finite(const Pose& pose) noexcept {
 
 /// The whole tool in one region.
 StepStatus press_one_region(const FastModel& model, const Motion& motion, FastState& state) noexcept {
-  const int all = model.tool.count();
-  ContactRegion& region = state.regions[0];
-  RegionPoints points = state.store.window();
-  const InsideSummary inside = model.detection.find_inside(*model.body, model.tool, motion.at, 0.0, all, points);
-  if (points.count == 0) {
-    if (region.active) region.clear();
-    state.region_count = 0;
-    state.lap(Stage::detection);
-    return StepStatus::ok;
-  }
-  const bool created = !region.active;
-  if (created) {
-    region.active = true;
-    state.region_count = 1;
-    region.d = entry_direction(model, motion, inside, state);
-  } else {
-    region.d = next_direction(region, inside);
-  }
-  region.points = points;
-  return press(model, motion, created, region, state);
+  const bool created = find_one_region(model, motion, state);
+  return state.region_count == 0 ? StepStatus::ok : press(model, motion, created, state.regions[0], state);
 }
 
 }  // namespace
@@ -56,6 +38,20 @@ StepStatus step_force(const FastModel& model, const Pose& pose_asked, FastState&
   return status;
 }
 
+void displace(const FastModel& model, FastState& state) noexcept {
+  ContactRegion& region = state.regions[0];
+  const Vec3 force_on_body_n = -region.force.force_n;
+  model.formulas.split_force(model.skeleton, region.origin.p0_W_m, force_on_body_n, region.displacement_m, region.ends);
+  state.lap(Stage::skeleton);
+  model.formulas.interpolate(model.rest, region.ends.displacement_m, contact_point(model, region), state.field);
+  state.lap(Stage::interpolation);
+  if (model.formulas.apply_local_factor != nullptr) {
+    model.formulas.apply_local_factor(model.rest, model.local, {region.points.count, region.extent.area_m2},
+                                      region.origin.p0_W_m, state.field);
+    state.lap(Stage::local_factor);
+  }
+}
+
 StepStatus step_shape(const FastModel& model, FastState& state) noexcept {
   if (!state.in_contact()) {
     if (state.deformed) {
@@ -68,20 +64,10 @@ StepStatus step_shape(const FastModel& model, FastState& state) noexcept {
   [[maybe_unused]] const FlushTinyNumbers flush;
   state.deformed = true;
   if (state.several != nullptr) return shape_several_regions(model, state);
-  ContactRegion& region = state.regions[0];
-  const Vec3 force_on_body_n = -region.force.force_n;
-  model.formulas.split_force(model.skeleton, region.origin.p0_W_m, force_on_body_n, region.displacement_m, region.ends);
-  state.lap(Stage::skeleton);
-  model.formulas.interpolate(model.rest, region.ends.displacement_m, contact_point(model, region), state.field);
-  state.lap(Stage::interpolation);
-  if (model.formulas.apply_local_factor != nullptr) {
-    model.formulas.apply_local_factor(model.rest, model.local, {region.points.count, region.extent.area_m2},
-                                      region.origin.p0_W_m, state.field);
-    state.lap(Stage::local_factor);
-  }
+  displace(model, state);
   update_normals(model.normals, model.rest, state.field);
   state.lap(Stage::normals);
-  return region.ends.limited ? StepStatus::anchors_limited : StepStatus::ok;
+  return state.regions[0].ends.limited ? StepStatus::anchors_limited : StepStatus::ok;
 }
 
 StepStatus step(const FastModel& model, const Pose& pose, FastState& state) noexcept {

@@ -16,7 +16,10 @@ StepStatus step_force(const FastModel& model, const scene::Pose& pose, FastState
 /// state.regions[].ends. Follows step_force.
 StepStatus step_shape(const FastModel& model, FastState& state) noexcept;
 
-/// Both. No heap, lock, throw, log or file access happens below; equal poses from equal states give equal bits.
+/// Of that the displacements alone, where the first region is the only one and presses.
+void displace(const FastModel& model, FastState& state) noexcept;
+
+/// Force and shape. No heap, lock, throw, log or file access happens below; equal poses from equal states give equal bits.
 StepStatus step(const FastModel& model, const scene::Pose& pose, FastState& state) noexcept;
 
 }  // namespace touchstone::fast

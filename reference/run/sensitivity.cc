@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -25,7 +26,7 @@ struct Change {
   Numerics numerics{};
   MeshChange mesh{};
   int load_steps = 1;  // in place of one
-  std::shared_ptr<const ToolDistance> tool{};
+  std::function<std::shared_ptr<const ToolDistance>()> tool{};  // takes seconds to make
   [[nodiscard]] bool other_mesh() const { return mesh.far_field != 1.0 || mesh.inclusions != 1.0; }
 };
 
@@ -46,10 +47,10 @@ std::vector<Change> changes(const scene::Scene& scene) {
                   .text = "ten times as large",
                   .numerics = {.contact_parameter = 1.0, .numerical_bulk = 10.0}});
   if (scene.tool.shape == scene::ToolShape::mesh) {
-    const scene::TriangleMesh mesh = scene::tool_mesh(scene.tool);
-    list.push_back({.part = "tool_grid",
-                    .text = "half as wide",
-                    .tool = std::make_shared<DistanceGrid>(mesh, 0.5 * grid_spacing_m(mesh))});
+    list.push_back({.part = "tool_grid", .text = "half as wide", .tool = [&scene] {
+                      const scene::TriangleMesh mesh = scene::tool_mesh(scene.tool);
+                      return std::make_shared<DistanceGrid>(mesh, 0.5 * grid_spacing_m(mesh));
+                    }});
   }
   // Every level has smaller cells at the inclusions, so the levels' differences hold this one.
   if (!scene.body.inclusions.empty()) {
@@ -79,7 +80,7 @@ class Repeat {
     ContactProblem<dim> problem(mesh, scene.body.material, scene.reference.kinematics, given_.choice.mirror_x,
                                 given_.choice.mirror_y, ranks::threads(), change.numerics);
     if (scene.contact.friction) problem.set_friction(*scene.contact.friction, scene.fast.r_th_m);
-    const auto tool = change.tool ? change.tool : given_.choice.tool;
+    const auto tool = change.tool ? change.tool() : given_.choice.tool;
     const auto tool_anywhere = [&](double time_s) { return RigidTool<dim>(tool, scene::pose_at(scene.track, time_s)); };
     LoadPath<dim> path(
         problem,

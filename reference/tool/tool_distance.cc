@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 namespace touchstone::reference {
 namespace {
@@ -110,6 +111,21 @@ class RoundBox final : public ToolDistance {
   double round_m_;
 };
 
+/// The mesh's grid, the last one where it is of the same mesh: it takes seconds, and a scene's model, its errors and the
+/// next contact of a study all ask for it.
+std::shared_ptr<const ToolDistance> distance_grid(const scene::TriangleMesh& mesh) {
+  static std::mutex one_at_a_time;
+  static scene::TriangleMesh last;
+  static std::shared_ptr<const ToolDistance> grid;
+  const std::lock_guard lock(one_at_a_time);
+  if (!grid || last.triangles != mesh.triangles || last.points_m.cols() != mesh.points_m.cols() ||
+      last.points_m != mesh.points_m) {
+    grid = std::make_shared<DistanceGrid>(mesh, grid_spacing_m(mesh));
+    last = mesh;
+  }
+  return grid;
+}
+
 }  // namespace
 
 std::shared_ptr<const ToolDistance> tool_distance(const scene::Tool& tool) {
@@ -127,10 +143,8 @@ std::shared_ptr<const ToolDistance> tool_distance(const scene::Tool& tool) {
       const double round_m = box_edge_share * half_m.minCoeff();
       return std::make_shared<RoundBox>(center_T_m, half_m - Vec3::Constant(round_m), round_m);
     }
-    case scene::ToolShape::mesh: {
-      const scene::TriangleMesh mesh = scene::tool_mesh(tool);
-      return std::make_shared<DistanceGrid>(mesh, grid_spacing_m(mesh));
-    }
+    case scene::ToolShape::mesh:
+      return distance_grid(scene::tool_mesh(tool));
   }
   return nullptr;
 }
