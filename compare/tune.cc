@@ -317,6 +317,33 @@ TuningOutcome outcome_of(const Tuning& tuning, const TunedModel& model, std::siz
   return out;
 }
 
+/// shape.rel_l2 over the instants that count.
+double shape_error_rel(const TuningData& data, const scene::Scene& scene, fast::Replay& replay) {
+  double error2 = 0.0, scale2 = 0.0;
+  (void)replay.forces_n(scene);
+  replay.displacements(scene, data.instants, [&](std::size_t t, const fast::Columns3& fast_m) {
+    const Eigen::Matrix3Xd& reference_m = data.result.instants[t].displacement_m;
+    const auto area_m2 = Eigen::Map<const Eigen::VectorXd>(data.surface.vertex_area_m2.data(), reference_m.cols());
+    error2 += area_m2.dot((fast::matrix_of(fast_m) - reference_m).colwise().squaredNorm().transpose());
+    scale2 += area_m2.dot(reference_m.colwise().squaredNorm().transpose());
+  });
+  return std::sqrt(error2 / scale2);
+}
+
+ShapeParts shape_parts_of(const TuningData& data, const TunedModel& model) {
+  // A million square metres: no beam gives.
+  constexpr double stiff_s_c_m2 = 1e6;
+  const scene::Scene whole = tuned_scene(data.contact.scene, model);
+  fast::Replay replay(whole);
+  const auto with = [&](bool factor, bool anchors) {
+    scene::Scene scene = whole;
+    if (!factor) scene.fast.C_n = 0.0;
+    if (!anchors) scene.fast.s_c_m2 = stiff_s_c_m2;
+    return shape_error_rel(data, scene, replay);
+  };
+  return {with(true, true), with(false, true), with(true, false), with(false, false)};
+}
+
 /// The reference's and the model's force at one depth on a way in, between its instants; nothing where it never is.
 std::optional<std::array<double, 2>> forces_at_n(const TuningOutcome& outcome, double depth_m) {
   const std::vector<InstantErrors>& e = outcome.errors.instants;
@@ -389,6 +416,12 @@ std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model
                           percent_text(*e.shape_side_faces_rel_l2.value));
     }
     limits.push_back(std::move(text));
+    const ShapeParts& parts = model.shape_parts;
+    limits.push_back(fmt::format(
+        "What its parts are good for, on the training contact {}: {} with the contact point's hat alone, {} with the "
+        "anchor points' movement on top, {} with the local factor in its place, {} with both.",
+        tuning.data[trained.data].contact.name, percent_text(parts.hat_alone), percent_text(parts.without_local_factor),
+        percent_text(parts.anchors_at_rest), percent_text(parts.whole)));
   }
   return limits;
 }
@@ -424,7 +457,14 @@ void keep_instants(fast::Run& run, const std::vector<std::size_t>& instants) {
 
 std::string TunedModel::name() const {
   return std::string(formulation == scene::Formulation::published ? "published" : "corrected") +
-         (law == scene::ContactLaw::duffing ? " duffing" : " area_aware");
+         (law == scene::ContactLaw::duffing ? " duffing" : " area-aware");
+}
+
+std::string TunedModel::key() const {
+  std::string key = name();
+  std::replace(key.begin(), key.end(), '-', '_');
+  std::replace(key.begin(), key.end(), ' ', '-');
+  return key;
 }
 
 scene::Scene tuned_scene(const scene::Scene& scene, const TunedModel& model) {
@@ -451,7 +491,7 @@ Tuning tune(const scene::TuningStudy& study, const SolveReference& solve,
   }
   for (const scene::Formulation formulation : study.formulations) {
     for (const scene::ContactLaw law : study.laws) {
-      TunedModel model{formulation, law, {}, {}, {}};
+      TunedModel model{.formulation = formulation, .law = law, .stages = {}, .outcomes = {}, .shape_parts = {}, .limits = {}};
       for (const TuningStage stage : {TuningStage::force, TuningStage::shape}) {
         tell(fmt::format("{}: fitting the {}", model.name(), stage == TuningStage::force ? "force" : "shape"));
         StageFit fitted = fit_stage(tuning, model, stage, deepest);
@@ -459,6 +499,7 @@ Tuning tune(const scene::TuningStudy& study, const SolveReference& solve,
       }
       tell(model.name() + ": errors on every contact");
       for (std::size_t k = 0; k < tuning.data.size(); ++k) model.outcomes.push_back(outcome_of(tuning, model, k));
+      model.shape_parts = shape_parts_of(tuning.data.front(), model);
       model.limits = limits_of(tuning, model);
       tuning.models.push_back(std::move(model));
     }

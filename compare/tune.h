@@ -55,15 +55,26 @@ struct TuningOutcome {
   std::vector<RegimePoint> regime;  ///< deep instants
 };
 
+/// Shape error on the first training contact, over the instants that count as shape.rel_l2 is, with parts of the tuned
+/// model switched off and nothing fitted again: what each part is good for.
+struct ShapeParts {
+  double whole = 0.0;
+  double without_local_factor = 0.0;  ///< C_n = 0
+  double anchors_at_rest = 0.0;       ///< beams too stiff to move them
+  double hat_alone = 0.0;             ///< neither: the contact point spread over its patches
+};
+
 /// One formulation and law, tuned.
 struct TunedModel {
   scene::Formulation formulation = scene::Formulation::corrected;
   scene::ContactLaw law = scene::ContactLaw::duffing;
   std::vector<StageFit> stages;
   std::vector<TuningOutcome> outcomes;  ///< in the order of the data
-  std::vector<std::string> limits;      ///< what limits it on its held-out contacts, a sentence each
+  ShapeParts shape_parts;
+  std::vector<std::string> limits;  ///< what limits it on its held-out contacts, a sentence each
 
-  [[nodiscard]] std::string name() const;  ///< "corrected duffing"
+  [[nodiscard]] std::string name() const;  ///< "corrected area-aware"
+  [[nodiscard]] std::string key() const;   ///< "corrected-area_aware", for files and figures
 };
 
 struct Tuning {

@@ -35,12 +35,6 @@ std::string slug(const std::string& name) {
   return out;
 }
 
-std::string model_key(const TunedModel& model) {
-  std::string key = model.name();
-  std::replace(key.begin(), key.end(), ' ', '-');
-  return key;
-}
-
 scene::Figures contact_figures(const Tuning& tuning, const TuningOutcome& outcome) {
   scene::Figures out;
   for (scene::Figure& figure : make_figures(outcome.errors, outcome.run, tuning.data[outcome.data].result)) {
@@ -112,6 +106,10 @@ scene::Figures model_figures(const Tuning& tuning, const TunedModel& model) {
     add(out, group, worst_of(contacts));
     out.insert(out.end(), each.begin(), each.end());
   }
+  out.push_back({"training.shape_parts.whole", model.shape_parts.whole, "", ""});
+  out.push_back({"training.shape_parts.without_local_factor", model.shape_parts.without_local_factor, "", ""});
+  out.push_back({"training.shape_parts.anchors_at_rest", model.shape_parts.anchors_at_rest, "", ""});
+  out.push_back({"training.shape_parts.hat_alone", model.shape_parts.hat_alone, "", ""});
   for (const StageFit& stage : model.stages) {
     for (std::size_t k = 0; k < stage.parameters.size(); ++k) {
       const scene::TuningParameter& one = stage.parameters[k];
@@ -170,7 +168,7 @@ std::vector<scene::Column> tuning_columns(const Tuning& tuning) {
 
 scene::Figures tuning_figures(const Tuning& tuning) {
   scene::Figures out = model_figures(tuning, tuning.models.front());
-  for (const TunedModel& model : tuning.models) add(out, model_key(model) + ".", model_figures(tuning, model));
+  for (const TunedModel& model : tuning.models) add(out, model.key() + ".", model_figures(tuning, model));
   return out;
 }
 
@@ -209,7 +207,7 @@ std::string parameters_toml(const Tuning& tuning, const TunedModel& model) {
 void write_tuning(const std::filesystem::path& folder, const Tuning& tuning, const scene::Manifest& manifest) {
   scene::write_file(folder / "parameters.toml", parameters_toml(tuning, tuning.models.front()));
   for (const TunedModel& model : tuning.models) {
-    scene::write_file(folder / ("parameters-" + model_key(model) + ".toml"), parameters_toml(tuning, model));
+    scene::write_file(folder / ("parameters-" + model.key() + ".toml"), parameters_toml(tuning, model));
   }
   scene::write_csv(folder / "curve.csv", tuning_columns(tuning));
   scene::write_summary(folder / "summary.json", tuning_figures(tuning));

@@ -172,13 +172,18 @@ BeamSkeleton beam_skeleton(const AnchorPoints& anchors, const scene::Scene& scen
   skeleton.anchor_m = anchors.points_m();
   skeleton.held = anchors.held();
   skeleton.triangles = area_triangles(anchors);
-  skeleton.s_c_m2 = scene.fast.s_c_m2;
-  for (const double gamma : voronoi_shares(skeleton.triangles)) skeleton.area_m2.push_back(gamma * skeleton.s_c_m2);
   skeleton.youngs_modulus_pa = scene.body.material.youngs_modulus_pa;
   skeleton.poissons_ratio = scene.body.material.poissons_ratio;
-  skeleton.r_R_m = scene.fast.r_R_m;
   skeleton.inclusions = inclusions_of(scene.body);
+  skeleton.set_constants(scene.fast);
   return skeleton;
+}
+
+void BeamSkeleton::set_constants(const scene::FastSettings& fast) {
+  s_c_m2 = fast.s_c_m2;
+  area_m2 = voronoi_shares(triangles);
+  for (double& area : area_m2) area *= s_c_m2;
+  r_R_m = fast.r_R_m;
 }
 
 CurrentEnds::CurrentEnds(const BeamSkeleton& skeleton) : anchor_m(skeleton.anchor_m), area_m2(skeleton.area_m2) {}

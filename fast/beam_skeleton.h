@@ -13,6 +13,9 @@ namespace touchstone::fast {
 
 /// What the skeleton keeps from contact to contact.
 struct BeamSkeleton {
+  /// Takes over s_c and r_R; the anchor points and what lies between them stay.
+  void set_constants(const scene::FastSettings& fast);
+
   std::vector<scene::Vec3> anchor_m;  ///< p_i, beam ends at rest
   std::vector<bool> held;             ///< beam ends on the support
   std::vector<double> area_m2;        ///< s_i = gamma_i s_c at rest, equation (19)

@@ -44,7 +44,7 @@ FastModel::FastModel(const scene::Scene& scene)
 void FastModel::set_constants(const scene::Scene& scene) {
   law = ContactLaw(scene.contact);
   friction = scene.contact.friction ? std::optional<FrictionLaw>(*scene.contact.friction) : std::nullopt;
-  skeleton = beam_skeleton(*anchors, scene);
+  skeleton.set_constants(scene.fast);
   local = {scene.fast.C_n, scene.fast.C_r_m, scene.fast.r_R_m};
   formulas = formulas_of(scene, skeleton);
   if (max_regions > 1 && clusters->r_th_m != scene.fast.r_th_m)

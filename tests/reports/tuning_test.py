@@ -24,6 +24,10 @@ summary = {
     "corrected-area_aware.held_out.head.force.nrmse": 0.25,
     "corrected-area_aware.held_out.head.shape.rel_l2": 0.5,
     "corrected-area_aware.held_out.head.shape.rel_l2_uncertainty": 0.75,
+    "corrected-area_aware.training.shape_parts.whole": 0.4,
+    "corrected-area_aware.training.shape_parts.without_local_factor": 0.6,
+    "corrected-area_aware.training.shape_parts.anchors_at_rest": 0.7,
+    "corrected-area_aware.training.shape_parts.hat_alone": 0.9,
     "corrected-area_aware.training.tail.force.nrmse": 0.125,
     "corrected-area_aware.training.tail.shape.rel_l2": "unknown",
     "corrected-area_aware.training.tail.force.friction_nrmse": "undefined: the scene has no friction",
@@ -53,6 +57,7 @@ class Measure(unittest.TestCase):
         self.assertIn("| model | contact | force, of the peak | shape |\n", text)
         self.assertIn("| corrected, area-aware | held out: head | 25 % | 50 % |\n", text)
         self.assertIn("| corrected, area-aware | training: tail | 12.5 % | – |\n", text)
+        self.assertIn("| corrected, area-aware | 90 % | 60 % | 70 % | 40 % |\n", text)
         self.assertIn("known to 1.25 % or better", text)
 
     def test_a_study_without_answer_says_why_or_that_it_was_not_asked(self):

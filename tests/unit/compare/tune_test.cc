@@ -14,6 +14,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace touchstone::compare {
 namespace {
@@ -86,34 +87,70 @@ const Determination& found(const TunedModel& model, const std::string& key) {
   throw std::out_of_range(key);
 }
 
-TEST(Replay, EqualsTheRunBitForBitWithTheConstantsOfTheCall) {
-  for (const char* name : {"sphere-on-sphere-body", "ball-on-cube-slide", "mallet-tail-on-cube"}) {
-    const scene::Scene scene =
-        scene::load_scene(scenes + name + ".toml",
-                          {"compare.instants=5", "fast.triangles=200", "fast.rate_hz=100.0", "fast.tool_samples=500"});
-    scene::Scene other = scene;
-    other.fast.C_n = 0.1;
-    other.fast.s_c_m2 *= 2.0;
-    other.contact.k3_n_per_m3 += 1.0e7;
-    fast::Replay replay(scene);
-    for (const scene::Scene& now : {other, scene}) {
-      const fast::Run run = fast::run(now);
-      const std::vector<Vec3> force_n = replay.forces_n(now);
-      ASSERT_EQ(force_n.size(), run.instants.size());
-      std::vector<std::size_t> instants;
-      for (std::size_t t = 0; t < force_n.size(); ++t) {
-        EXPECT_EQ(force_n[t], run.instants[t].force_n()) << name << " " << t;
-        if (t % 2 == 0) instants.push_back(t);
-      }
-      std::size_t visited = 0;
-      replay.displacements(now, instants, [&](std::size_t k, const fast::Columns3& displacement_m) {
-        EXPECT_EQ(fast::matrix_of(displacement_m), run.instants[instants[k]].displacement_m) << name << " " << k;
-        ++visited;
-      });
-      EXPECT_EQ(visited, instants.size());
-      EXPECT_GT(force_n.back().norm(), 0.0);
+scene::Scene coarse(const std::string& name) {
+  return scene::load_scene(scenes + name + ".toml", {"compare.instants=7", "fast.triangles=200", "fast.rate_hz=100.0",
+                                                     "fast.tool_samples=500"});
+}
+
+/// Down, up and out, and down again.
+scene::Scene twice(scene::Scene scene) {
+  const std::vector<scene::Waypoint> once = scene.track;
+  const double end_s = once.back().time_s;
+  scene.track.push_back({end_s + 0.2, once.front().pose});
+  scene.track.push_back({end_s + 0.5, once.back().pose});
+  return scene;
+}
+
+class Replays : public ::testing::TestWithParam<std::tuple<std::string, bool, bool>> {};
+
+TEST_P(Replays, EqualTheRunBitForBitWithTheConstantsOfTheCall) {
+  const auto& [name, again, recorded] = GetParam();
+  const scene::Scene scene = again ? twice(coarse(name)) : coarse(name);
+  scene::Scene other = scene;
+  other.fast.C_n = 0.1;
+  other.fast.s_c_m2 *= 2.0;
+  other.contact.k3_n_per_m3 += 1.0e7;
+  fast::Replay replay(scene);
+  EXPECT_EQ(replay.recorded(), recorded);
+  for (const scene::Scene& now : {other, scene}) {
+    const fast::Run run = fast::run(now);
+    const std::vector<Vec3> force_n = replay.forces_n(now);
+    ASSERT_EQ(force_n.size(), run.instants.size());
+    std::vector<std::size_t> instants;
+    for (std::size_t t = 0; t < force_n.size(); ++t) {
+      EXPECT_EQ(force_n[t], run.instants[t].force_n()) << t;
+      if (t % 2 == 0) instants.push_back(t);
     }
+    std::size_t visited = 0;
+    replay.displacements(now, instants, [&](std::size_t k, const fast::Columns3& displacement_m) {
+      EXPECT_EQ(k, visited++);
+      EXPECT_EQ(fast::matrix_of(displacement_m), run.instants[instants[k]].displacement_m) << k;
+    });
+    EXPECT_EQ(visited, instants.size());
+    EXPECT_GT(force_n.back().norm(), 0.0);
   }
+}
+
+// A tool that may have several regions is recorded only while its constants cannot say how many.
+INSTANTIATE_TEST_SUITE_P(Scenes, Replays,
+                         ::testing::Values(std::tuple("sphere-on-sphere-body", false, true),
+                                         std::tuple("sphere-on-sphere-body", true, true),
+                                         std::tuple("ball-on-cube-slide", false, true),
+                                         std::tuple("ball-on-cube-slide", true, true),
+                                         std::tuple("mallet-tail-on-cube", false, true),
+                                         std::tuple("mallet-tail-on-cube", true, false),
+                                         std::tuple("compass-two-pins", false, false)));
+
+TEST(Replay, AnotherClusterDistanceIsNotTheRecordedOne) {
+  const scene::Scene scene = coarse("mallet-tail-on-cube");
+  scene::Scene finer = scene;
+  finer.fast.r_th_m = 0.0005;
+  fast::Replay replay(scene);
+  ASSERT_TRUE(replay.recorded());
+  const std::vector<Vec3> force_n = replay.forces_n(finer);
+  EXPECT_FALSE(replay.recorded());
+  const fast::Run run = fast::run(finer);
+  for (std::size_t t = 0; t < force_n.size(); ++t) EXPECT_EQ(force_n[t], run.instants[t].force_n()) << t;
 }
 
 TEST(Tune, BringsBackTheConstantsOfForceAndShape) {
@@ -175,6 +212,28 @@ TEST(Tune, NamesAnActiveBoundInEveryAnswer) {
   });
   ASSERT_NE(error, figures.end());
   EXPECT_EQ(error->text, "none: at its upper bound");
+}
+
+TEST(Tune, SaysWhatThePartsOfTheShapeAreGoodFor) {
+  const auto constants = std::map<std::string, double>{{"contact.k1_n_per_m", 900.0}, {"fast.s_c_m2", 6.0e-3}};
+  const Tuning tuning = tune(study({free("contact.k1_n_per_m", 1e1, 1e5),
+                                    free("fast.s_c_m2", 1e-4, 1e-1, scene::TuningStage::shape)}),
+                             made_with(constants));
+  const TunedModel& model = tuning.models.at(0);
+  const ShapeParts& parts = model.shape_parts;
+  EXPECT_NEAR(parts.whole, *model.outcomes.at(0).errors.shape_rel_l2.value, 1e-9);
+  // The reference has both parts.
+  EXPECT_GT(parts.without_local_factor, parts.whole + 0.01);
+  EXPECT_GT(parts.anchors_at_rest, parts.whole + 0.01);
+  EXPECT_GT(parts.hat_alone, parts.whole + 0.01);
+  EXPECT_THAT(model.limits.back(), HasSubstr("What its parts are good for, on the training contact pole"));
+}
+
+TEST(Tune, NamesTheLawInWordsAndKeepsItsKeyForFiles) {
+  TunedModel model;
+  model.law = scene::ContactLaw::area_aware;
+  EXPECT_EQ(model.name(), "corrected area-aware");
+  EXPECT_EQ(model.key(), "corrected-area_aware");
 }
 
 TEST(Tune, HeldOutFiguresAreTheWorstContactsAndNoneOfTraining) {
