@@ -180,6 +180,18 @@ TEST(DistanceGrid, OfABallIsTheBallLessItsChords) {
   EXPECT_TRUE(std::isinf(grid.at(Vec3(0.0, 0.0, 1.3 * R_m)).value_m));
 }
 
+TEST(DistanceGrid, IsMadeOnceForOneMeshAndAnewForAnother) {
+  const scene::Tool tool = tool_of(ToolShape::mesh);
+  scene::Tool same = tool;
+  same.mesh = std::make_shared<const scene::TriangleMesh>(*tool.mesh);
+  EXPECT_EQ(tool_distance(tool), tool_distance(same));
+  scene::Tool shifted = tool;
+  shifted.mass_center_m = *tool.mass_center_m + Vec3(0.1, 0.0, 0.0);
+  const Vec3 p_m(0.9, 0.0, 0.0);
+  EXPECT_NEAR(tool_distance(shifted)->at(p_m - Vec3(0.1, 0.0, 0.0)).value_m, tool_distance(tool)->at(p_m).value_m, 1e-6);
+  EXPECT_GT(tool_distance(shifted)->at(p_m).value_m, tool_distance(tool)->at(p_m).value_m + 0.05);
+}
+
 TEST(DistanceGrid, KnowsInsideFromOutsideOfTwoPieces) {
   const auto cube = mesh_of(scene::Box(Vec3(0, 0, 0), Vec3(1, 1, 1)), 200);
   const auto ball = mesh_of(scene::Sphere(Vec3(1.5, 0.2, 0.1), 0.6), 2000);
