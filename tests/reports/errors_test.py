@@ -53,10 +53,10 @@ class Measure(unittest.TestCase):
     def answer(self, summary):
         (self.folder / "summary.json").write_text(json.dumps(summary))
 
-    def tuned(self, study, formulation, text):
+    def tuned(self, study, formulation, text, law="duffing"):
         folder = self.folder / "tuned" / f"{study}-tune"
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / f"parameters-{formulation}-duffing.toml").write_text(text)
+        (folder / f"parameters-{formulation}-{law}.toml").write_text(text)
 
     def run_on(self, *words):
         done = subprocess.run([measure, "--touchstone", self.folder / "program", "--store", self.folder / "store",
@@ -110,6 +110,19 @@ class Measure(unittest.TestCase):
             self.assertIn("--set " + word, slide[1])
         self.assertNotIn("friction", press[1])
         self.assertTrue(all(call.endswith("--minutes 7") for call in slide + press))
+
+    def test_the_law_is_the_scenes_own(self):
+        self.tuned("mallet", "published", "[contact]\nlaw = \"duffing\"\nk1_n_per_m = 123.5\n")
+        self.run_on("mallet-head-on-cube")
+        self.assertIn("not tuned yet", self.line("mallet-head-on-cube", "tuned published", "Force")[0])
+        self.tuned("mallet", "published", "[contact]\nk1_per_radius_n_per_m2 = 456.5\n", "area_aware")
+        self.run_on("mallet-head-on-cube")
+        self.assertIn("--set contact.k1_per_radius_n_per_m2=456.5", self.calls()[-1])
+
+    def test_a_reason_names_no_place_of_this_machine(self):
+        (self.folder / "program").write_text("#!/bin/sh\necho \"$2:1:1: made-up\" >&2\nexit 3\n")
+        self.run_on("hertz-sphere")
+        self.assertEqual(self.line("hertz-sphere", "all", "Force")[0], "meshes/scenes/hertz-sphere.toml:1:1: made-up")
 
     def test_what_is_missing_says_so(self):
         self.run_on("hertz-sphere")
