@@ -45,6 +45,11 @@ std::string ceiling_sentence(const Tuning& tuning, const TunedModel& model, cons
                                        : fmt::format(" A {} error lower than the ceiling needs an explanation.",
                                                      force_below ? "force" : "shape");
   }
+  if (shape_below && &outcome == &model.outcomes.front()) {
+    text +=
+        fmt::format(" Without the local factor the shape would be {} off: the prototype's R stayed near the contact.",
+                    percent_text(model.shape_parts.without_local_factor));
+  }
   if (against(e.shape_rel_l2, expected_exact_anchors) == "below") {
     text += fmt::format(" The shape is even below the {} to {} that exact anchor points would leave.",
                         number_text(100.0 * expected_exact_anchors.low), percent_text(expected_exact_anchors.high));

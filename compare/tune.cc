@@ -88,10 +88,11 @@ class Training {
         }
       }
       one.shape_scale = std::sqrt(one.shape_scale / static_cast<double>(one.touching.size()));
-      one.weight_per_m = Eigen::Map<const Eigen::VectorXd>(data.surface.vertex_area_m2.data(),
-                                                           static_cast<Eigen::Index>(data.surface.vertex_area_m2.size()))
-                             .cwiseSqrt() /
-                         (one.shape_scale * one.shape_uncertainty);
+      one.weight_per_m =
+          Eigen::Map<const Eigen::VectorXd>(data.surface.vertex_area_m2.data(),
+                                            static_cast<Eigen::Index>(data.surface.vertex_area_m2.size()))
+              .cwiseSqrt() /
+          (one.shape_scale * one.shape_uncertainty);
       for (const std::size_t t : one.touching) {
         one.touching_in_track.push_back(data.instants[t]);
         one.weighted_reference.push_back(data.result.instants[t].displacement_m * one.weight_per_m.asDiagonal());
@@ -491,7 +492,8 @@ Tuning tune(const scene::TuningStudy& study, const SolveReference& solve,
   }
   for (const scene::Formulation formulation : study.formulations) {
     for (const scene::ContactLaw law : study.laws) {
-      TunedModel model{.formulation = formulation, .law = law, .stages = {}, .outcomes = {}, .shape_parts = {}, .limits = {}};
+      TunedModel model{
+          .formulation = formulation, .law = law, .stages = {}, .outcomes = {}, .shape_parts = {}, .limits = {}};
       for (const TuningStage stage : {TuningStage::force, TuningStage::shape}) {
         tell(fmt::format("{}: fitting the {}", model.name(), stage == TuningStage::force ? "force" : "shape"));
         StageFit fitted = fit_stage(tuning, model, stage, deepest);

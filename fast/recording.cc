@@ -14,7 +14,9 @@ using scene::Vec3;
 constexpr double rounding = 1.0 + 1e-6;
 
 /// Columns of RecordedTick::numbers, in that order.
-std::array<double**, 5> columns_of(RegionPoints& p) noexcept { return {&p.x_T_m, &p.y_T_m, &p.z_T_m, &p.depth_m, &p.share}; }
+std::array<double**, 5> columns_of(RegionPoints& p) noexcept {
+  return {&p.x_T_m, &p.y_T_m, &p.z_T_m, &p.depth_m, &p.share};
+}
 
 RecordedTick record(const ContactRegion& region, const Motion& motion, bool created, int instant) {
   RecordedTick tick;
@@ -47,7 +49,8 @@ class OneRegion {
     std::vector<std::int32_t> inside, outside;
     for (int i = 0; i < reach.count; ++i) (reach.depth_m[i] > 0.0 ? inside : outside).push_back(reach.sample[i]);
     for (const std::int32_t far : outside) {
-      if (std::none_of(inside.begin(), inside.end(), [&](std::int32_t near) { return joined(far, near); })) return false;
+      if (std::none_of(inside.begin(), inside.end(), [&](std::int32_t near) { return joined(far, near); }))
+        return false;
     }
     const bool kept = last_.empty() || std::any_of(inside.begin(), inside.end(), [&](std::int32_t sample) {
                         return was_[static_cast<std::size_t>(sample)] != 0;

@@ -12,9 +12,9 @@ namespace touchstone::fast {
 
 /// One tick.
 struct RecordedTick {
-  int instant = -1;       ///< place among the instants; -1 for a tick between them
-  bool in_region = false; ///< something of the tool is inside
-  bool created = false;   ///< for the first time
+  int instant = -1;        ///< place among the instants; -1 for a tick between them
+  bool in_region = false;  ///< something of the tool is inside
+  bool created = false;    ///< for the first time
   Motion motion;
   scene::Vec3 d = scene::Vec3::Zero();
   RegionExtent extent;

@@ -21,7 +21,8 @@ class Replay {
 
   /// Displacement at some instants, equal to run()'s bit for bit. Where recorded(), with the forces of the last call of
   /// forces_n(), which must have been one.
-  /// @param instants  in rising order; @param visit  gets a place among them and the displacement of all rest points [m]
+  /// @param instants  in rising order; @param visit  gets a place among them and the displacement of all rest points
+  /// [m]
   void displacements(const scene::Scene& scene, std::span<const std::size_t> instants,
                      const std::function<void(std::size_t, const Columns3&)>& visit);
 

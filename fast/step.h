@@ -19,7 +19,8 @@ StepStatus step_shape(const FastModel& model, FastState& state) noexcept;
 /// Of that the displacements alone, where the first region is the only one and presses.
 void displace(const FastModel& model, FastState& state) noexcept;
 
-/// Force and shape. No heap, lock, throw, log or file access happens below; equal poses from equal states give equal bits.
+/// Force and shape. No heap, lock, throw, log or file access happens below; equal poses from equal states give equal
+/// bits.
 StepStatus step(const FastModel& model, const scene::Pose& pose, FastState& state) noexcept;
 
 }  // namespace touchstone::fast

@@ -25,7 +25,7 @@ struct Change {
   Carries carries = Carries::wholly;
   Numerics numerics{};
   MeshChange mesh{};
-  int load_steps = 1;  // in place of one
+  int load_steps = 1;                                           // in place of one
   std::function<std::shared_ptr<const ToolDistance>()> tool{};  // takes seconds to make
   [[nodiscard]] bool other_mesh() const { return mesh.far_field != 1.0 || mesh.inclusions != 1.0; }
 };

@@ -111,8 +111,8 @@ class RoundBox final : public ToolDistance {
   double round_m_;
 };
 
-/// The mesh's grid, the last one where it is of the same mesh: it takes seconds, and a scene's model, its errors and the
-/// next contact of a study all ask for it.
+/// The mesh's grid, the last one where it is of the same mesh: it takes seconds, and a scene's model, its errors and
+/// the next contact of a study all ask for it.
 std::shared_ptr<const ToolDistance> distance_grid(const scene::TriangleMesh& mesh) {
   static std::mutex one_at_a_time;
   static scene::TriangleMesh last;

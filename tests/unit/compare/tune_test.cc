@@ -88,8 +88,8 @@ const Determination& found(const TunedModel& model, const std::string& key) {
 }
 
 scene::Scene coarse(const std::string& name) {
-  return scene::load_scene(scenes + name + ".toml", {"compare.instants=7", "fast.triangles=200", "fast.rate_hz=100.0",
-                                                     "fast.tool_samples=500"});
+  return scene::load_scene(scenes + name + ".toml",
+                           {"compare.instants=7", "fast.triangles=200", "fast.rate_hz=100.0", "fast.tool_samples=500"});
 }
 
 /// Down, up and out, and down again.
@@ -132,14 +132,12 @@ TEST_P(Replays, EqualTheRunBitForBitWithTheConstantsOfTheCall) {
 }
 
 // A tool that may have several regions is recorded only while its constants cannot say how many.
-INSTANTIATE_TEST_SUITE_P(Scenes, Replays,
-                         ::testing::Values(std::tuple("sphere-on-sphere-body", false, true),
-                                         std::tuple("sphere-on-sphere-body", true, true),
-                                         std::tuple("ball-on-cube-slide", false, true),
-                                         std::tuple("ball-on-cube-slide", true, true),
-                                         std::tuple("mallet-tail-on-cube", false, true),
-                                         std::tuple("mallet-tail-on-cube", true, false),
-                                         std::tuple("compass-two-pins", false, false)));
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, Replays,
+    ::testing::Values(std::tuple("sphere-on-sphere-body", false, true), std::tuple("sphere-on-sphere-body", true, true),
+                      std::tuple("ball-on-cube-slide", false, true), std::tuple("ball-on-cube-slide", true, true),
+                      std::tuple("mallet-tail-on-cube", false, true), std::tuple("mallet-tail-on-cube", true, false),
+                      std::tuple("compass-two-pins", false, false)));
 
 TEST(Replay, AnotherClusterDistanceIsNotTheRecordedOne) {
   const scene::Scene scene = coarse("mallet-tail-on-cube");
@@ -216,9 +214,9 @@ TEST(Tune, NamesAnActiveBoundInEveryAnswer) {
 
 TEST(Tune, SaysWhatThePartsOfTheShapeAreGoodFor) {
   const auto constants = std::map<std::string, double>{{"contact.k1_n_per_m", 900.0}, {"fast.s_c_m2", 6.0e-3}};
-  const Tuning tuning = tune(study({free("contact.k1_n_per_m", 1e1, 1e5),
-                                    free("fast.s_c_m2", 1e-4, 1e-1, scene::TuningStage::shape)}),
-                             made_with(constants));
+  const Tuning tuning =
+      tune(study({free("contact.k1_n_per_m", 1e1, 1e5), free("fast.s_c_m2", 1e-4, 1e-1, scene::TuningStage::shape)}),
+           made_with(constants));
   const TunedModel& model = tuning.models.at(0);
   const ShapeParts& parts = model.shape_parts;
   EXPECT_NEAR(parts.whole, *model.outcomes.at(0).errors.shape_rel_l2.value, 1e-9);
@@ -280,6 +278,8 @@ TEST(Ceilings, AnErrorBelowThemIsAskedForAnExplanation) {
   EXPECT_THAT(found, HasSubstr("deeper (held out): force "));
   EXPECT_THAT(found, HasSubstr("below the 10 to 35"));
   EXPECT_THAT(found, HasSubstr("A force and a shape error lower than the ceiling need an explanation."));
+  EXPECT_THAT(found, ::testing::Not(HasSubstr("Without the local factor")));
+  EXPECT_THAT(ceiling_sentence(tuning, model, model.outcomes.at(0)), HasSubstr("Without the local factor the shape"));
   std::map<std::string, std::string> texts;
   for (const scene::Figure& figure : tuning_figures(tuning)) texts[figure.key] = figure.text;
   EXPECT_EQ(texts.at("held_out.deeper.force.nrmse_against_ceiling"), "below");

@@ -188,7 +188,8 @@ TEST(DistanceGrid, IsMadeOnceForOneMeshAndAnewForAnother) {
   scene::Tool shifted = tool;
   shifted.mass_center_m = *tool.mass_center_m + Vec3(0.1, 0.0, 0.0);
   const Vec3 p_m(0.9, 0.0, 0.0);
-  EXPECT_NEAR(tool_distance(shifted)->at(p_m - Vec3(0.1, 0.0, 0.0)).value_m, tool_distance(tool)->at(p_m).value_m, 1e-6);
+  EXPECT_NEAR(tool_distance(shifted)->at(p_m - Vec3(0.1, 0.0, 0.0)).value_m, tool_distance(tool)->at(p_m).value_m,
+              1e-6);
   EXPECT_GT(tool_distance(shifted)->at(p_m).value_m, tool_distance(tool)->at(p_m).value_m + 0.05);
 }
 
