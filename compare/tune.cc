@@ -248,17 +248,22 @@ StageFit fit_stage(const Tuning& tuning, const TunedModel& model, TuningStage st
         out.profiles.push_back(profile(out.searched, residuals, out.fit, k, profile_points));
     }
   };
-  fit_and_profiles();
-  // A rough parameter hides better places from a descent; its profile finds them.
+  // A rough parameter hides better places from a descent; its profile finds them, and from there the next one.
   constexpr double better = 0.999;
-  for (const Profile& one : out.profiles) {
-    const auto best = std::min_element(one.chi2.begin(), one.chi2.end(),
-                                       [](double a, double b) { return a < b || (std::isnan(b) && !std::isnan(a)); });
-    if (!(*best < better * out.fit.chi2)) continue;
-    const Eigen::VectorXd& from = one.best[static_cast<std::size_t>(best - one.chi2.begin())];
-    for (std::size_t k = 0; k < out.searched.size(); ++k) out.searched[k].start = from[static_cast<Eigen::Index>(k)];
+  constexpr int rounds_max = 6;
+  for (int round = 0; round < rounds_max; ++round) {
     fit_and_profiles();
-    break;
+    double least = better * out.fit.chi2;
+    const Eigen::VectorXd* from = nullptr;
+    for (const Profile& one : out.profiles) {
+      for (std::size_t at = 0; at < one.chi2.size(); ++at) {
+        if (!(one.chi2[at] < least)) continue;
+        least = one.chi2[at];
+        from = &one.best[at];
+      }
+    }
+    if (from == nullptr) break;
+    for (std::size_t k = 0; k < out.searched.size(); ++k) out.searched[k].start = (*from)[static_cast<Eigen::Index>(k)];
   }
   out.notes = notes_of(out);
   return out;

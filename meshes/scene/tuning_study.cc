@@ -67,7 +67,7 @@ class Reader : TomlReader {
     study.title = text(document_, "title").value_or("");
     study.formulations = choices<Formulation>("formulation", {"published", "corrected"});
     study.laws = choices<ContactLaw>("law", {"duffing", "area_aware"});
-    study.starts = static_cast<int>(number(document_, "starts", {1.0, 100.0}, 4.0));
+    study.starts = static_cast<int>(number(document_, "starts", {1.0, 100.0}, 16.0));
     study.force_floor = number(document_, "force_floor", {1e-6, 1.0}, 0.01);
     study.shape_floor = number(document_, "shape_floor", {1e-6, 1.0}, 0.01);
     const std::vector<StudySetting> always = settings(document_, "set");

@@ -4,7 +4,7 @@
 //   title       = "A ball on a rubber cube"
 //   formulation = ["corrected", "published"]   # each is tuned for itself; the first gives parameters.toml
 //   law         = ["duffing", "area_aware"]    # the same; without it the contacts' own
-//   starts      = 4                            # of every fit: the given one, the others spread over the bounds
+//   starts      = 16                           # of every fit: the given one, the others spread over the bounds
 //   force_floor = 0.01                         # least uncertainty of the reference, of a contact's peak force
 //   shape_floor = 0.01                         # the same, of its displacement
 //
@@ -68,7 +68,7 @@ struct TuningStudy {
   std::string title;
   std::vector<Formulation> formulations;
   std::vector<ContactLaw> laws;
-  int starts = 4;
+  int starts = 16;
   double force_floor = 0.01, shape_floor = 0.01;
   std::vector<TuningContact> training, held_out;
   std::vector<TuningParameter> parameters;

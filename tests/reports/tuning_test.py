@@ -30,6 +30,7 @@ summary = {
     "corrected-area_aware.training.shape_parts.hat_alone": 0.9,
     "corrected-area_aware.training.tail.force.nrmse": 0.125,
     "corrected-area_aware.training.tail.shape.rel_l2": "unknown",
+    "corrected-area_aware.training.tail-to-1-5-mm.force.nrmse": 0.75,
     "corrected-area_aware.training.tail.force.friction_nrmse": "undefined: the scene has no friction",
 }
 
@@ -57,6 +58,7 @@ class Measure(unittest.TestCase):
         self.assertIn("| model | contact | force, of the peak | shape |\n", text)
         self.assertIn("| corrected, area-aware | held out: head | 25 % | 50 % |\n", text)
         self.assertIn("| corrected, area-aware | training: tail | 12.5 % | – |\n", text)
+        self.assertIn("| corrected, area-aware | training: tail, to 1.5 mm | 75 % | – |\n", text)
         self.assertIn("| corrected, area-aware | 90 % | 60 % | 70 % | 40 % |\n", text)
         self.assertIn("known to 1.25 % or better", text)
 
