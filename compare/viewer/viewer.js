@@ -127,6 +127,7 @@ class Viewer {
     this.root = root;
     this.part = (name) => root.querySelector(`[data-part="${name}"]`);
     this.sides = { reference: new Side(data, 'reference'), fast: new Side(data, 'fast') };
+    root.bodies = { reference: this.sides.reference.body, fast: this.sides.fast.body };  // vtkPolyData, for scripts
     // Scales over all instants, so that colours mean the same along the slider.
     const { reference, fast } = this.sides;
     this.values = {

@@ -37,7 +37,9 @@ addEventListener('load', () => {
       const cursor = part('chart').querySelector('line.cursor');
       return { colours: new Set(pixels).size, sum: pixels.reduce((a, b) => (a * 31 + b) % 4294967291, 7),
                words: part('words').textContent, bar: part('bar-name').textContent, cursor: cursor.getAttribute('x1'),
-               most: part('bar-numbers').lastElementChild.textContent };
+               most: part('bar-numbers').lastElementChild.textContent,
+               points: Array.from(viewer.bodies.fast.getPoints().getData()),
+               colours_of_points: Array.from(viewer.bodies.fast.getPointData().getScalars().getData()) };
     };
     const set = (name, value, event) => {
       part(name).value = value;
@@ -122,6 +124,39 @@ TEST(ReportInChromium, ShowsBothBodiesAndFollowsTheSlider) {
   const testing::Sides sides = testing::pressed(5, 600);
   const double most_mm = 1e3 * sides.result.instants[4].displacement_m.colwise().norm().maxCoeff();
   EXPECT_NEAR(std::stod(looks["last"]["most"].get<std::string>()), most_mm, 0.005 * most_mm);
+}
+
+/// Of one vertex.
+Eigen::Vector3d column(const Json& values, Eigen::Index vertex) {
+  const auto first = static_cast<std::size_t>(3 * vertex);
+  const auto at = [&](std::size_t axis) { return values.at(first + axis).get<double>(); };
+  return {at(0), at(1), at(2)};
+}
+
+TEST(ReportInChromium, MovesAndColoursEveryVertex) {
+  const Json page = visit("--use-angle=swiftshader --enable-unsafe-swiftshader");
+  const testing::Sides sides = testing::pressed(5, 600);
+  const Eigen::Matrix3Xd& fast_m = sides.run.instants[4].displacement_m;
+  const Eigen::VectorXd error_m = (fast_m - sides.result.instants[4].displacement_m).colwise().norm().transpose();
+  const Json &last = page["looks"]["last"], &error = page["looks"]["error"];
+  ASSERT_EQ(last["points"].size(), static_cast<std::size_t>(fast_m.size()));
+  Eigen::Index most = 0, least = 0;
+  error_m.maxCoeff(&most);
+  error_m.minCoeff(&least);
+  ASSERT_LT(error_m[least], 0.01 * error_m[most]);
+  for (Eigen::Index i = 0; i < fast_m.cols(); ++i) {
+    EXPECT_LT((column(last["points"], i) - sides.run.surface.points_m.col(i) - fast_m.col(i)).norm(), 1e-7) << i;
+    EXPECT_EQ(column(error["points"], i), column(last["points"], i)) << i;
+    // Magma backwards: light where there is no error, ever darker from there.
+    const double brightness = column(error["colours_of_points"], i).sum();
+    EXPECT_LE(brightness, column(error["colours_of_points"], least).sum()) << i;
+    EXPECT_GE(brightness, column(error["colours_of_points"], most).sum()) << i;
+    for (Eigen::Index k = 0; k < i; ++k) {
+      if (error_m[k] < error_m[i] - 0.02 * error_m[most]) {
+        EXPECT_GT(column(error["colours_of_points"], k).sum(), brightness) << k << ' ' << i;
+      }
+    }
+  }
 }
 
 TEST(ReportInChromium, LeavesTheStillPictureWithoutWebGl) {
