@@ -71,8 +71,12 @@ int main(int argc, char** argv) {
   add_reference(add_with_folder("reference",
                                 "the offline solve; answers from the store, resumes where it was interrupted",
                                 compare::run_reference));
-  add_reference(
-      add_with_folder("compare", "both sides, then force and shape errors: tables, VTK, report", compare::run_compare));
+  std::filesystem::path parameters;
+  CLI::App* compared = add_with_folder(
+      "compare", "both sides, then force and shape errors: tables, VTK, report",
+      [&](const auto& given, const auto& asked) { return compare::run_compare(given, asked, parameters); });
+  compared->add_option("--parameters", parameters, "file that tune left, for the fast side alone");
+  add_reference(compared);
   compare::StudyOptions study_options;
   compare::add_study_verb(app, study_options, exit_code);
   compare::ResultsOptions results_options;

@@ -8,6 +8,7 @@
 #include "reference/solver.h"
 #include "scene/results.h"
 #include "scene/scene_io.h"
+#include "scene/tuning_study.h"
 
 #include <iostream>
 
@@ -66,9 +67,11 @@ int run_reference(const fast::VerbOptions& options, const ReferenceOptions& refe
   });
 }
 
-int run_compare(const fast::VerbOptions& options, const ReferenceOptions& reference) {
-  const scene::Scene scene = asked(options.load(), reference);
-  refuse(reference::unsupported(scene));
+int run_compare(const fast::VerbOptions& options, const ReferenceOptions& reference,
+                const std::filesystem::path& parameters) {
+  const scene::Scene given = asked(options.load(), reference);
+  refuse(reference::unsupported(given));
+  const scene::Scene scene = parameters.empty() ? given : scene::with_parameters(given, parameters);
   const std::filesystem::path folder = options.folder(scene, "compare");
   scene::prepare_result_folder(folder);
   return with_reference_exits([&] {
@@ -77,7 +80,8 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
     const fast::Run run = fast::run(scene);
     manifest.times.push_back(fast_watch.read("fast"));
     const scene::Stopwatch reference_watch;
-    const reference::Result result = solve_with_progress(scene, run.surface, reference, options.quiet);
+    const reference::Result result = solve_with_progress(given, run.surface, reference, options.quiet);
+    if (!parameters.empty()) manifest.entries.emplace_back("parameters", parameters.string());
     manifest.times.push_back(reference_watch.read("reference"));
     manifest.entries.emplace_back("linear_solver", result.linear_solver);
     manifest.entries.emplace_back("reference_key", result.key);

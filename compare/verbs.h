@@ -4,12 +4,18 @@
 #include "compare/reference_run.h"
 #include "fast/command_line.h"
 
+#include <filesystem>
+
 namespace touchstone::compare {
 
 /// @returns exit code; @throws scene::InputError for bad input
 int plan(const fast::VerbOptions& options, const ReferenceOptions& reference);
 int run_fast(const fast::VerbOptions& options, const ReferenceOptions& reference);
 int run_reference(const fast::VerbOptions& options, const ReferenceOptions& reference);
-int run_compare(const fast::VerbOptions& options, const ReferenceOptions& reference);
+/// @param parameters  file that `tune` leaves, for the fast side alone: the reference keeps the scene's own friction
+/// and
+///                    r_th; may be empty
+int run_compare(const fast::VerbOptions& options, const ReferenceOptions& reference,
+                const std::filesystem::path& parameters);
 
 }  // namespace touchstone::compare
