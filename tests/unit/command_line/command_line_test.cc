@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include <array>
 #include <cstdio>
@@ -193,6 +194,31 @@ TEST(ReferenceVerb, AStoreThatCannotBeIsRefusedInOneLine) {
     EXPECT_THAT(answer.output, HasSubstr("expected a folder that can be written to"));
     EXPECT_EQ(std::count(answer.output.begin(), answer.output.end(), '\n'), 1) << answer.output;
   }
+  std::filesystem::remove_all(dir);
+}
+
+TEST(CompareVerb, ParametersAreTheFastSidesAlone) {
+  if (full_program().empty()) GTEST_SKIP() << "a build without the reference";
+  const std::filesystem::path dir = std::filesystem::path(testing::TempDir()) / "compare-parameters";
+  std::filesystem::remove_all(dir);
+  std::filesystem::create_directories(dir);
+  std::ofstream(dir / "tuned.toml") << "[contact]\nk1_n_per_m = 3.0e4\n[contact.friction]\nmu_D = 0.1\nK = 0.1\n"
+                                       "beta = 0.9\n";
+  const auto compared = [&](const std::string& name, const std::string& more) {
+    const Answer answer = run(full_program() + " compare " + TOUCHSTONE_SOURCE_DIR +
+                              "/meshes/scenes/pin-on-cylinder.toml --quiet --level 1 --set compare.instants=3 --set "
+                              "contact.friction.K=0.3 --set contact.friction.beta=1 --set contact.friction.mu_D=0.3 "
+                              "--store " +
+                              (dir / "store").string() + " --out " + (dir / name).string() + more);
+    EXPECT_EQ(answer.exit_code, 0) << answer.output;
+    std::ifstream file(dir / name / "summary.json");
+    return nlohmann::json::parse(file);
+  };
+  const auto own = compared("own", ""), tuned = compared("tuned", " --parameters " + (dir / "tuned.toml").string());
+  EXPECT_EQ(own["force.peak_reference_n"], tuned["force.peak_reference_n"]);
+  EXPECT_GT(tuned["force.peak_fast_n"].get<double>(), 2.0 * own["force.peak_fast_n"].get<double>());
+  const auto keys = std::distance(std::filesystem::directory_iterator(dir / "store"), {});
+  EXPECT_EQ(keys, 1) << "the reference was solved for the tuned friction, too";
   std::filesystem::remove_all(dir);
 }
 
