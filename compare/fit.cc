@@ -285,4 +285,29 @@ Profile profile(const std::vector<FitParameter>& parameters, const Residuals& re
   return out;
 }
 
+ProfiledFit fit_through_profiles(std::vector<FitParameter> parameters, const Residuals& residuals,
+                                 const FitOptions& options, const std::vector<std::size_t>& profiled, int points) {
+  constexpr double better = 0.999;
+  constexpr int rounds_max = 6;
+  ProfiledFit out;
+  while (out.rounds < rounds_max) {
+    out.fit = fit(parameters, residuals, options);
+    ++out.rounds;
+    out.profiles.clear();
+    for (const std::size_t k : profiled) out.profiles.push_back(profile(parameters, residuals, out.fit, k, points));
+    double least = better * out.fit.chi2;
+    const Eigen::VectorXd* from = nullptr;
+    for (const Profile& one : out.profiles) {
+      for (std::size_t at = 0; at < one.chi2.size(); ++at) {
+        if (!(one.chi2[at] < least)) continue;
+        least = one.chi2[at];
+        from = &one.best[at];
+      }
+    }
+    if (from == nullptr) break;
+    for (std::size_t k = 0; k < parameters.size(); ++k) parameters[k].start = (*from)[static_cast<Eigen::Index>(k)];
+  }
+  return out;
+}
+
 }  // namespace touchstone::compare

@@ -227,7 +227,7 @@ StageFit fit_stage(const Tuning& tuning, const TunedModel& model, TuningStage st
   StageFit out;
   out.stage = stage;
   for (const scene::TuningParameter& one : tuning.study.parameters) {
-    if (one.stage != stage || !scene::applies(one, model.law)) continue;
+    if (one.stage != stage || !scene::applies(one, model.formulation, model.law)) continue;
     out.parameters.push_back(one);
     out.searched.push_back({one.key, one.low, one.high, one.start, one.log});
   }
@@ -240,31 +240,13 @@ StageFit fit_stage(const Tuning& tuning, const TunedModel& model, TuningStage st
   FitOptions options;
   options.starts = tuning.study.starts;
   options.observations = training.observations();
-  const auto fit_and_profiles = [&] {
-    out.fit = fit(out.searched, residuals, options);
-    out.profiles.clear();
-    for (std::size_t k = 0; k < out.parameters.size(); ++k) {
-      if (out.parameters[k].profile)
-        out.profiles.push_back(profile(out.searched, residuals, out.fit, k, profile_points));
-    }
-  };
-  // A rough parameter hides better places from a descent; its profile finds them, and from there the next one.
-  constexpr double better = 0.999;
-  constexpr int rounds_max = 6;
-  for (int round = 0; round < rounds_max; ++round) {
-    fit_and_profiles();
-    double least = better * out.fit.chi2;
-    const Eigen::VectorXd* from = nullptr;
-    for (const Profile& one : out.profiles) {
-      for (std::size_t at = 0; at < one.chi2.size(); ++at) {
-        if (!(one.chi2[at] < least)) continue;
-        least = one.chi2[at];
-        from = &one.best[at];
-      }
-    }
-    if (from == nullptr) break;
-    for (std::size_t k = 0; k < out.searched.size(); ++k) out.searched[k].start = (*from)[static_cast<Eigen::Index>(k)];
+  std::vector<std::size_t> profiled;
+  for (std::size_t k = 0; k < out.parameters.size(); ++k) {
+    if (out.parameters[k].profile) profiled.push_back(k);
   }
+  ProfiledFit found = fit_through_profiles(out.searched, residuals, options, profiled, profile_points);
+  out.fit = std::move(found.fit);
+  out.profiles = std::move(found.profiles);
   out.notes = notes_of(out);
   return out;
 }

@@ -184,7 +184,8 @@ std::string parameters_toml(const Tuning& tuning, const TunedModel& model) {
       for (const TuningData& data : tuning.data) {
         if (scene == nullptr && data.contact.scene.contact.friction) scene = &data.contact.scene;
       }
-      for (const char* name : {"contact.friction.K", "contact.friction.beta", "contact.friction.mu_D"})
+      for (const char* name :
+           {"contact.friction.K", "contact.friction.beta", "contact.friction.mu_D", "contact.friction.stiffness_ratio"})
         keys.emplace_back(name);
     }
   }

@@ -44,7 +44,11 @@ void carry(const Vec3& d, double normal_depth_m, FrictionState& state) noexcept 
 }  // namespace
 
 FrictionLaw::FrictionLaw(const scene::Friction& friction) noexcept
-    : K_(friction.K), beta_(friction.beta), mu_D_(friction.mu_D), bound_n_(std::numeric_limits<double>::infinity()) {
+    : K_(friction.K),
+      beta_(friction.beta),
+      mu_D_(friction.mu_D),
+      bound_n_(std::numeric_limits<double>::infinity()),
+      stiffness_root_(std::sqrt(friction.stiffness_ratio)) {
   if (mu_D_ > 0.0 && beta_ < 1.0) bound_n_ = std::pow(K_ / mu_D_, 1.0 / (1.0 - beta_));
   if (beta_ >= 1.0 && mu_D_ > K_) bound_n_ = 0.0;
 }
@@ -56,27 +60,29 @@ Vec3 material_step_m(const Placement& before, const Placement& now, const Vec3& 
 }
 
 double sliding_stretch_m(const FrictionLaw& friction, const DuffingLaw& law, double normal_depth_m) noexcept {
-  const double D_n = normal_depth_m, farthest = friction.mu_D() * D_n;
+  // In y = sqrt(kappa) D_t, with which |D| = hypot(D_n, y) and F_t = sqrt(kappa) s y, s the secant of the law at |D|.
+  const double root = friction.stiffness_root();
+  const double D_n = normal_depth_m, farthest = friction.mu_D() / root * D_n;
   if (!(D_n > smallest) || farthest == 0.0 || friction.K() == 0.0) return 0.0;
-  if (law.secant_n_per_m(std::hypot(D_n, farthest)) * D_n <= friction.bound_n()) return farthest;
-  // F_t = f_max. With the secant s of the law at |D| this is s^(1 - beta) D_t = K D_n^beta, whose left side rises with
-  // D_t for every law. Newton on the logarithms, whose slope lies between 0.5 and 2, kept within the bracket.
+  if (law.secant_n_per_m(std::hypot(D_n, farthest)) * D_n <= friction.bound_n()) return farthest / root;
+  // F_t = f_max is s^(1 - beta) y = K / sqrt(kappa) D_n^beta, whose left side rises with y for every law. Newton on the
+  // logarithms, whose slope lies between 0.5 and 2, kept within the bracket.
   const double rest = 1.0 - friction.beta();
-  const double goal = std::log(friction.K()) + friction.beta() * std::log(D_n);
-  double low = 0.0, high = farthest, D_t = farthest;
+  const double goal = std::log(friction.K() / root) + friction.beta() * std::log(D_n);
+  double low = 0.0, high = farthest, y = farthest;
   for (int iteration = 0; iteration < 60; ++iteration) {
-    const double D = std::hypot(D_n, D_t), s = law.secant_n_per_m(D);
-    const double excess = rest * std::log(s) + std::log(D_t) - goal;
-    (excess > 0.0 ? high : low) = D_t;
-    const double along = D_t / D;
+    const double D = std::hypot(D_n, y), s = law.secant_n_per_m(D);
+    const double excess = rest * std::log(s) + std::log(y) - goal;
+    (excess > 0.0 ? high : low) = y;
+    const double along = y / D;
     const double slope = 1.0 + rest * (law.slope_n_per_m(D) / s - 1.0) * along * along;
-    double next = D_t * std::exp(-excess / slope);
+    double next = y * std::exp(-excess / slope);
     if (!(next >= low && next <= high)) next = 0.5 * (low + high);
-    const bool settled = std::abs(next - D_t) <= 4.0 * std::numeric_limits<double>::epsilon() * D_t;
-    D_t = next;
+    const bool settled = std::abs(next - y) <= 4.0 * std::numeric_limits<double>::epsilon() * y;
+    y = next;
     if (settled) break;
   }
-  return D_t;
+  return y / root;
 }
 
 Vec3 resolve_friction_corrected(const FrictionLaw& friction, const DuffingLaw& law, const Mat3& /*R_WT*/, const Vec3& d,
@@ -97,18 +103,18 @@ Vec3 resolve_friction_corrected(const FrictionLaw& friction, const DuffingLaw& l
     const bool turns_back = drive < std::min(0.0, longest - before) - rounding_rel * longest;
     state.sliding = !turns_back && reach >= (1.0 - slack_rel) * longest;
   }
+  const double root = friction.stiffness_root(), kappa = root * root;
   if (!state.sliding) {
-    const double s = law.secant_n_per_m(std::hypot(D_n, reach));
-    state.sliding = s * reach > friction.limit_n(s * D_n);
+    const double s = law.secant_n_per_m(std::hypot(D_n, root * reach));
+    state.sliding = kappa * s * reach > friction.limit_n(s * D_n);
     if (state.sliding) longest = sliding_stretch_m(friction, law, D_n);
   }
   state.stretch_m = state.sliding && reach > longest ? scaled_to(trial, longest) : trial;
 
-  const Vec3 displacement_m = D_n * d + state.stretch_m;
-  const double D = displacement_m.norm(), s = law.secant_n_per_m(D);
+  const double D = std::hypot(D_n, root * state.stretch_m.norm()), s = law.secant_n_per_m(D);
   force.saturated = force.saturated || D > law.peak_depth_m();
-  set_force(d, s * D_n, -s * state.stretch_m, force);
-  return displacement_m;
+  set_force(d, s * D_n, -kappa * s * state.stretch_m, force);
+  return D_n * d + state.stretch_m;
 }
 
 namespace {

@@ -18,10 +18,13 @@ class FrictionLaw {
   /// F_n* = (K / mu_D)^(1 / (1 - beta)), above which mu_D F_n would be more than f_max (errata E5) [N]. Infinite where
   /// that never happens, zero for beta = 1 and mu_D > K.
   [[nodiscard]] double bound_n() const noexcept { return bound_n_; }
+  /// sqrt(kappa), kappa = (F_t / D_t) / (F_n / D_n) of the stuck contact; 1 in the paper.
+  [[nodiscard]] double stiffness_root() const noexcept { return stiffness_root_; }
 
  private:
   double K_, beta_, mu_D_;
   double bound_n_;
+  double stiffness_root_;
 };
 
 /// What a region remembers of its friction from tick to tick. Its initial value is that of a region that has just come
@@ -70,12 +73,14 @@ using ResolveFriction = scene::Vec3 (*)(const FrictionLaw&, const DuffingLaw& la
                                                      const scene::Vec3& step_m, RegionForce& force,
                                                      FrictionState&) noexcept;
 
-/// Errata E4 and E5. One potential U(|D|) with D = D_n d + D_t and D_n the equivalent depth of the force without
-/// friction: F_c = -f(|D|) D / |D|, so that F_t / F_n = D_t / D_n. The tangential step stretches the contact. While
-/// stuck F_t may rise to f_max; beyond it the tool slips: D_t is shortened to F_t = min(mu_D F_n, f_max) in its own
-/// direction, with F_n as it then is, and p0 follows. A sliding tool is stuck again once the step turns back against
-/// the stretch, or the trial falls short of that length by more than 5 %, as when it is pressed harder. The stored
-/// stretch only ever shrinks by slipping, so no closed path gives the tool energy, and a pause changes nothing.
+/// Errata E4 and E5. One potential U(|D|) with |D|^2 = D_n^2 + kappa D_t^2 and D_n the equivalent depth of the force
+/// without friction, so that F_t / F_n = kappa D_t / D_n. The paper's kappa is 1. A half-space under a ball has
+/// 3 (1 - nu) / (2 - nu), which is 1 for nu = 0.5 (Mindlin); a body that sways on its support has less. The tangential
+/// step stretches the contact. While stuck F_t may rise to f_max; beyond it the tool slips: D_t is shortened to
+/// F_t = min(mu_D F_n, f_max) in its own direction, with F_n as it then is, and p0 follows. A sliding tool is stuck
+/// again once the step turns back against the stretch, or the trial falls short of that length by more than 5 %, as
+/// when it is pressed harder. The stored stretch only ever shrinks by slipping, so no closed path gives the tool
+/// energy, and a pause changes nothing.
 [[nodiscard]] scene::Vec3 resolve_friction_corrected(const FrictionLaw&, const DuffingLaw& law, const scene::Mat3& R_WT,
                                                      const scene::Vec3& d, const RegionPoints&,
                                                      const scene::Vec3& step_m, RegionForce& force,

@@ -131,7 +131,9 @@ scene::Plan plan(const scene::Scene& scene) {
     models("friction",
            text("stuck up to %.3g F_n^%.3g, sliding at %.3g F_n, ", scene.contact.friction->K,
                 scene.contact.friction->beta, scene.contact.friction->mu_D) +
-               (published ? "C1 to C4 as printed" : "by return mapping"),
+               (published ? "C1 to C4 as printed"
+                          : text("%.3g times as stiff along the surface while stuck as into it, by return mapping",
+                                 scene.contact.friction->stiffness_ratio)),
            measured.cost({Stage::friction}));
   } else {
     leaves_out("friction", "the scene has no [contact.friction]; the force is along the direction of deformation");

@@ -121,6 +121,8 @@ std::vector<Field<Scene>> make_scene_fields() {
            "beta of the static limit; 2/3 for a truly elastic solid."},
       {"contact.friction.mu_D", "", between(0.0, 10.0), required, shared, +[](S& s) -> double& { return s.contact.friction->mu_D; }, friction,
            "Dynamic friction coefficient."},
+      {"contact.friction.stiffness_ratio", "", between(1e-3, 1e3), "1.0", fast, +[](S& s) -> double& { return s.contact.friction->stiffness_ratio; }, friction,
+           "kappa: stiffness F_t / D_t of the stuck contact over F_n / D_n; 1 as in the paper. Only the corrected formulation has another."},
 
       {"fast.formulation", "", any, "\"corrected\"", fast, choice({"published", "corrected"}, +[](S& s) -> Formulation& { return s.fast.formulation; }), always,
            "The paper's printed method, or its corrected form."},

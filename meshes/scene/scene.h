@@ -92,9 +92,10 @@ struct Waypoint {
 
 /// Friction limits of the contact (section IV-B): stuck up to f_max = K F_n^beta, sliding at mu_D F_n.
 struct Friction {
-  double K = 0.0;     ///< [N^(1 - beta)]
-  double beta = 0.0;  ///< 2/3 to 1
-  double mu_D = 0.0;  ///< dynamic friction coefficient
+  double K = 0.0;                ///< [N^(1 - beta)]
+  double beta = 0.0;             ///< 2/3 to 1
+  double mu_D = 0.0;             ///< dynamic friction coefficient
+  double stiffness_ratio = 1.0;  ///< kappa = (F_t / D_t) / (F_n / D_n) of the stuck contact; corrected formulation
 };
 
 /// Contact force law in identifiable constants: F = k1 D + k3 D^3, where k1 = m w0^2 and k3 = (3/4) m b0^2 eps keeps

@@ -20,8 +20,9 @@ struct Tunable {
   const char* scene_key;  ///< whose range and meaning count
   const char* unit;       ///< of a key of our own
   TuningStage stage;
-  bool rough;                     ///< the fit may have corners or steps in it
-  std::optional<ContactLaw> law;  ///< absent: any
+  bool rough;                                   ///< the fit may have corners or steps in it
+  std::optional<ContactLaw> law;                ///< absent: any
+  std::optional<Formulation> formulation = {};  ///< absent: any
 };
 constexpr Tunable tunables[] = {
     {"contact.k1_n_per_m", "contact.k1_n_per_m", nullptr, TuningStage::force, false, ContactLaw::duffing},
@@ -33,6 +34,13 @@ constexpr Tunable tunables[] = {
     {"contact.friction.K", "contact.friction.K", nullptr, TuningStage::force, false, {}},
     {"contact.friction.beta", "contact.friction.beta", nullptr, TuningStage::force, false, {}},
     {"contact.friction.mu_D", "contact.friction.mu_D", nullptr, TuningStage::force, false, {}},
+    {"contact.friction.stiffness_ratio",
+     "contact.friction.stiffness_ratio",
+     nullptr,
+     TuningStage::force,
+     false,
+     {},
+     Formulation::corrected},
     {"fast.r_th_m", "fast.r_th_m", nullptr, TuningStage::force, true, {}},
     {"fast.s_c_m2", "fast.s_c_m2", nullptr, TuningStage::shape, false, {}},
     {"fast.C_n", "fast.C_n", nullptr, TuningStage::shape, false, {}},
@@ -229,9 +237,12 @@ class Reader : TomlReader {
     const auto has_friction = [](const TuningContact& contact) { return contact.scene.contact.friction.has_value(); };
     for (std::size_t k = 0; k < study.parameters.size(); ++k) {
       const TuningParameter& one = study.parameters[k];
-      const auto meant = [&](ContactLaw law) { return touchstone::scene::applies(one, law); };
-      if (std::none_of(study.laws.begin(), study.laws.end(), meant)) {
-        add(*places_[k], "parameter.key = \"" + one.key + "\" has no meaning under the laws of this study");
+      const auto meant = [&](Formulation formulation) {
+        return std::any_of(study.laws.begin(), study.laws.end(),
+                           [&](ContactLaw law) { return touchstone::scene::applies(one, formulation, law); });
+      };
+      if (std::none_of(study.formulations.begin(), study.formulations.end(), meant)) {
+        add(*places_[k], "parameter.key = \"" + one.key + "\" has no meaning under the models of this study");
       }
       if (one.key.starts_with("contact.friction.") &&
           std::none_of(study.training.begin(), study.training.end(), has_friction)) {
@@ -304,9 +315,9 @@ class ParameterReader : TomlReader {
 
 }  // namespace
 
-bool applies(const TuningParameter& parameter, ContactLaw law) {
+bool applies(const TuningParameter& parameter, Formulation formulation, ContactLaw law) {
   const Tunable* what = tunable(parameter.key);
-  return what != nullptr && (!what->law || *what->law == law);
+  return what != nullptr && what->law.value_or(law) == law && what->formulation.value_or(formulation) == formulation;
 }
 
 void set_parameter(Scene& scene, const std::string& key, double value) {

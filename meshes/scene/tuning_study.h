@@ -74,8 +74,8 @@ struct TuningStudy {
   std::vector<TuningParameter> parameters;
 };
 
-/// Has the parameter a meaning under the law? Friction's have it under every one.
-[[nodiscard]] bool applies(const TuningParameter& parameter, ContactLaw law);
+/// Has the parameter a meaning in the model? Only the corrected formulation has friction's stiffness ratio.
+[[nodiscard]] bool applies(const TuningParameter& parameter, Formulation formulation, ContactLaw law);
 
 /// Writes a value into a scene. omega0^2 and epsilon beta0^2 become k1 = m omega0^2 and k3 = (3/4) m epsilon beta0^2
 /// with the tool's mass, equation (1). @param key  of a TuningParameter; friction's need a scene that has it

@@ -102,6 +102,27 @@ TEST(FrictionExtremes, HugeKNeverSlips) {
   }
 }
 
+// A stuck contact a thousand times softer or stiffer along the surface than into it: the same friction in the end, and
+// the tool slips at once or never.
+// As printed: there is no such constant.
+TEST(FrictionExtremes, StiffnessRatioOverSixDecades) {
+  for (const double kappa : {1e-3, 1.0, 1e3}) {
+    Rig rig(rubbing(extremes::cube(Formulation::corrected), {1.0, 1.0, 0.4, kappa}));
+    rig.may = StepStatus::anchors_limited;
+    drag(rig, 0.002, 0.0001);
+    EXPECT_EQ(rig.region().friction.sliding, kappa > 1.0) << kappa;
+    drag(rig, 0.002, 0.01, 1000);
+    const double friction_n = rig.region().force.tangential_n.norm(), normal_n = rig.region().force.normal_n;
+    EXPECT_EQ(rig.region().friction.sliding, kappa >= 1.0) << kappa;
+    if (kappa >= 1.0) {
+      EXPECT_NEAR(friction_n, 0.4 * normal_n, 1e-9 * normal_n) << kappa;
+    } else {
+      EXPECT_NEAR(friction_n / normal_n, kappa * 0.01 / rig.region().displacement_m.dot(rig.region().d),
+                  0.05 * friction_n / normal_n);
+    }
+  }
+}
+
 // A limit far below mu_D F_n: the friction is cut to f_max, and the normal force stays.
 // As printed: The "impossible case": F_n is thrown away for f_max / mu_D, and the next f_max with it (E5).
 TEST(FrictionExtremes, DynamicFrictionAboveTheStaticLimit) {

@@ -215,8 +215,10 @@ class Rig {
         const double F_n = r.force.normal_n, F_t = r.force.tangential_n.norm();
         if (!(std::abs(r.force.tangential_n.dot(r.d)) <= 1e-9 * (F_t + F_n))) out << "friction along d";
         if (model.formulas.resolve_friction == resolve_friction_corrected) {
-          // One potential: F = f(|D|), and never more than the limit of the law, stuck or sliding.
-          const double F = law_here.force_n(r.displacement_m.norm());
+          // One potential in |D|^2 = D_n^2 + kappa D_t^2, and never more than the limit of the law, stuck or sliding.
+          const double root = model.friction->stiffness_root();
+          const double D_n = r.displacement_m.dot(r.d), D_t = (r.displacement_m - D_n * r.d).norm();
+          const double F = law_here.secant_n_per_m(std::hypot(D_n, root * D_t)) * std::hypot(D_n, root * root * D_t);
           if (r.force.magnitude_n > 0.0 && state.several == nullptr &&
               !(std::abs(r.force.magnitude_n / F - 1.0) <= 1e-9))
             out << "force " << r.force.magnitude_n << " N, the law says " << F;

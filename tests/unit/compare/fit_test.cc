@@ -6,7 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace touchstone::compare {
 namespace {
@@ -125,6 +127,31 @@ TEST(Profile, StaysFlatForAParameterWithoutEffect) {
   EXPECT_TRUE(along.open_low && along.open_high);
   const Profile known = profile(three, residuals, fit(three, residuals, {}), 1, 5);
   EXPECT_FALSE(known.open_low || known.open_high);
+}
+
+/// A line through the data, and beside it a comb in one parameter: a descent ends in the tooth it begins in.
+std::optional<Values> comb(const Values& p) {
+  return Values(Eigen::Vector3d(p[0] - 3.0, 0.2 * (p[1] - 8.0), 2.0 * std::sin(std::numbers::pi * p[1])));
+}
+const std::vector<FitParameter> toothed = {{"line", 0.0, 10.0, 1.0, false}, {"comb", 0.0, 16.0, 2.0, false}};
+
+TEST(ProfiledFit, StartsAgainFromTheBestPlaceOfAProfile) {
+  FitOptions one_start;
+  one_start.starts = 1;
+  EXPECT_NEAR(fit(toothed, comb, one_start).value[1], 2.0, 0.2);
+  const ProfiledFit found = fit_through_profiles(toothed, comb, one_start, {1}, 17);
+  EXPECT_EQ(found.rounds, 2);
+  EXPECT_NEAR(found.fit.value[0], 3.0, 1e-6);
+  EXPECT_NEAR(found.fit.value[1], 8.0, 1e-6);
+  ASSERT_EQ(found.profiles.size(), 1u);
+  EXPECT_EQ(found.profiles[0].parameter, 1u);
+  // The profile is that of the last fit.
+  EXPECT_GE(std::ranges::count(found.profiles[0].values, found.fit.value[1]), 1);
+}
+
+TEST(ProfiledFit, FitsOnceWhereNoProfileFindsABetterPlace) {
+  EXPECT_EQ(fit_through_profiles(toothed, comb, {}, {}, 9).rounds, 1);
+  EXPECT_EQ(fit_through_profiles(two, against(cubic, Eigen::Vector2d(7.0, 300.0), 1e-2, 1.0), {}, {0, 1}, 9).rounds, 1);
 }
 
 }  // namespace

@@ -142,39 +142,93 @@ TEST_P(Drag, SticksSlipsSlidesAndComesBackInALoop) {
 INSTANTIATE_TEST_SUITE_P(Friction, Drag, testing::Values(true, false),
                          [](const auto& test) { return test.param ? "point" : "region"; });
 
-TEST(Friction, CorrectedForceComesFromOnePotential) {
-  Region region(resolve_friction_corrected, {50.0, 0.8, 0.5}, false);
+/// |D| with |D|^2 = D_n^2 + kappa D_t^2.
+double length_m(const Region& region, double kappa) {
+  return std::hypot(region.D.dot(region.d), std::sqrt(kappa) * (region.D - region.D.dot(region.d) * region.d).norm());
+}
+
+class StiffnessRatio : public testing::TestWithParam<double> {};
+
+TEST_P(StiffnessRatio, CorrectedForceComesFromOnePotential) {
+  const double kappa = GetParam();
+  Region region(resolve_friction_corrected, {50.0, 0.8, 0.5, kappa}, false);
   region.tick(0.003, Vec3::Zero());
+  const double pressed_n = region.F_n(), depth_m = region.normal_depth_m;
   region.tick(0.003, Vec3(0.0004, -0.0003, 0.0));
   ASSERT_FALSE(region.state.sliding);
-  EXPECT_LT((region.D - Vec3(0.0004, -0.0003, -region.normal_depth_m)).norm(), 1e-18);
-  EXPECT_LT((region.force.force_n + law.force_n(region.D.norm()) * region.D.normalized()).norm(), 1e-14);
+  EXPECT_LT((region.D - Vec3(0.0004, -0.0003, -depth_m)).norm(), 1e-18);
+  const double D = length_m(region, kappa), s = law.force_n(D) / D;
+  EXPECT_LT((region.force.force_n - s * Vec3(-0.0004 * kappa, 0.0003 * kappa, depth_m)).norm(), 1e-14);
   const double e = 1e-8;
+  const FrictionState stuck = region.state;
   for (const Vec3& way : {x, y}) {
-    const FrictionState before = region.state;
     const double along_n = region.force.force_n.dot(way);
     region.tick(0.003, e * way);
-    const double there_j = law.energy_j(region.D.norm());
-    region.state = before;
+    const double there_j = law.energy_j(length_m(region, kappa));
+    region.state = stuck;
     region.tick(0.003, -e * way);
-    const double back_j = law.energy_j(region.D.norm());
-    region.state = before;
+    const double back_j = law.energy_j(length_m(region, kappa));
+    region.state = stuck;
     region.tick(0.003, Vec3::Zero());
     EXPECT_NEAR(along_n, -(there_j - back_j) / (2.0 * e), 1e-6 * region.force.magnitude_n);
   }
+  // And of the normal force, over the normal depth.
+  const double normal_n = region.F_n();
+  region.tick(0.003 + e, Vec3::Zero());
+  const double deeper_j = law.energy_j(length_m(region, kappa)), deeper_m = region.normal_depth_m;
+  region.state = stuck;
+  region.tick(0.003 - e, Vec3::Zero());
+  EXPECT_NEAR(normal_n, (deeper_j - law.energy_j(length_m(region, kappa))) / (deeper_m - region.normal_depth_m),
+              1e-6 * normal_n);
+  // Its namesake.
+  Region small(resolve_friction_corrected, {50.0, 0.8, 0.5, kappa}, false);
+  small.tick(0.003, Vec3::Zero());
+  small.tick(0.003, e * x);
+  EXPECT_NEAR(small.F_t().norm() / e, kappa * pressed_n / depth_m, 1e-6 * kappa * pressed_n / depth_m);
+}
+
+TEST_P(StiffnessRatio, ChangesTheWayToTheOnsetAndNotTheFrictionBeyond) {
+  const double kappa = GetParam();
+  for (const bool bound : {false, true}) {
+    Region region(resolve_friction_corrected, {bound ? 0.3 : 1.2, 0.9, 0.6, kappa}, false);
+    region.tick(0.002, Vec3::Zero());
+    for (int i = 0; i < 4000; ++i) region.tick(0.002, 1e-5 * x);
+    ASSERT_TRUE(region.state.sliding);
+    EXPECT_NEAR(region.F_t().norm(), bound ? region.f_max() : 0.6 * region.F_n(), 1e-12);
+    EXPECT_NEAR(region.F_t().norm() / region.F_n(), kappa * region.state.stretch_m.x() / region.normal_depth_m, 1e-12);
+    EXPECT_EQ(region.state.stretch_m.x(), sliding_stretch_m(region.friction, law, region.normal_depth_m));
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Friction, StiffnessRatio, testing::Values(1.0, 0.4, 3.0));
+
+TEST(Friction, PublishedHasNoStiffnessRatio) {
+  Region plain(resolve_friction_published), soft(resolve_friction_published, {1.2, 0.9, 0.6, 0.4});
+  for (Region* region : {&plain, &soft}) {
+    region->tick(0.002, Vec3::Zero());
+    region->tick(0.002, Vec3(0.0004, -0.0003, 0.0));
+  }
+  EXPECT_NE(plain.F_t(), Vec3::Zero());
+  EXPECT_EQ(plain.force.force_n, soft.force.force_n);
 }
 
 TEST(Friction, SlidingStretchAgreesWithBisection) {
   const std::vector<DuffingLaw> laws = {law, {0.0, 3e8}, {400.0, 0.0}, {4000.0, -3e6}, {4000.0, -3e9}};
   for (const DuffingLaw& contact : laws) {
-    for (const scene::Friction& constants :
-         {rubber, sticky, scene::Friction{0.1, 0.8, 5.0}, {0.3, 1.0, 0.7}, {1e-6, 2.0 / 3.0, 0.9}, {10.0, 0.75, 0.5}}) {
+    for (const scene::Friction& constants : {rubber,
+                                             sticky,
+                                             scene::Friction{0.1, 0.8, 5.0},
+                                             {0.3, 1.0, 0.7},
+                                             {1e-6, 2.0 / 3.0, 0.9},
+                                             {10.0, 0.75, 0.5},
+                                             {0.9, 2.0 / 3.0, 0.8, 0.3},
+                                             {1.2, 0.9, 0.6, 5.0}}) {
       const FrictionLaw friction(constants);
+      const double kappa = constants.stiffness_ratio;
       for (const double D_n : {1e-9, 1e-6, 1e-4, 1e-3, 5e-3}) {
         double low = 0.0, high = 10.0 * D_n;
         for (int i = 0; i < 200; ++i) {
-          const double D_t = 0.5 * (low + high), D = std::hypot(D_n, D_t);
-          const double F_n = contact.force_n(D) * D_n / D, F_t = contact.force_n(D) * D_t / D;
+          const double D_t = 0.5 * (low + high), D = std::hypot(D_n, std::sqrt(kappa) * D_t);
+          const double F_n = contact.force_n(D) * D_n / D, F_t = contact.force_n(D) * kappa * D_t / D;
           (F_t > std::min(constants.mu_D * F_n, constants.K * std::pow(F_n, constants.beta)) ? high : low) = D_t;
         }
         EXPECT_NEAR(sliding_stretch_m(friction, contact, D_n), low, 1e-12 * low);
@@ -235,7 +289,8 @@ double closed_path_j(const scene::Friction& constants, bool point, unsigned seed
 
 TEST(Friction, NoClosedPathGivesEnergy) {
   for (unsigned seed = 0; seed < 30; ++seed) {
-    for (const scene::Friction& constants : {rubber, sticky, scene::Friction{3.0, 0.75, 0.2}}) {
+    for (const scene::Friction& constants :
+         {rubber, sticky, scene::Friction{3.0, 0.75, 0.2}, {1.2, 0.9, 0.6, 0.3}, {1.2, 0.9, 0.6, 4.0}}) {
       // Typical energy stored is 1 mJ.
       EXPECT_LT(closed_path_j(constants, seed % 2 == 0, seed, 4000), -1e-6) << "seed " << seed;
     }
@@ -270,14 +325,15 @@ TEST(Friction, SlippingOnlyTakesFromTheStore) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   int slips = 0, holds = 0;
-  for (const scene::Friction& constants : {rubber, sticky}) {
+  for (const scene::Friction& constants : {rubber, sticky, scene::Friction{1.2, 0.9, 0.6, 0.4}}) {
+    const double kappa = constants.stiffness_ratio;
     Region region(resolve_friction_corrected, constants);
     for (int i = 0; i < 3000; ++i) {
       const double size_m = std::pow(10.0, -4.0 + 2.0 * uniform(random));
       const Vec3 step = size_m * Vec3(uniform(random), uniform(random), 0.0), before = region.state.stretch_m;
       region.tick(0.003 * (1.0 + 0.9 * uniform(random)), step);
-      const double asked_j = law.energy_j((region.normal_depth_m * region.d + before + step).norm());
-      EXPECT_LE(law.energy_j(region.D.norm()), asked_j * (1.0 + 1e-11));
+      const double asked_j = law.energy_j(std::hypot(region.normal_depth_m, std::sqrt(kappa) * (before + step).norm()));
+      EXPECT_LE(law.energy_j(length_m(region, kappa)), asked_j * (1.0 + 1e-11));
       EXPECT_LE(region.F_t().norm(), region.f_max() * (1.0 + 1e-12));
       ++(region.state.sliding ? slips : holds);
       if (region.state.sliding) {
@@ -503,7 +559,9 @@ TEST(Friction, EveryExtremeIsFinite) {
       for (const double K : {0.0, 1e-12, 0.5, 1e12}) {
         for (const double beta : {2.0 / 3.0, 1.0}) {
           for (const double mu_D : {0.0, 1e-12, 0.5, 100.0}) {
-            Region region(resolve, {K, beta, mu_D}, K < 0.1, contact);
+            const double kappa = mu_D == 0.5 ? 1.0 : mu_D < 0.5 ? 1e3 : 1e-3;
+            const double kappa_most = std::max(1.0, std::sqrt(kappa));
+            Region region(resolve, {K, beta, mu_D, kappa}, K < 0.1, contact);
             region.tick(0.0, Vec3::Zero());
             for (const double depth_m : {0.002, 1e-12, 0.03, 1e-200, 0.0, 1e-30, 0.002}) {
               for (const double size_m : {0.0, 1e-12, 1e-200, 0.05, 1e-3, 1e-12}) {
@@ -511,7 +569,8 @@ TEST(Friction, EveryExtremeIsFinite) {
                   region.tick(depth_m, size_m * way);
                   expect_finite(region);
                   // Not more than the deepest point would give along the longest way there is.
-                  ASSERT_LE(region.force.magnitude_n, 2.0 * contact.force_n(2.0) * (1.0 + 1e-9));
+                  ASSERT_LE(region.force.magnitude_n,
+                            2.0 * kappa_most * contact.force_n(kappa_most * 2.0) * (1.0 + 1e-9));
                   if (depth_m == 0.0) {
                     ASSERT_EQ(region.force.magnitude_n, 0.0);
                   }

@@ -77,6 +77,9 @@ TEST_F(TuningStudyTest, TellsEveryFaultWithItsPlaceAndWhatWasExpected) {
   EXPECT_THAT(refusal(head + training + held_out + stiffness +
                       "[[parameter]]\nkey = \"contact.friction.K\"\nbounds = [0.1, 2.0]\n"),
               HasSubstr("no training contact has friction"));
+  EXPECT_THAT(refusal(head + "formulation = \"published\"\n" + training + held_out + stiffness +
+                      "[[parameter]]\nkey = \"contact.friction.stiffness_ratio\"\nbounds = [0.1, 2.0]\n"),
+              HasSubstr("has no meaning under the models of this study"));
   EXPECT_THAT(refusal(head + "law = \"area_aware\"\n" + training + held_out + stiffness),
               HasSubstr("2:7: law: the scenes have no linear constant for \"area_aware\""));
   EXPECT_THAT(refusal(head + "laws = \"duffing\"\n" + training + held_out + stiffness),
@@ -94,6 +97,15 @@ TEST_F(TuningStudyTest, WritesAParameterWhereTheSceneKeepsIt) {
   EXPECT_EQ(scene.contact.k1_n_per_m, 10.0);
   EXPECT_EQ(scene.contact.k3_n_per_m3, 12.0);
   EXPECT_EQ(scene.fast.s_c_m2, 0.5);
+}
+
+TEST(TuningStudyModels, OnlyTheCorrectedOneHasFrictionsStiffnessRatio) {
+  TuningParameter ratio, limit;
+  ratio.key = "contact.friction.stiffness_ratio";
+  limit.key = "contact.friction.K";
+  EXPECT_TRUE(applies(ratio, Formulation::corrected, ContactLaw::area_aware));
+  EXPECT_FALSE(applies(ratio, Formulation::published, ContactLaw::area_aware));
+  EXPECT_TRUE(applies(limit, Formulation::published, ContactLaw::duffing));
 }
 
 TEST(ShippedTuningStudies, HaveScenesWithoutFaultAndContactsHeldOut) {
