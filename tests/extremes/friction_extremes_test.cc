@@ -102,9 +102,9 @@ TEST(FrictionExtremes, HugeKNeverSlips) {
   }
 }
 
-// A stuck contact a thousand times softer or stiffer along the surface than into it: the same friction in the end, and
-// the tool slips at once or never.
-// As printed: there is no such constant.
+// A stuck contact a thousand times softer or stiffer along the surface than into it: slips late or at once, and slides
+// with mu_D F_n all the same.
+// As printed: There is no such constant.
 TEST(FrictionExtremes, StiffnessRatioOverSixDecades) {
   for (const double kappa : {1e-3, 1.0, 1e3}) {
     Rig rig(rubbing(extremes::cube(Formulation::corrected), {1.0, 1.0, 0.4, kappa}));
