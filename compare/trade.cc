@@ -61,7 +61,11 @@ std::string late_text(const Trade& trade, const TradeRow& row) {
 std::string paper_sentence(const Trade& trade, TradeError error, const std::string& what) {
   const auto of_paper = [](const TradeRow& row) { return row.family == TradeFamily::paper; };
   const TradeRow* paper = most_accurate(trade, error, of_paper);
-  if (paper == nullptr) return "The paper's model has no " + what + " that could be judged.";
+  if (paper == nullptr) {
+    return std::any_of(trade.rows.begin(), trade.rows.end(), of_paper)
+               ? "The paper's model has no " + what + " that could be judged."
+               : "No row of the " + what + " is the paper's model; the absent rows say why.";
+  }
   const std::string best = fmt::format("In {} the best of the paper's model is {}", what, with_numbers(*paper, error));
   const std::optional<std::size_t> by =
       dominating(trade.rows, error)[static_cast<std::size_t>(paper - trade.rows.data())];
@@ -80,7 +84,9 @@ std::string paper_sentence(const Trade& trade, TradeError error, const std::stri
     return !of_paper(row) && row.family != TradeFamily::reference && row.step_p50_us <= trade.tick_us;
   });
   if (rival == nullptr || *judged_error(rival->*error) >= *judged_error(paper->*error)) {
-    return best + ". It wins: nothing else that keeps up with the device loop is as accurate.";
+    const bool worse_than_none = error == &TradeRow::shape_rel_l2 && *judged_error(paper->*error) >= 1.0;
+    return best + ". It wins: nothing else that keeps up with the device loop is as accurate" +
+           (worse_than_none ? ", but for the rest shape, which is off by 100 % and takes no time." : ".");
   }
   const double ratio = *judged_error(paper->*error) / *judged_error(rival->*error);
   return fmt::format(

@@ -102,7 +102,13 @@ TEST(TradeVerdict, SaysWhoWins) {
   EXPECT_THAT(said({paper, row("levels", 500.0, 0.001, 0.001, TradeFamily::reference)}), HasSubstr("It wins"));
   EXPECT_THAT(said({row("paper", 10.0, 0.01, 0.02)}), HasSubstr("not distinguishable"));
   EXPECT_THAT(said({row("paper", 5000.0, 0.1)}), HasSubstr("Nothing keeps up"));
-  EXPECT_THAT(said({}), HasSubstr("no force that could be judged"));
+  EXPECT_THAT(said({row("paper", 10.0, NAN)}), HasSubstr("The paper's model has no force that could be judged"));
+  EXPECT_THAT(said({row("columns", 10.0, 0.1, 0.001, TradeFamily::compliance)}),
+              HasSubstr("No row of the force is the paper's model; the absent rows say why."));
+  EXPECT_THAT(said({row("paper", 10.0, 1.2)}), HasSubstr("is as accurate."));
+  TradeRow shape = row("paper", 10.0, 0.3);
+  shape.shape_rel_l2 = {1.2, 0.001};
+  EXPECT_THAT(said({shape}), HasSubstr("is as accurate, but for the rest shape"));
 }
 
 TEST(TradeSvg, NamesEveryPointThatCanBeDrawn) {
