@@ -161,15 +161,19 @@ class Ladder {
     add({.name = name, .key = key, .label = name, .family = family, .absent = why});
   }
 
-  /// The reference's answer on a surface of so many triangles.
+  /// The reference's answer on a surface of so many triangles, from the meshes that the contact's own surface asks for:
+  /// on finer ones the shape is known less well, and a row more is not worth hours of another mesh.
   const TuningData& data_of(std::size_t contact, int triangles) {
+    const int own = trade_.contacts[contact].scene.fast.triangles;
+    std::optional<int> levels;
+    if (triangles != own) levels = static_cast<int>(data_of(contact, own).result.levels.size());
     const auto [found, is_new] = data_.try_emplace({contact, triangles});
     if (is_new) {
       scene::TuningContact one = trade_.contacts[contact];
       one.scene.fast.triangles = triangles;
       tell("reference of \"" + one.name + "\" on " + thousands(triangles) + " triangles");
       found->second = std::make_unique<TuningData>(tuning_data(
-          one, [&](const Scene& scene, const scene::Surface& surface) { return solve_(scene, surface, {}); }));
+          one, [&](const Scene& scene, const scene::Surface& surface) { return solve_(scene, surface, levels); }));
     }
     return *found->second;
   }

@@ -140,6 +140,7 @@ class TradeTest : public ::testing::Test {
     options.quick = true;
     return trade(scene, options,
                  [&](const scene::Scene& one, const scene::Surface& surface, std::optional<int> levels) {
+                   if (one.fast.triangles != scene.fast.triangles) levels_elsewhere_.push_back(levels);
                    scene::Scene asked = one;
                    if (!asked.reference.levels) asked.reference.levels = 1;
                    if (levels) asked.reference.levels = levels;
@@ -162,11 +163,14 @@ class TradeTest : public ::testing::Test {
   }
 
   testing::TemporaryFolder folder_;
+  std::vector<std::optional<int>> levels_elsewhere_;  ///< asked for on surfaces that are not the scene's
 };
 
 TEST_F(TradeTest, MeasuresAndJudgesEveryRung) {
   const scene::Scene scene = ball_on_ball(3);
   const Trade found = run(scene);
+  // Other rest points are no reason for other meshes.
+  EXPECT_THAT(levels_elsewhere_, ElementsAre(std::optional(3), std::optional(3)));
   int measured = 0;
   for (const TradeRow& one : found.rows) {
     if (!one.absent.empty()) continue;
