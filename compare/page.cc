@@ -30,6 +30,7 @@ p { max-width: 46rem; margin: .6rem 0; }
 figure { margin: 1rem 0; } figure.wide { grid-column: 1 / -1; } figcaption { font-size: .88rem; max-width: 46rem; }
 svg { max-width: 100%; height: auto; display: block; }
 .scroll { overflow-x: auto; }
+.scroll td:first-child { min-width: 9em; }
 table { border-collapse: collapse; width: 100%; font-size: .9rem; margin: .8rem 0; }
 th, td { text-align: left; vertical-align: top; padding: .38rem .7rem .38rem 0; border-bottom: 1px solid var(--line); }
 th { font-weight: 600; } td.n, th.n { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
