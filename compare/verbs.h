@@ -12,9 +12,7 @@ namespace touchstone::compare {
 int plan(const fast::VerbOptions& options, const ReferenceOptions& reference);
 int run_fast(const fast::VerbOptions& options, const ReferenceOptions& reference);
 int run_reference(const fast::VerbOptions& options, const ReferenceOptions& reference);
-/// @param parameters  file that `tune` leaves, for the fast side alone: the reference keeps the scene's own friction
-/// and
-///                    r_th; may be empty
+/// @param parameters  file that `tune` leaves, may be empty; for the fast side alone, the reference keeps the scene's own
 int run_compare(const fast::VerbOptions& options, const ReferenceOptions& reference,
                 const std::filesystem::path& parameters);
 
