@@ -12,7 +12,7 @@ namespace touchstone::compare {
 int plan(const fast::VerbOptions& options, const ReferenceOptions& reference);
 int run_fast(const fast::VerbOptions& options, const ReferenceOptions& reference);
 int run_reference(const fast::VerbOptions& options, const ReferenceOptions& reference);
-/// @param parameters  file that `tune` leaves, may be empty; for the fast side alone, the reference keeps the scene's own
+/// @param parameters  file that `tune` leaves, or empty; for the fast side alone, the reference keeps the scene's own
 int run_compare(const fast::VerbOptions& options, const ReferenceOptions& reference,
                 const std::filesystem::path& parameters);
 

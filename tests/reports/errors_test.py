@@ -164,6 +164,8 @@ class Measure(unittest.TestCase):
 
     def test_every_shipped_scene_has_a_study_that_exists(self):
         page = self.run_on("--only-read").split("### Whose parameters")[1].split("###")[0]
+        self.assertIn("| ball-on-cube-slide | friction | another track |", page)
+        self.assertIn("| ball-on-cube-press | ball-on-cube | whole track |", page)
         root = measure.parents[2]
         for scene in (root / "meshes/scenes").glob("*.toml"):
             row = next(row for row in page.splitlines() if row.startswith(f"| {scene.stem} |"))
