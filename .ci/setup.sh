@@ -5,20 +5,29 @@ fail() {
   exit 1
 }
 
+# @param $1 an os-release file, for tests
 require_machine() {
-  [ -r /etc/os-release ] && . /etc/os-release
-  [ "${ID:-}" = debian ] && [ "${VERSION_ID:-}" = 12 ] ||
-    fail "needs Debian 12 (bookworm), and this is ${PRETTY_NAME:-another system}; use a Debian 12 machine or container."
+  local ID= VERSION_ID= PRETTY_NAME= release=${1:-/etc/os-release} why=
+  [ -r "$release" ] && . "$release"
+  if [ "$ID" != debian ] || [ "$VERSION_ID" != 12 ]; then
+    case "$ID $VERSION_ID" in
+      "ubuntu 22.04") why=" It lacks the package libtomlplusplus-dev, and its CMake is older than 3.25." ;;
+      "ubuntu 24.04") why=" Its packages have the same names, but nobody has tried them." ;;
+    esac
+    fail "needs Debian 12 (bookworm), and this is ${PRETTY_NAME:-another system}.$why" \
+      "The file Containerfile makes a Debian 12 container: docker build -f Containerfile -t touchstone ."
+  fi
   local free_mib
   free_mib=$(df -Pm . | awk 'NR == 2 { print $4 }')
   [ "$free_mib" -ge 3000 ] || fail "needs about 3 GB of free disk here, and only $free_mib MiB are free."
 }
 
+# install_packages LIST... : what these files name, one package per line
 install_packages() {
   local missing=() name
   while read -r name; do
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
-  done < <(grep -v '^#' .ci/packages)
+  done < <(cat "$@" | grep -v '^#')
   command -v npm >/dev/null || missing+=(npm)  # Debian's is not added beside another one
   [ ${#missing[@]} -gt 0 ] || return 0
   echo "== Adding Debian packages: ${missing[*]}"

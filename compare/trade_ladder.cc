@@ -1,5 +1,6 @@
 // The rungs: what is built, judged and measured.
 #include "compare/linear_contact.h"
+#include "compare/model_table.h"
 #include "compare/text.h"
 #include "compare/trade.h"
 #include "fast/step.h"
@@ -240,12 +241,7 @@ class Ladder {
                     .family = TradeFamily::area_aware},
                    [=](Scene scene) {
                      scene.fast.formulation = formulation;
-                     if (scene.contact.law == scene::ContactLaw::duffing) {
-                       scene.contact.law = scene::ContactLaw::area_aware;
-                       scene.contact.k1_per_radius_n_per_m2 = 2.0 * scene.body.material.contact_modulus_pa();
-                       scene.contact.k3_n_per_m3 = 0.0;
-                     }
-                     return scene;
+                     return duffing ? with_untuned_area_law(std::move(scene)) : scene;
                    },
                    {});
     }
