@@ -41,17 +41,9 @@ code { font: .82rem ui-monospace, "DejaVu Sans Mono", monospace; color: var(--di
 pre { font: .82rem/1.45 ui-monospace, "DejaVu Sans Mono", monospace; background: var(--panel); padding: .9rem 1.1rem;
   border-radius: 8px; overflow-x: auto; white-space: pre-wrap; }
 dt { font-weight: 600; } dd { margin: 0 0 .5rem; max-width: 46rem; }
-.viewer { background: var(--panel); border-radius: 8px; padding: .8rem 1rem; margin: .8rem 0; }
-.viewer p { margin: .3rem 0; } .viewer[hidden] { display: none; }
-.controls { display: flex; flex-wrap: wrap; gap: .5rem 1.2rem; align-items: center; font-size: .9rem; }
-.stage { position: relative; } .canvas { height: min(430px, 60vw); touch-action: none; }
-.side { position: absolute; top: .5rem; font-weight: 600; pointer-events: none; } .side[hidden] { display: none; }
-.bar { max-width: 460px; margin: .5rem auto; font-size: .88rem; text-align: center; } .colours { height: 12px; }
-.numbers { display: flex; justify-content: space-between; } .numbers span { width: 0; display: flex; justify-content: center; }
-.time { display: flex; gap: .8rem; align-items: center; } .time input { flex: 1; } .chart svg { cursor: pointer; }
 summary { cursor: pointer; font-weight: 600; }
 @media print {
-  .viewer { display: none; } body { max-width: none; padding: 0; font-size: 10.5pt; } figure, tr, .tile { break-inside: avoid; }
+  .screen { display: none; } body { max-width: none; padding: 0; font-size: 10.5pt; } figure, tr, .tile { break-inside: avoid; }
   .plots { grid-template-columns: 1fr 1fr; } .tiles { grid-template-columns: repeat(4, 1fr); } h2 { break-after: avoid; }
 }
 )";

@@ -116,23 +116,28 @@ std::string chart(const Errors& errors) {
   return to_svg(plot, chart_width_px, chart_height_px);
 }
 
-constexpr const char* controls = R"(<div class="controls">
-<label>Show <select data-part="side"><option value="both">both</option><option value="reference">the reference</option>
-<option value="fast">the fast model</option></select></label>
-<label>coloured by <select data-part="colour"><option value="displacement">displacement</option>
-<option value="error">error</option></select></label>
-<label><input type="checkbox" data-part="tool" checked="checked"/> tool</label>
-<button type="button" data-part="reset">first view</button>
-<span class="dim">drag to turn, wheel to zoom, shift and drag to move</span>
-</div>
-<div class="stage"><div data-part="canvas" class="canvas"></div>
+constexpr const char* stage = R"(<div class="stage" data-part="stage"><div data-part="canvas" class="canvas"></div>
+<canvas data-part="marks" class="marks" role="img"></canvas>
 <span class="side reference" data-part="name-reference">Reference</span>
 <span class="side fast" data-part="name-fast">Fast model</span></div>
 <div class="bar"><div data-part="bar" class="colours"></div>
 <div data-part="bar-numbers" class="numbers"><span></span><span></span><span></span><span></span><span></span></div>
 <div data-part="bar-name" class="dim"></div></div>
-<label class="time">Instant <input type="range" min="0" step="1" data-part="instant"/></label>
+<div class="controls"><button type="button" data-part="play" class="play">Play</button>
+<label class="time">Instant <input type="range" min="0" step="1" data-part="instant"/></label></div>
 <p data-part="words"></p>
+<div class="controls">
+<label>Show <select data-part="side"><option value="both">both</option><option value="reference">the reference</option>
+<option value="fast">the fast model</option></select></label>
+<label>coloured by <select data-part="colour"><option value="displacement">displacement</option>
+<option value="error">error</option></select></label>
+<label><input type="checkbox" data-part="tool" checked="checked"/> tool</label>
+<button type="button" data-part="reset">First view</button>
+<button type="button" data-part="save">Save PNG</button>
+</div>
+<p class="keys dim" id="viewer-keys" data-part="keys">Click the picture, then: drag or <kbd>arrow keys</kbd> to turn,
+wheel or <kbd>+</kbd> <kbd>-</kbd> to zoom, <kbd>Shift</kbd> and drag to move, <kbd>Space</kbd> to play or pause,
+<kbd>Home</kbd> for the first view, <kbd>Esc</kbd> to leave the picture. Both bodies turn together.</p>
 )";
 
 }  // namespace
@@ -155,17 +160,18 @@ std::string viewer_section(const scene::Scene& scene, const fast::Run& run, cons
                            const Errors& errors) {
   const std::size_t count = errors.instants.size();
   const std::vector<std::size_t> chosen = viewer_instants(count, errors.deepest, run.surface.points_m.cols());
-  std::string out = tag("h3", "Both bodies in space");
+  // Paper takes the still picture below.
+  std::string out = "<section class=\"screen\">\n" + tag("h3", "Both bodies in space");
   out += tag("p",
              "The view in space needs scripts and WebGL, which this reader does not offer; the still picture below "
              "shows the deepest instant.",
              "id=\"viewer-still\" class=\"dim\"") +
-         "\n<div id=\"viewer\" class=\"viewer\" hidden=\"hidden\">\n" + controls +
+         "\n<div id=\"viewer\" class=\"viewer\" hidden=\"hidden\">\n" + stage +
          "<div data-part=\"chart\" class=\"chart\">" + chart(errors) + "</div>\n";
   if (chosen.size() < count) {
     out += tag("p", fmt::format("{} of {} instants; all are in surface.pvd.", chosen.size(), count), "class=\"dim\"");
   }
-  out += "</div>\n<script type=\"application/json\" id=\"viewer-data\">" +
+  out += "</div>\n</section>\n<script type=\"application/json\" id=\"viewer-data\">" +
          script_text(data_of(scene, run, result, errors, chosen)) + "</script>\n";
   return out + "<script>//<![CDATA[\n" + std::string(viewer_bundle) + "\n//]]></script>\n";
 }

@@ -6,6 +6,7 @@ import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 const result = await build({
   entryPoints: ['viewer.js'],
   bundle: true,
+  loader: { '.css': 'text' },
   minify: true,
   format: 'iife',
   target: 'es2020',
