@@ -3,6 +3,7 @@
 #include "reference/solver.h"
 #include "scene/build_info.h"
 #include "scene/files.h"
+#include "scene/first_contact.h"
 #include "scene/hash.h"
 #include "scene/results.h"
 #include "scene/scene_io.h"
@@ -121,6 +122,7 @@ StudyManifest expand(const scene::Study& study, const std::filesystem::path& fol
                        one.along,
                        {}};
     if (!ids.insert(entry.id).second) continue;
+    entry.warning = scene::no_contact_warning(scene);
     for (const scene::StudySetting& setting : one.settings) entry.settings.emplace_back(setting.key, setting.value);
     scene::write_file(manifest.scene_file(entry), text);
     manifest.cases.push_back(std::move(entry));

@@ -25,6 +25,7 @@ struct ManifestCase {
   std::string name;
   std::vector<std::pair<std::string, std::string>> along;     ///< axis and label
   std::vector<std::pair<std::string, std::string>> settings;  ///< key and value as TOML
+  std::string warning = {};  ///< of a track without contact, as expand() found it; not in the manifest's file
 };
 
 struct StudyManifest {

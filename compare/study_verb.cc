@@ -13,6 +13,22 @@
 namespace touchstone::compare {
 namespace {
 
+/// A few of them: all the cases of an axis tend to share the fault.
+void warn_of_no_contact(const StudyManifest& manifest) {
+  constexpr std::size_t told_max = 3;
+  std::vector<const ManifestCase*> without;
+  for (const ManifestCase& one : manifest.cases) {
+    if (!one.warning.empty()) without.push_back(&one);
+  }
+  for (std::size_t i = 0; i < std::min(told_max, without.size()); ++i) {
+    std::cerr << fmt::format("warning: case {} ({}): {}\n", without[i]->index, without[i]->name, without[i]->warning);
+  }
+  if (without.size() > told_max) {
+    std::cerr << fmt::format("warning: {} cases of {} are without contact like these\n", without.size(),
+                             manifest.cases.size());
+  }
+}
+
 int expand_verb(const StudyOptions& options) {
   const scene::Study study = scene::load_study(options.study);
   const std::filesystem::path folder =
@@ -20,6 +36,7 @@ int expand_verb(const StudyOptions& options) {
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
   const StudyManifest manifest = expand(study, folder, program, options.store);
   const std::size_t count = manifest.cases.size();
+  warn_of_no_contact(manifest);
   const auto done = std::count_if(manifest.cases.begin(), manifest.cases.end(), [&](const ManifestCase& one) {
     return case_status(manifest, one).state == CaseState::done;
   });

@@ -2,6 +2,7 @@
 
 #include "scene/build_info.h"
 #include "scene/error.h"
+#include "scene/first_contact.h"
 #include "scene/scene_io.h"
 
 #include <unistd.h>
@@ -16,7 +17,12 @@ std::filesystem::path VerbOptions::folder(const scene::Scene& scene, const std::
   return out.empty() ? std::filesystem::path("out") / (scene.name + "-" + verb) : out;
 }
 
-scene::Scene VerbOptions::load() const { return scene::load_scene(scene_file, overrides); }
+scene::Scene VerbOptions::load() const {
+  scene::Scene scene = scene::load_scene(scene_file, overrides);
+  if (const std::string warning = scene::no_contact_warning(scene); !warning.empty())
+    std::cerr << "warning: " << scene_file.string() << ": " << warning << '\n';
+  return scene;
+}
 
 CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what, VerbOptions& options,
                    std::function<int()> action, int& exit_code) {

@@ -24,6 +24,7 @@ struct VerbOptions {
   bool quiet = false;
 
   [[nodiscard]] std::filesystem::path folder(const scene::Scene& scene, const std::string& verb) const;
+  /// Warns on stderr of a track on which the tool never touches the body. @throws scene::InputError
   [[nodiscard]] scene::Scene load() const;
 };
 

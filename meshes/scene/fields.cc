@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 
 namespace touchstone::scene {
@@ -191,14 +192,18 @@ std::vector<Field<Inclusion>> make_inclusion_fields() {
   return fields;
 }
 
-std::vector<Field<Waypoint>> make_waypoint_fields() {
-  using W = Waypoint;
+std::vector<Field<TrackRow>> make_track_fields() {
+  using R = TrackRow;
   return {
-      {"time_s", "s", between(-1e9, 1e9), {}, Side::shared, +[](W& w) -> double& { return w.time_s; }, {},
+      {"time_s", "s", between(-1e9, 1e9), {}, Side::shared, +[](R& r) -> double& { return r.time_s; }, {},
            "Time of the pose, increasing from row to row."},
-      {"position_m", "m", between(-1e3, 1e3), {}, Side::shared, +[](W& w) -> Vec3& { return w.pose.position_m; }, {},
+      {"position_m", "m", between(-1e3, 1e3), {}, Side::shared, +[](R& r) -> OpenPosition& { return r.position; }, {},
            "Tool frame origin (mass centre) in the world."},
-      {"orientation_wxyz", "", between(-1e3, 1e3), "[1.0, 0.0, 0.0, 0.0]", Side::shared, +[](W& w) -> Eigen::Quaterniond& { return w.pose.orientation; }, {},
+      {"depth_m", "m", between(-1e3, 1e3), {}, Side::shared, +[](R& r) -> std::optional<double>& { return r.depth_m; }, {},
+           "In place of the height: how far the tool has moved straight down since it first touched the undeformed body; negative: so far before that."},
+      {"direction", "", between(-1e3, 1e3), {}, Side::shared, +[](R& r) -> std::optional<Vec3>& { return r.direction; }, {},
+           "Only with `depth_m`: the direction to move in, of any non-zero length, along the line through `position_m` = [x, y, z]. Absent: straight down, [0, 0, -1]."},
+      {"orientation_wxyz", "", between(-1e3, 1e3), "[1.0, 0.0, 0.0, 0.0]", Side::shared, +[](R& r) -> Eigen::Quaterniond& { return r.orientation; }, {},
            "Quaternion of the tool frame, of any non-zero length."},
   };
 }
@@ -212,6 +217,12 @@ std::string number_text(double value) {
   std::string out(text, end.ptr);
   if (out.find_first_of(".en") == std::string::npos) out += ".0";
   return out;
+}
+
+Eigen::Quaterniond unit(const Eigen::Quaterniond& q) {
+  // Dividing by a length that differs from one by rounding alone would change the last digits at every reading.
+  constexpr double rounding = 2e-15;
+  return std::abs(q.squaredNorm() - 1.0) < rounding ? q : q.normalized();
 }
 
 bool Range::contains(double value) const noexcept {
@@ -241,8 +252,8 @@ const std::vector<OptionalTable>& optional_tables() {
   return tables;
 }
 
-const std::vector<Field<Waypoint>>& waypoint_fields() {
-  static const std::vector<Field<Waypoint>> fields = make_waypoint_fields();
+const std::vector<Field<TrackRow>>& track_fields() {
+  static const std::vector<Field<TrackRow>> fields = make_track_fields();
   return fields;
 }
 
@@ -275,6 +286,10 @@ std::string value_text(const Field<T>& field, const T& object) {
       for (const Eigen::Vector2d& pair : at(o)) text += (text.empty() ? "" : ", ") + numbers(pair);
       return "[" + text + "]";
     }
+    std::string operator()(OpenPosition& (*at)(T&)) const {
+      const OpenPosition& p = at(o);
+      return p.height_open ? numbers(Eigen::Vector2d(p.position_m.head<2>())) : numbers(p.position_m);
+    }
     std::string operator()(Eigen::Quaterniond& (*at)(T&)) const {
       const Eigen::Quaterniond& q = at(o);
       return numbers(std::array{q.w(), q.x(), q.y(), q.z()});
@@ -300,6 +315,8 @@ std::string expected_text(const Field<T>& field) {
   if (std::holds_alternative<Vec3& (*)(T&)>(field.access) ||
       std::holds_alternative<std::optional<Vec3>& (*)(T&)>(field.access)) {
     out = "three numbers, each in ";
+  } else if (std::holds_alternative<OpenPosition& (*)(T&)>(field.access)) {
+    out = "three numbers [x, y, z], or two [x, y] with depth_m, each in ";
   } else if (std::holds_alternative<Eigen::Quaterniond& (*)(T&)>(field.access)) {
     out = "four numbers, each in ";
   } else if (std::holds_alternative<int& (*)(T&)>(field.access) ||
@@ -316,10 +333,10 @@ std::string expected_text(const Field<T>& field) {
 }
 
 template std::string value_text(const Field<Scene>&, const Scene&);
-template std::string value_text(const Field<Waypoint>&, const Waypoint&);
+template std::string value_text(const Field<TrackRow>&, const TrackRow&);
 template std::string value_text(const Field<Inclusion>&, const Inclusion&);
 template std::string expected_text(const Field<Scene>&);
-template std::string expected_text(const Field<Waypoint>&);
+template std::string expected_text(const Field<TrackRow>&);
 template std::string expected_text(const Field<Inclusion>&);
 
 namespace {
@@ -343,7 +360,7 @@ std::string reference_rows(const std::vector<Field<T>>& fields, const std::strin
 
 std::string scene_reference_markdown() {
   return "| key | value | default | meaning |\n|---|---|---|---|\n" + reference_rows(scene_fields(), "") +
-         reference_rows(inclusion_fields(), "body.inclusion[].") + reference_rows(waypoint_fields(), "track[].");
+         reference_rows(inclusion_fields(), "body.inclusion[].") + reference_rows(track_fields(), "track[].");
 }
 
 }  // namespace touchstone::scene

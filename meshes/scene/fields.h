@@ -27,7 +27,25 @@ struct Range {
   [[nodiscard]] std::string text() const;                    ///< "(0, 0.5]"
 };
 
-/// Where a key's value lives in a T (the Scene, or one Waypoint).
+/// A place whose height may be left open, as [x, y].
+struct OpenPosition {
+  Vec3 position_m = Vec3::Zero();
+  bool height_open = false;  ///< z means nothing
+};
+
+/// One row of a track as a file gives it. Where the depth is given, the position along `direction` follows from it.
+struct TrackRow {
+  double time_s = 0.0;
+  OpenPosition position;
+  std::optional<double> depth_m;
+  std::optional<Vec3> direction;
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+};
+
+/// At unit length, and such that what is written out reads back bit for bit. @param q  of non-zero length
+[[nodiscard]] Eigen::Quaterniond unit(const Eigen::Quaterniond& q);
+
+/// Where a key's value lives in a T (the Scene, one Inclusion or one TrackRow).
 template <class T>
 struct Choice {
   std::vector<std::string_view> names;  ///< in the order of the enumeration
@@ -38,7 +56,7 @@ template <class T>
 using Access =
     std::variant<double& (*)(T&), int& (*)(T&), std::string& (*)(T&), std::optional<double>& (*)(T&),
                  std::optional<int>& (*)(T&), Vec3& (*)(T&), std::optional<Vec3>& (*)(T&), Eigen::Quaterniond& (*)(T&),
-                 std::vector<double>& (*)(T&), std::vector<Eigen::Vector2d>& (*)(T&), Choice<T>>;
+                 std::vector<double>& (*)(T&), std::vector<Eigen::Vector2d>& (*)(T&), OpenPosition& (*)(T&), Choice<T>>;
 
 /// The key applies only where this holds; elsewhere giving it is an error.
 template <class T>
@@ -71,7 +89,7 @@ struct Field {
 [[nodiscard]] const std::vector<Field<Scene>>& scene_fields();
 
 /// The keys of one [[track]] row.
-[[nodiscard]] const std::vector<Field<Waypoint>>& waypoint_fields();
+[[nodiscard]] const std::vector<Field<TrackRow>>& track_fields();
 
 /// The keys of one [[body.inclusion]] row.
 [[nodiscard]] const std::vector<Field<Inclusion>>& inclusion_fields();

@@ -1,5 +1,6 @@
-// The depth of a tool below the rest surface: the least signed distance of a convex body over the tool.
-#include "scene/scene.h"
+// The depth of a tool below the rest surface: the least signed distance of a convex body over the tool; and the first
+// contact along a line, where that distance falls to zero.
+#include "scene/first_contact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,14 +56,15 @@ double least_value(Eigen::Matrix<double, N, 1> center, double radius_m, double t
   return best;
 }
 
-double least_over_convex(const Shape& body, const Shape& tool, const Pose& pose, double tolerance_m) {
+/// @param enough as in least_value
+double least_over_convex(const Shape& body, const Shape& tool, const Pose& pose, double tolerance_m, double enough) {
   const Bounds bounds = tool.bounds();
   const Eigen::Quaterniond into_tool = pose.orientation.conjugate();
   const Vec3 center_W_m = pose.orientation * Vec3(0.5 * (bounds.lower_m + bounds.upper_m)) + pose.position_m;
   const double radius_m = 0.5 * (bounds.upper_m - bounds.lower_m).norm();
-  if (body.signed_distance_m(center_W_m) >= radius_m) return 0.0;
+  if (body.signed_distance_m(center_W_m) - radius_m >= enough) return enough;
   return least_value<3>(
-      center_W_m, radius_m, tolerance_m, 0.0,
+      center_W_m, radius_m, tolerance_m, enough,
       [&](const Vec3& p_W_m) {
         const SurfaceQuery q = body.query(p_W_m);
         return Sample<3>{q.signed_distance_m, q.normal};
@@ -124,10 +126,10 @@ double least_over_triangle(const Shape& body, const std::array<Vec3, 3>& corner_
 }
 
 /// Triangles whose corners' tangents rule out anything lower are passed over.
-double least_over_mesh(const Shape& body, const TriangleMesh& mesh, const Pose& pose, double tolerance_m) {
+/// @param best  a value that matters no more if it is the least
+double least_over_mesh(const Shape& body, const TriangleMesh& mesh, const Pose& pose, double tolerance_m, double best) {
   const Eigen::Matrix3Xd points_m = (pose.orientation.toRotationMatrix() * mesh.points_m).colwise() + pose.position_m;
   std::vector<SurfaceQuery> at(static_cast<std::size_t>(points_m.cols()));
-  double best = 0.0;
   for (std::size_t i = 0; i < at.size(); ++i) {
     at[i] = body.query(points_m.col(static_cast<Eigen::Index>(i)));
     best = std::min(best, at[i].signed_distance_m);
@@ -159,12 +161,8 @@ double least_over_mesh(const Shape& body, const TriangleMesh& mesh, const Pose& 
   return best;
 }
 
-}  // namespace
-
-double rest_depth_m(const Shape& body, const Tool& tool, const Pose& pose) {
-  const Bounds bounds = body.bounds();
-  const double tolerance_m = 1e-8 * (bounds.upper_m - bounds.lower_m).norm();
-  double least_m = 0.0;
+/// The least signed distance of the body over the tool [m]. @param enough  what is not below it need not be exact
+double least_distance_m(const Shape& body, const Tool& tool, const Pose& pose, double tolerance_m, double enough) {
   switch (tool.shape) {
     case ToolShape::sphere:
     case ToolShape::capsule: {
@@ -175,18 +173,140 @@ double rest_depth_m(const Shape& body, const Tool& tool, const Pose& pose) {
       const double line_m = tool.shape == ToolShape::sphere ? body.signed_distance_m(to_world(center_T_m))
                                                             : least_over_segment(body, to_world(center_T_m - half_T_m),
                                                                                  to_world(center_T_m + half_T_m));
-      least_m = line_m - tool.radius_m;
-      break;
+      return line_m - tool.radius_m;
     }
     case ToolShape::cylinder:
     case ToolShape::box:
-      least_m = least_over_convex(body, *tool_shape(tool), pose, tolerance_m);
-      break;
+      return least_over_convex(body, *tool_shape(tool), pose, tolerance_m, enough);
     case ToolShape::mesh:
-      least_m = least_over_mesh(body, tool_mesh(tool), pose, tolerance_m);
-      break;
+      return least_over_mesh(body, tool_mesh(tool), pose, tolerance_m, enough);
   }
-  return std::max(0.0, -least_m);
+  return enough;
+}
+
+double diagonal_m(const Bounds& bounds) { return (bounds.upper_m - bounds.lower_m).norm(); }
+
+/// Where a convex function of a place on a line first falls to zero; nothing if it does not before `end_m`.
+/// A chord prolonged lies below a convex function, so no zero is stepped over.
+/// @param function  changes by at most the length gone; known to tolerance_m
+template <class Function>
+std::optional<double> first_zero_m(double start_m, double end_m, double tolerance_m, const Function& function) {
+  double before_m = start_m, before = function(before_m);
+  if (before <= tolerance_m) return before_m;
+  double here_m = before_m + before;
+  for (int iteration = 0; iteration < 500 && here_m <= end_m; ++iteration) {
+    const double here = function(here_m);
+    if (here < -tolerance_m) {
+      // Rounding alone led past the zero.
+      for (int halving = 0; halving < 60; ++halving) {
+        const double middle_m = 0.5 * (before_m + here_m);
+        (function(middle_m) > 0.0 ? before_m : here_m) = middle_m;
+      }
+      return here_m;
+    }
+    if (here >= before) return here <= tolerance_m ? std::optional(here_m) : std::nullopt;
+    const double chord_m = here * (here_m - before_m) / (before - here);
+    if (here <= tolerance_m) return here_m + chord_m;
+    before_m = here_m;
+    before = here;
+    here_m += std::max(here, chord_m);
+  }
+  return std::nullopt;
+}
+
+/// How far the mesh goes along the unit vector `direction` until it touches the body. @param points_m of the mesh
+std::optional<double> first_contact_of_mesh_m(const Shape& body, const TriangleMesh& mesh,
+                                              const Eigen::Matrix3Xd& points_m, const Vec3& direction, double start_m,
+                                              double end_m, double tolerance_m) {
+  struct Candidate {
+    double free_m;  ///< the triangle touches nothing before
+    std::array<std::int32_t, 3> triangle;
+  };
+  std::vector<Candidate> candidates(mesh.triangles.size());
+  std::vector<SurfaceQuery> at(static_cast<std::size_t>(points_m.cols()));
+  double moved_m = start_m;
+  // Planes that touch the body beneath the corners bound from below how far each triangle is free to go. Close by they
+  // are sharp enough to tell nearly all triangles from the first.
+  for (int round = 0; round < 50; ++round) {
+    for (std::size_t i = 0; i < at.size(); ++i)
+      at[i] = body.query(points_m.col(static_cast<Eigen::Index>(i)) + moved_m * direction);
+    double free_m = INFINITY;
+    for (std::size_t t = 0; t < candidates.size(); ++t) {
+      candidates[t] = {0.0, mesh.triangles[t]};
+      for (const std::int32_t i : mesh.triangles[t]) {
+        const SurfaceQuery& q = at[static_cast<std::size_t>(i)];
+        double least_m = q.signed_distance_m;
+        for (const std::int32_t j : mesh.triangles[t]) {
+          least_m = std::min(least_m, q.signed_distance_m + q.normal.dot(points_m.col(j) - points_m.col(i)));
+        }
+        const double falls = -q.normal.dot(direction);
+        if (least_m <= 0.0) continue;
+        candidates[t].free_m = std::max(candidates[t].free_m, falls > 0.0 ? least_m / falls : INFINITY);
+      }
+      free_m = std::min(free_m, candidates[t].free_m);
+    }
+    if (moved_m + free_m > end_m) return std::nullopt;
+    if (free_m < 1e-3 * (end_m - start_m)) break;
+    moved_m += free_m;
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.free_m < b.free_m; });
+  std::optional<double> first_m;
+  for (const auto& [free_m, triangle] : candidates) {
+    const double last_m = first_m.value_or(end_m);
+    if (moved_m + free_m >= last_m - tolerance_m) break;
+    const auto corner = [&](std::size_t k, double along_m) {
+      return Vec3(points_m.col(triangle[k]) + along_m * direction);
+    };
+    const auto touch_m = first_zero_m(moved_m + free_m, last_m, 4.0 * tolerance_m, [&](double along_m) {
+      return least_over_triangle(body, {corner(0, along_m), corner(1, along_m), corner(2, along_m)}, tolerance_m);
+    });
+    if (touch_m) first_m = touch_m;
+  }
+  return first_m;
+}
+
+}  // namespace
+
+double rest_depth_m(const Shape& body, const Tool& tool, const Pose& pose) {
+  return std::max(0.0, -least_distance_m(body, tool, pose, 1e-8 * diagonal_m(body.bounds()), 0.0));
+}
+
+double gap_m(const Shape& body, const Tool& tool, const Pose& pose) {
+  return least_distance_m(body, tool, pose, 1e-8 * diagonal_m(body.bounds()), INFINITY);
+}
+
+std::optional<double> first_contact_m(const Shape& body, const Tool& tool, const Pose& pose, const Vec3& direction) {
+  const Bounds bounds = body.bounds();
+  const Vec3 unit = direction.normalized();
+  Eigen::Matrix3Xd points_m;
+  Vec3 center_W_m = pose.position_m;
+  double radius_m = 0.0;
+  std::optional<TriangleMesh> mesh;
+  const std::unique_ptr<const Shape> shape = tool_shape(tool);
+  if (shape) {
+    const Bounds own = shape->bounds();
+    center_W_m += pose.orientation * Vec3(0.5 * (own.lower_m + own.upper_m));
+    radius_m = 0.5 * diagonal_m(own);
+  } else {
+    mesh = tool_mesh(tool);
+    points_m = (pose.orientation.toRotationMatrix() * mesh->points_m).colwise() + pose.position_m;
+    const Bounds own = mesh->bounds();
+    center_W_m += pose.orientation * Vec3(0.5 * (own.lower_m + own.upper_m));
+    radius_m = 0.5 * diagonal_m(own);
+  }
+  // From where both are apart for certain to where they are apart again.
+  const double reach_m = radius_m + 0.5 * diagonal_m(bounds);
+  const double middle_m = unit.dot(0.5 * (bounds.lower_m + bounds.upper_m) - center_W_m);
+  const double start_m = middle_m - 1.01 * reach_m, end_m = middle_m + 1.01 * reach_m;
+  const double tolerance_m = 1e-11 * diagonal_m(bounds);
+  if (mesh) {
+    return first_contact_of_mesh_m(body, *mesh, points_m, unit, start_m, end_m, tolerance_m);
+  }
+  const bool round = tool.shape == ToolShape::sphere || tool.shape == ToolShape::capsule;
+  return first_zero_m(start_m, end_m, round ? 1e-14 : 4.0 * tolerance_m, [&](double along_m) {
+    return least_distance_m(body, tool, {pose.position_m + along_m * unit, pose.orientation}, tolerance_m, INFINITY);
+  });
 }
 
 }  // namespace touchstone::scene

@@ -1,6 +1,7 @@
 #include "scene/results.h"
 
 #include "scene/build_info.h"
+#include "scene/first_contact.h"
 #include "scene/scene_io.h"
 
 #include <nlohmann/json.hpp>
@@ -146,19 +147,22 @@ StageTime Stopwatch::read(const std::string& stage) const {
 Manifest make_manifest(const Scene& scene, const std::string& command) {
   utsname host{};
   uname(&host);
-  return {command,
-          scene_hash(scene),
-          resolved_toml(scene),
-          {{"version", build_info.version},
-           {"commit", build_info.commit},
-           {"compiler", build_info.compiler},
-           {"build", build_info.build_type},
-           {"host", host.nodename},
-           {"system", std::string(host.sysname) + " " + host.release + " " + host.machine},
-           {"processor", processor_name()},
-           {"processors", std::to_string(std::thread::hardware_concurrency())},
-           {"date", utc_now()}},
-          {}};
+  Manifest manifest{command,
+                    scene_hash(scene),
+                    resolved_toml(scene),
+                    {{"version", build_info.version},
+                     {"commit", build_info.commit},
+                     {"compiler", build_info.compiler},
+                     {"build", build_info.build_type},
+                     {"host", host.nodename},
+                     {"system", std::string(host.sysname) + " " + host.release + " " + host.machine},
+                     {"processor", processor_name()},
+                     {"processors", std::to_string(std::thread::hardware_concurrency())},
+                     {"date", utc_now()}},
+                    {}};
+  if (const std::string warning = no_contact_warning(scene); !warning.empty())
+    manifest.entries.emplace_back("warning", warning);
+  return manifest;
 }
 
 void write_manifest(const std::filesystem::path& path, const Manifest& manifest) {

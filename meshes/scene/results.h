@@ -59,7 +59,7 @@ struct Manifest {
   std::vector<StageTime> times;
 };
 
-/// Entries known everywhere: version, commit, compiler, build type, host, processors, date.
+/// Entries known everywhere: version, commit, compiler, build, host, processors, date, a warning of a missed contact.
 [[nodiscard]] Manifest make_manifest(const Scene& scene, const std::string& command);
 
 void write_manifest(const std::filesystem::path& path, const Manifest& manifest);

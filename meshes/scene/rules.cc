@@ -157,12 +157,17 @@ std::vector<Violation> broken_constants(const Scene& scene, double deepest_m) {
   return found;
 }
 
-std::vector<Violation> broken_rules(const Scene& scene) {
+std::vector<Violation> broken_shapes(const Scene& scene) {
   std::vector<Violation> found;
   check_profile(scene.body, "body", found);
   for (std::size_t i = 0; i < scene.body.inclusions.size(); ++i)
     check_profile(scene.body.inclusions[i], "body.inclusion[" + std::to_string(i) + "]", found);
   check_tool(scene.tool, found);
+  return found;
+}
+
+std::vector<Violation> broken_rules(const Scene& scene) {
+  std::vector<Violation> found = broken_shapes(scene);
   check_friction(scene.contact, found);
   check_local_factor(scene, found);
   check_track(scene, found);

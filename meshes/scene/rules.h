@@ -13,6 +13,9 @@ struct Violation {
   std::string key, message;
 };
 
+/// Those without which body and tool have no shapes.
+[[nodiscard]] std::vector<Violation> broken_shapes(const Scene& scene);
+
 /// Every broken rule of a scene whose single values are all in range.
 [[nodiscard]] std::vector<Violation> broken_rules(const Scene& scene);
 

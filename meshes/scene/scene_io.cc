@@ -2,6 +2,7 @@
 
 #include "scene/fields.h"
 #include "scene/files.h"
+#include "scene/first_contact.h"
 #include "scene/hash.h"
 #include "scene/nearest_name.h"
 #include "scene/rules.h"
@@ -57,10 +58,11 @@ class Reader {
     read_fields(scene_fields(), document_, "", scene);
     scene.body.inclusions = read_rows(inclusion_fields(), document_.at_path(inclusion_key), inclusion_key);
     read_mesh(scene);
-    read_track(scene);
-    if (faults_.empty()) {
-      for (const Violation& v : broken_rules(scene)) add_fault(v.key, v.message);
-    }
+    const std::vector<TrackRow> rows = read_track();
+    check_rows(rows);
+    if (faults_.empty()) report(broken_shapes(scene));
+    if (faults_.empty()) place_tool(rows, scene);
+    if (faults_.empty()) report(broken_rules(scene));
     if (!faults_.empty()) throw InputError(sorted(faults_));
     return scene;
   }
@@ -77,6 +79,10 @@ class Reader {
     const std::string file = source.path ? *source.path : file_.string();
     if (file.starts_with(override_mark)) return {file, 0, 0, std::move(message)};
     return {file, static_cast<int>(source.begin.line), static_cast<int>(source.begin.column), std::move(message)};
+  }
+
+  void report(const std::vector<Violation>& violations) {
+    for (const Violation& v : violations) add_fault(v.key, v.message);
   }
 
   /// A fault at a key's place; a key that is absent is reported at the nearest table above it.
@@ -287,6 +293,13 @@ class Reader {
     return true;
   }
   template <class T>
+  static bool assign(const Field<T>& field, OpenPosition& (*const& member)(T&), const toml::node& node, T& object) {
+    const auto v = numbers(field, node);
+    if (!v || (v->size() != 2 && v->size() != 3)) return false;
+    member(object) = {Vec3((*v)[0], (*v)[1], v->size() == 3 ? (*v)[2] : 0.0), v->size() == 2};
+    return true;
+  }
+  template <class T>
   static bool assign(const Field<T>& field, std::optional<Vec3>& (*const& member)(T&), const toml::node& node,
                      T& object) {
     const auto v = numbers(field, node, 3);
@@ -320,7 +333,7 @@ class Reader {
     if (!v) return false;
     const Eigen::Quaterniond q((*v)[0], (*v)[1], (*v)[2], (*v)[3]);
     if (q.norm() == 0.0) return false;
-    member(object) = q.normalized();
+    member(object) = unit(q);
     return true;
   }
   template <class T>
@@ -332,23 +345,75 @@ class Reader {
     return true;
   }
 
-  void read_track(Scene& scene) {
+  std::vector<TrackRow> read_track() {
     const toml::node* track = document_.get("track");
     if (track == nullptr) {
       add_fault("track", "missing; expected [[track]] rows with time_s and position_m, or [track] file = \"...csv\"");
-      return;
+      return {};
     }
     places_["track"] = at(track->source(), "");
-    if (const toml::table* table = track->as_table()) {
-      read_track_file(*table, scene);
-    } else if (const toml::array* rows = track->as_array(); rows != nullptr && rows->is_array_of_tables()) {
-      scene.track = read_rows(waypoint_fields(), toml::node_view<const toml::node>(track), "track");
-    } else {
-      add_fault("track", "expected [[track]] rows, or [track] file = \"...csv\"");
+    if (const toml::table* table = track->as_table()) return read_track_file(*table);
+    if (const toml::array* rows = track->as_array(); rows != nullptr && rows->is_array_of_tables())
+      return read_rows(track_fields(), toml::node_view<const toml::node>(track), "track");
+    add_fault("track", "expected [[track]] rows, or [track] file = \"...csv\"");
+    return {};
+  }
+
+  /// A row gives its height by z or by the depth, not by both or neither.
+  void check_rows(const std::vector<TrackRow>& rows) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const TrackRow& row = rows[i];
+      const std::string name = "track[" + std::to_string(i) + "].";
+      if (failed_.contains(name + "position_m") || failed_.contains(name + "depth_m") ||
+          failed_.contains(name + "direction"))
+        continue;
+      const Vec3& p_m = row.position.position_m;
+      const std::string flat = "[" + number_text(p_m.x()) + ", " + number_text(p_m.y()) + "]";
+      if (row.direction && !row.depth_m) {
+        add_fault(name + "direction", "only applies with depth_m, how far along it beyond first contact");
+      } else if (row.direction && row.direction->norm() == 0.0) {
+        add_fault(name + "direction", "is zero; expected a non-zero length");
+      } else if (row.direction && row.position.height_open && row.direction->head<2>().norm() > 0.0) {
+        add_fault(name + "position_m", "a slanting direction needs a point of its line; expected three numbers");
+      } else if (row.depth_m && !row.direction && !row.position.height_open) {
+        add_fault(name + "depth_m",
+                  "the height is given twice, by depth_m and by the third number of position_m; "
+                  "expected position_m = " +
+                      flat + " with depth_m, or position_m alone");
+      } else if (!row.depth_m && row.position.height_open) {
+        add_fault(name + "position_m", "the height is missing; expected a third number, or depth_m beside " + flat);
+      }
     }
   }
 
-  void read_track_file(const toml::table& table, Scene& scene) {
+  /// The track's poses; those given by depth are found here, so that a resolved scene holds positions alone.
+  void place_tool(const std::vector<TrackRow>& rows, Scene& scene) {
+    const auto body = body_shape(scene.body);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const TrackRow& row = rows[i];
+      Pose pose{row.position.position_m, row.orientation};
+      if (row.depth_m) {
+        const Vec3 direction = row.direction.value_or(-Vec3::UnitZ()).normalized();
+        const std::optional<double> touch_m = first_contact_m(*body, scene.tool, pose, direction);
+        if (!touch_m) {
+          add_fault("track[" + std::to_string(i) + "].depth_m",
+                    row.direction ? "the tool never meets the body along this direction; expected a line through "
+                                    "position_m on which it does"
+                                  : "moved straight down the tool never meets the body; expected x and y over it");
+          continue;
+        }
+        // To a picometre: the same text on every machine, and the height itself where it is a round number.
+        for (int axis = 0; axis < 3; ++axis) {
+          if (direction[axis] == 0.0) continue;
+          const double moved_m = pose.position_m[axis] + (*touch_m + *row.depth_m) * direction[axis];
+          pose.position_m[axis] = std::round(moved_m * 1e12) / 1e12;
+        }
+      }
+      scene.track.push_back({row.time_s, pose});
+    }
+  }
+
+  std::vector<TrackRow> read_track_file(const toml::table& table) {
     for (const auto& [key, node] : table) {
       if (key.str() != track_file_key) {
         faults_.push_back(at(key.source(), "unknown key \"track." + std::string(key.str()) +
@@ -358,17 +423,18 @@ class Reader {
     const auto name = table[track_file_key].value<std::string>();
     if (!name) {
       faults_.push_back(at(table.source(), "track.file: expected the name of a CSV file"));
-      return;
+      return {};
     }
     const std::filesystem::path csv = file_.parent_path() / *name;
     std::vector<int> lines;
-    scene.track = read_track_csv(csv, faults_, lines);
+    std::vector<TrackRow> rows = read_track_csv(csv, faults_, lines);
     places_["track"] = {csv.string(), 0, 0, ""};
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      for (const char* key : {".time_s", ".position_m"}) {
+      for (const char* key : {".time_s", ".position_m", ".depth_m"}) {
         places_["track[" + std::to_string(i) + "]" + key] = {csv.string(), lines[i], 1, ""};
       }
     }
+    return rows;
   }
 
   const toml::table& document_;
@@ -497,7 +563,10 @@ std::string toml_text(const Scene& scene, Keep keep, bool meaning = false) {
     }
   };
   for (const Inclusion& inclusion : scene.body.inclusions) row(inclusion_key, inclusion_fields(), inclusion);
-  for (const Waypoint& waypoint : scene.track) row("track", waypoint_fields(), waypoint);
+  for (const Waypoint& w : scene.track) {
+    row("track", track_fields(),
+        TrackRow{w.time_s, {w.pose.position_m, false}, std::nullopt, std::nullopt, w.pose.orientation});
+  }
   return out.str();
 }
 

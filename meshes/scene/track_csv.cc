@@ -10,8 +10,11 @@
 namespace touchstone::scene {
 namespace {
 
-constexpr std::array<std::string_view, 8> column_names = {"time_s", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"};
-constexpr std::string_view expected_header = "time_s,x_m,y_m,z_m, with or without ,qw,qx,qy,qz";
+constexpr std::array<std::string_view, 9> column_names = {"time_s", "x_m", "y_m", "z_m",    "qw",
+                                                          "qx",     "qy",  "qz",  "depth_m"};
+constexpr std::size_t height_column = 3, depth_column = 8;
+constexpr std::string_view expected_header =
+    "time_s,x_m,y_m,z_m, or depth_m in place of z_m, with or without ,qw,qx,qy,qz";
 
 struct Cell {
   std::string_view text;
@@ -34,10 +37,10 @@ std::vector<Cell> split(std::string_view line) {
 
 }  // namespace
 
-std::vector<Waypoint> read_track_csv(const std::filesystem::path& file, std::vector<Fault>& faults,
+std::vector<TrackRow> read_track_csv(const std::filesystem::path& file, std::vector<Fault>& faults,
                                      std::vector<int>& lines) {
   const std::string name = file.string();
-  std::vector<Waypoint> track;
+  std::vector<TrackRow> track;
   std::ifstream in(file);
   if (!in || std::filesystem::is_directory(file)) {
     faults.push_back({name, 0, 0, "cannot read the track; expected a readable CSV file"});
@@ -61,15 +64,15 @@ std::vector<Waypoint> read_track_csv(const std::filesystem::path& file, std::vec
         }
         meaning.push_back(index);
       }
-      if (meaning.size() != 4 && meaning.size() != 8) {
-        faults.push_back({name, number, 1, "the header misses columns; expected " + std::string(expected_header)});
+      const auto has = [&](std::size_t column) { return std::ranges::find(meaning, column) != meaning.end(); };
+      const auto refuse = [&](const std::string& what) {
+        faults.push_back({name, number, 1, what + "; expected " + std::string(expected_header)});
         return track;
-      }
-      if (meaning.size() == 4 && *std::max_element(meaning.begin(), meaning.end()) > 3) {
-        faults.push_back(
-            {name, number, 1, "the header misses time or position; expected " + std::string(expected_header)});
-        return track;
-      }
+      };
+      if (has(height_column) && has(depth_column)) return refuse("the header has both z_m and depth_m");
+      if (meaning.size() != 4 && meaning.size() != 8) return refuse("the header misses columns");
+      if (!has(0) || !has(1) || !has(2) || !(has(height_column) || has(depth_column)))
+        return refuse("the header misses time or position");
       continue;
     }
     if (cells.size() != meaning.size()) {
@@ -78,7 +81,7 @@ std::vector<Waypoint> read_track_csv(const std::filesystem::path& file, std::vec
            "expected " + std::to_string(meaning.size()) + " values, found " + std::to_string(cells.size())});
       continue;
     }
-    std::array<double, 8> value = {0, 0, 0, 0, 1, 0, 0, 0};
+    std::array<double, 9> value = {0, 0, 0, 0, 1, 0, 0, 0, 0};
     bool good = true;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const std::string_view text = cells[i].text;
@@ -96,7 +99,12 @@ std::vector<Waypoint> read_track_csv(const std::filesystem::path& file, std::vec
       good = false;
     }
     if (!good) continue;
-    track.push_back({value[0], {Vec3(value[1], value[2], value[3]), q.normalized()}});
+    const bool by_depth = std::ranges::find(meaning, depth_column) != meaning.end();
+    track.push_back({.time_s = value[0],
+                     .position = {Vec3(value[1], value[2], value[3]), by_depth},
+                     .depth_m = by_depth ? std::optional(value[depth_column]) : std::nullopt,
+                     .direction = {},
+                     .orientation = unit(q)});
     lines.push_back(number);
   }
   if (meaning.empty()) faults.push_back({name, 0, 0, "the track is empty; expected " + std::string(expected_header)});

@@ -2,18 +2,18 @@
 #pragma once
 
 #include "scene/error.h"
-#include "scene/scene.h"
+#include "scene/fields.h"
 
 #include <filesystem>
 #include <vector>
 
 namespace touchstone::scene {
 
-/// Reads a track: a header line with time_s, x_m, y_m, z_m and, where the tool turns, qw, qx, qy, qz,
-/// in any order; then one pose per line. Lines that start with # are passed over.
+/// Reads a track: a header line with time_s, x_m, y_m, z_m or depth_m and, where the tool turns, qw, qx, qy, qz,
+/// in any order; then one row per line. Lines that start with # are passed over.
 /// @param faults  receives every fault, with line and column; nothing is thrown
-/// @param lines   receives the line of each pose, for later errors
-[[nodiscard]] std::vector<Waypoint> read_track_csv(const std::filesystem::path& file, std::vector<Fault>& faults,
+/// @param lines   receives the line of each row, for later errors
+[[nodiscard]] std::vector<TrackRow> read_track_csv(const std::filesystem::path& file, std::vector<Fault>& faults,
                                                    std::vector<int>& lines);
 
 }  // namespace touchstone::scene

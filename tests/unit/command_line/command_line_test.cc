@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -111,6 +112,18 @@ TEST_P(Verb, RefusesAnUnreadableTrackFile) {
 }
 TEST_P(Verb, RefusesAMissingScene) { expect_refused((dir_ / "none.toml").string(), "cannot read the scene"); }
 
+TEST_P(Verb, WarnsOfATrackThatNeverTouches) {
+  const bool solves = GetParam().ends_with(" compare") || GetParam().ends_with(" reference");
+  const Answer answer =
+      run(GetParam() + " " + edited("0.0650]", "0.0702]") + " --quiet --out " + (dir_ / "out").string() +
+          (solves ? " --level 1 --store " + (dir_ / "store").string() : ""));
+  EXPECT_EQ(answer.exit_code, 0) << answer.output;
+  EXPECT_THAT(answer.output, HasSubstr("warning: " + (dir_ / "edited.toml").string() +
+                                       ": the tool never touches the body on this track; the least gap is 0.2 mm"));
+  std::ifstream file(dir_ / "out" / "manifest.json");
+  EXPECT_THAT(nlohmann::json::parse(file).value("warning", ""), HasSubstr("the least gap is 0.2 mm"));
+}
+
 TEST_P(Verb, RefusesAFolderItCannotWriteTo) {
   std::ofstream(dir_ / "file") << "x";
   const Answer answer = run(GetParam() + " " + scene + " --out " + (dir_ / "file" / "out").string());
@@ -126,6 +139,24 @@ TEST_P(Verb, HelpHasAnExample) {
 }
 
 TEST_P(Verb, UnknownOptionIsBadInput) { EXPECT_EQ(run(GetParam() + " " + scene + " --nonsense").exit_code, 2); }
+
+/// Every executable that is tested.
+std::set<std::string> programs() {
+  std::set<std::string> list;
+  for (const std::string& verb : verbs()) list.insert(verb.substr(0, verb.rfind(' ')));
+  return list;
+}
+
+TEST(PlanVerb, WarnsOfATrackThatNeverTouches) {
+  for (const std::string& program : programs()) {
+    const Answer touching = run(program + " plan " + scene);
+    EXPECT_EQ(touching.exit_code, 0);
+    EXPECT_THAT(touching.output, testing::Not(HasSubstr("never touches")));
+    const Answer apart = run(program + " plan " + scene + " --set track[1].position_m[2]=0.0702");
+    EXPECT_EQ(apart.exit_code, 0);
+    EXPECT_THAT(apart.output, HasSubstr("the tool never touches the body on this track; the least gap is 0.2 mm"));
+  }
+}
 
 TEST(LiveVerb, AnUnknownDeviceIsRefusedWithThoseThereAre) {
   for (const std::string& verb : verbs()) {
@@ -219,6 +250,24 @@ TEST(CompareVerb, ParametersAreTheFastSidesAlone) {
   EXPECT_GT(tuned["force.peak_fast_n"].get<double>(), 2.0 * own["force.peak_fast_n"].get<double>());
   const auto keys = std::distance(std::filesystem::directory_iterator(dir / "store"), {});
   EXPECT_EQ(keys, 1) << "the reference was solved for the tuned friction, too";
+  std::filesystem::remove_all(dir);
+}
+
+TEST(StudyVerb, ExpandWarnsOfCasesWithoutContact) {
+  if (full_program().empty()) GTEST_SKIP() << "a build without the reference";
+  const std::filesystem::path dir = std::filesystem::path(testing::TempDir()) / "study-without-contact";
+  std::filesystem::remove_all(dir);
+  std::filesystem::create_directories(dir);
+  std::ofstream(dir / "study.toml") << "scene = \"" << scene << "\"\nrun = \"fast\"\n[[axis]]\n"
+                                    << "key = \"track[1].position_m[2]\"\nvalues = [0.065, 0.0701, 0.0702, 0.0703, "
+                                       "0.0704]\n";
+  const Answer answer =
+      run(full_program() + " study expand " + (dir / "study.toml").string() + " --out " + (dir / "out").string());
+  EXPECT_EQ(answer.exit_code, 0) << answer.output;
+  EXPECT_THAT(answer.output, HasSubstr("warning: case 2 (track[1].position_m[2] = 0.0701): the tool never touches the "
+                                       "body on this track; the least gap is 0.1 mm"));
+  EXPECT_THAT(answer.output, testing::Not(HasSubstr("warning: case 5")));
+  EXPECT_THAT(answer.output, HasSubstr("warning: 4 cases of 5 are without contact like these"));
   std::filesystem::remove_all(dir);
 }
 
