@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 namespace touchstone::scene {
 namespace {
@@ -56,6 +57,20 @@ std::vector<Field<T>> solid_fields(const std::array<std::string_view, 6>& keys, 
            "For each piece between two corners the radius of an arc that bulges outwards, 0 for a straight piece; empty: all straight."},
   };
 }
+
+/// Edge of the cube that holds as much as the body's bounding box [m]: what lengths without a value are fractions of.
+double body_size_m(const Scene& scene) {
+  const Bounds bounds = body_shape(scene.body)->bounds();
+  return std::cbrt((bounds.upper_m - bounds.lower_m).prod());
+}
+
+/// A default need not be more exact, and reads better.
+double three_digits(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return std::strtod(text.data(), nullptr);
+}
+
 Solid& solid_of(Scene& scene) { return scene.body; }
 Solid& solid_of(Inclusion& inclusion) { return inclusion; }
 
@@ -135,16 +150,20 @@ std::vector<Field<Scene>> make_scene_fields() {
            "Ticks per second of virtual time."},
       {"fast.max_regions", "", between(1, 64), "10", fast, +[](S& s) -> int& { return s.fast.max_regions; }, tool_mesh,
            "Contact regions at a time; 1 takes all contact points as one region. A convex tool on a convex body has one."},
-      {"fast.r_th_m", "m", above(0.0, 1.0), "0.004", fast, +[](S& s) -> double& { return s.fast.r_th_m; }, always,
-           "r_th: contact points closer than this belong to one contact region; a convex tool is always in one."},
-      {"fast.r_R_m", "m", above(0.0, 10.0), "0.015", fast, +[](S& s) -> double& { return s.fast.r_R_m; }, always,
-           "r_R: radius of the local neighbourhood R."},
+      {"fast.r_th_m", "m", above(0.0, 1.0), required, fast, +[](S& s) -> double& { return s.fast.r_th_m; }, always,
+           "r_th: contact points closer than this belong to one contact region; a convex tool is always in one.",
+           +[](const S& s) { return three_digits(body_size_m(s) / 15.0); }, "L / 15"},
+      {"fast.r_R_m", "m", above(0.0, 10.0), required, fast, +[](S& s) -> double& { return s.fast.r_R_m; }, always,
+           "r_R: radius of the local neighbourhood R.",
+           +[](const S& s) { return three_digits(body_size_m(s) / 4.0); }, "L / 4"},
       {"fast.C_n", "", between(0.0, 1e3), "0.2", fast, +[](S& s) -> double& { return s.fast.C_n; }, always,
            "C_n: strength of the local factor; 0 leaves it out."},
-      {"fast.C_r_m", "m", above(0.0, 10.0), "0.002", fast, +[](S& s) -> double& { return s.fast.C_r_m; }, always,
-           "C_r: core radius of the local factor."},
-      {"fast.s_c_m2", "m^2", above(0.0, 1e3), "1.0e-3", fast, +[](S& s) -> double& { return s.fast.s_c_m2; }, always,
-           "s_c: cross-section area of all beams together."},
+      {"fast.C_r_m", "m", above(0.0, 10.0), required, fast, +[](S& s) -> double& { return s.fast.C_r_m; }, always,
+           "C_r: core radius of the local factor.",
+           +[](const S& s) { return three_digits(body_size_m(s) / 30.0); }, "L / 30"},
+      {"fast.s_c_m2", "m^2", above(0.0, 1e3), required, fast, +[](S& s) -> double& { return s.fast.s_c_m2; }, always,
+           "s_c: cross-section area of all beams together.",
+           +[](const S& s) { return three_digits(body_size_m(s) * body_size_m(s) / 3.6); }, "L^2 / 3.6"},
 
       {"live.force_max_n", "N", above(0.0, 1e4), "40.0", fast, +[](S& s) -> double& { return s.live.force_max_n; }, always,
            "Device loop: largest norm of the force sent to the device."},
@@ -347,6 +366,7 @@ std::string reference_rows(const std::vector<Field<T>>& fields, const std::strin
   for (const auto& field : fields) {
     out += "| `" + prefix + std::string(field.key) + "` | " + expected_text(field) + " | " +
            (field.default_value ? "`" + std::string(*field.default_value) + "`"
+            : field.default_of  ? "`" + std::string(field.default_words) + "`"
             : optional(field)   ? "absent"
                                 : "required") +
            " | " + std::string(field.doc);

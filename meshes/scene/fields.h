@@ -83,6 +83,9 @@ struct Field {
   Access<T> access;
   std::optional<Condition<T>> only_when;
   std::string_view doc;  ///< one line
+  /// A default that follows from the scene's other values, and in words; the key then has no other default.
+  double (*default_of)(const T&) = nullptr;
+  std::string_view default_words = {};
 };
 
 /// Every key of a scene file but the track's.

@@ -61,6 +61,7 @@ class Reader {
     const std::vector<TrackRow> rows = read_track();
     check_rows(rows);
     if (faults_.empty()) report(broken_shapes(scene));
+    if (faults_.empty()) fill_in_defaults(scene);
     if (faults_.empty()) place_tool(rows, scene);
     if (faults_.empty()) report(broken_rules(scene));
     if (!faults_.empty()) throw InputError(sorted(faults_));
@@ -176,13 +177,21 @@ class Reader {
     if (node != nullptr) {
       places_[key] = at(node->source(), "");
       read_value(field, *node, key, object);
-    } else if (!read_default(field, object) && !optional(field)) {
+    } else if (!read_default(field, object) && !optional(field) && !field.default_of) {
       if (row.empty()) {
         add_fault(key, "missing; expected " + expected_text(field));
       } else {
         faults_.push_back(at(table.source(), key + ": missing; expected " + expected_text(field)));
       }
       failed_.insert(key);
+    }
+  }
+
+  /// Those that follow from other values, which are all good by now.
+  void fill_in_defaults(Scene& scene) {
+    for (const auto& field : scene_fields()) {
+      if (!field.default_of || places_.contains(std::string(field.key)) || !applies(field, scene)) continue;
+      std::get<double& (*)(Scene&)>(field.access)(scene) = field.default_of(scene);
     }
   }
 

@@ -63,6 +63,28 @@ TEST(SceneFile, ReadsValuesAndFillsDefaults) {
   EXPECT_EQ(s.track[1].pose.position_m.z(), 0.065);
 }
 
+TEST(SceneFile, LengthsWithoutAValueFollowTheBodysSize) {
+  const FastSettings cube = parse_scene(good, "a.toml").fast;
+  EXPECT_EQ(cube.r_th_m, 0.004);
+  EXPECT_EQ(cube.r_R_m, 0.015);
+  EXPECT_EQ(cube.C_r_m, 0.002);
+  EXPECT_EQ(cube.s_c_m2, 0.001);
+  // A body of eight times the volume is twice the size.
+  const std::vector<std::string> slab = {"body.size_m=[0.12, 0.12, 0.12]", "track[0].position_m=[0, 0, 0.1305]",
+                                         "track[1].position_m=[0, 0, 0.125]"};
+  const Scene larger = parse_scene(good, "a.toml", slab);
+  EXPECT_EQ(larger.fast.r_th_m, 0.008);
+  EXPECT_EQ(larger.fast.r_R_m, 0.03);
+  EXPECT_EQ(larger.fast.C_r_m, 0.004);
+  EXPECT_EQ(larger.fast.s_c_m2, 0.004);
+  EXPECT_EQ(scene_hash(parse_scene(resolved_toml(larger), "a.toml")), scene_hash(larger));
+  // What is given stays, and the others follow the body all the same.
+  std::vector<std::string> given = slab;
+  given.push_back("fast.r_th_m=0.005");
+  EXPECT_EQ(parse_scene(good, "a.toml", given).fast.r_th_m, 0.005);
+  EXPECT_EQ(parse_scene(good, "a.toml", given).fast.r_R_m, 0.03);
+}
+
 TEST(SceneFile, EveryFaultNamesItsPlaceAndWhatWasExpected) {
   EXPECT_EQ(message_for("radius_m = 0.010", "radios_m = 0.010"),
             "a.toml:7:1: tool.radius_m: missing; expected a number in [1e-05, 10] m\n"
@@ -275,6 +297,21 @@ TEST_F(IncludeTest, TellsAFaultInTheFileItStandsIn) {
   EXPECT_THAT(refusal(), HasSubstr("scene.toml:1:11: include: " + included + " includes a file itself"));
   std::filesystem::remove(dir_ / "parameters.toml");
   EXPECT_THAT(refusal(), HasSubstr("scene.toml:1:11: include: cannot read " + included));
+}
+
+TEST(ShippedScenes, GiveTheLengthsThatHaveNoFixedDefault) {
+  // So no default can move what was published of them, nor the keys of their stored references.
+  const std::string folder = std::string(TOUCHSTONE_SOURCE_DIR);
+  for (const char* place : {"/meshes/scenes", "/tests/gates/scenes"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder + place)) {
+      if (entry.path().extension() != ".toml") continue;
+      std::ifstream in(entry.path());
+      std::stringstream text;
+      text << in.rdbuf();
+      for (const char* key : {"\nr_th_m = ", "\nr_R_m = ", "\nC_r_m = ", "\ns_c_m2 = "})
+        EXPECT_THAT(text.str(), HasSubstr(key)) << entry.path();
+    }
+  }
 }
 
 TEST(ShippedScenes, AllLoad) {
