@@ -1,4 +1,4 @@
-// Writes the mesh tools of the shipped scenes: mallet.stl and compass.obj.
+// Writes the mesh tools of the shipped scenes and of the tutorial: mallet.stl, compass.obj, stylus.stl.
 #include "scene/mesh_checks.h"
 #include "scene/surface_builder.h"
 #include "scene/triangle_mesh.h"
@@ -72,6 +72,24 @@ int quarter_segments(double radius, double step) {
   return radius < 1e-9 ? 0 : std::max(1, static_cast<int>(std::lround(0.5 * pi * radius / step)));
 }
 
+/// A profile turned about z.
+/// @param step_at  length of the facets along the circle at a height
+template <class Step>
+TriangleMesh turned(const Curve& curve, const Step& step_at) {
+  Rings rings;
+  for (const Eigen::Vector2d& p : curve) {
+    const int n = quarter_segments(p.x(), step_at(p.y()));
+    std::vector<Vec3> ring;
+    for (int i = 0; i < std::max(1, 4 * n); ++i) {
+      const double angle = n > 0 ? 0.5 * pi * i / n : 0.0;
+      const double r = n > 0 ? p.x() : 0.0;
+      ring.push_back({r * std::cos(angle), r * std::sin(angle), p.y()});
+    }
+    rings.add(ring);
+  }
+  return rings.finish();
+}
+
 /// A disc-like head at the bottom, face down, and a round handle up to the tail: one profile turned about z.
 TriangleMesh mallet() {
   constexpr double step = 1.2, tail_step = 0.4;
@@ -88,18 +106,17 @@ TriangleMesh mallet() {
   // The tail is round: half a ball.
   line_to(curve, {handle_radius, top - handle_radius}, step);
   arc(curve, {0.0, top - handle_radius}, handle_radius, 0.0, 0.5 * pi, tail_step);
-  Rings rings;
-  for (const Eigen::Vector2d& p : curve) {
-    const int n = quarter_segments(p.x(), p.y() < top - handle_radius ? step : tail_step);
-    std::vector<Vec3> ring;
-    for (int i = 0; i < std::max(1, 4 * n); ++i) {
-      const double angle = n > 0 ? 0.5 * pi * i / n : 0.0;
-      const double r = n > 0 ? p.x() : 0.0;
-      ring.push_back({r * std::cos(angle), r * std::sin(angle), p.y()});
-    }
-    rings.add(ring);
-  }
-  return rings.finish();
+  return turned(curve, [=](double z) { return z < top - handle_radius ? step : tail_step; });
+}
+
+/// A straight rod with half a ball at either end, upright, its lower tip at z = 0.
+TriangleMesh stylus() {
+  constexpr double step = 2.0, tip_step = 0.8, radius = 5.0, length = 30.0;
+  Curve curve{{0.0, 0.0}};
+  arc(curve, {0.0, radius}, radius, -0.5 * pi, 0.0, tip_step);
+  line_to(curve, {radius, length - radius}, step);
+  arc(curve, {0.0, length - radius}, radius, 0.0, 0.5 * pi, step);
+  return turned(curve, [=](double z) { return z <= radius ? tip_step : step; });
 }
 
 /// Two parallel pins, tips down at z = 0, joined by half a ring: a round tube along a U with half a ball at either end.
@@ -157,15 +174,18 @@ void describe(const char* name, const TriangleMesh& mesh) {
 int main(int count, char** arguments) try {
   using namespace touchstone::scene;
   if (count != 2) {
-    std::fprintf(stderr, "usage: touchstone-make-tools FOLDER\nwrites mallet.stl and compass.obj, in millimetres\n");
+    std::fprintf(
+        stderr, "usage: touchstone-make-tools FOLDER\nwrites mallet.stl, compass.obj and stylus.stl, in millimetres\n");
     return 2;
   }
   const std::filesystem::path folder = arguments[1];
-  const TriangleMesh m = mallet(), c = compass();
+  const TriangleMesh m = mallet(), c = compass(), s = stylus();
   write_stl(m, folder / "mallet.stl", mm);
   write_obj(c, folder / "compass.obj", mm);
+  write_stl(s, folder / "stylus.stl", mm);
   describe("mallet.stl", m);
   describe("compass.obj", c);
+  describe("stylus.stl", s);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());

@@ -322,7 +322,7 @@ TEST_F(MeshFile, TakesTwentyThousandTriangles) {
 
 TEST_F(MeshFile, ShippedToolsComeFromTheirGenerator) {
   ASSERT_EQ(std::system((std::string(TOUCHSTONE_MAKE_TOOLS) + " " + folder_.string() + " > /dev/null").c_str()), 0);
-  for (const char* name : {"mallet.stl", "compass.obj"}) {
+  for (const char* name : {"mallet.stl", "compass.obj", "stylus.stl"}) {
     const auto bytes_of = [&](const std::filesystem::path& file) {
       std::ifstream in(file, std::ios::binary);
       return std::string(std::istreambuf_iterator<char>(in), {});
