@@ -1,5 +1,8 @@
 #include "compare/model_table.h"
 
+#include "compare/stored_reference.h"
+#include "scene/scene_io.h"
+#include "scene/tuning_study.h"
 #include "synthetic.h"
 
 #include <gmock/gmock.h>
@@ -91,6 +94,18 @@ TEST(ModelFigures, HaveAKeyPerModel) {
   EXPECT_EQ(figures[0].number, 0.482);
   EXPECT_TRUE(std::isnan(figures[3].number)) << "an unknown uncertainty";
   EXPECT_EQ(figures[4].unit, "us");
+}
+
+TEST(ShippedParameters, AreTunedToTheBallOnTheCube) {
+  const std::filesystem::path source = TOUCHSTONE_SOURCE_DIR;
+  const scene::Scene scene =
+      scene::with_parameters(scene::load_scene(source / "meshes/scenes/ball-on-cube-press.toml", {}),
+                             source / "meshes/parameters/ball-on-cube.toml");
+  const fast::Run run = fast::run(scene);
+  const Errors errors = compute_errors(
+      scene, run, stored_reference(source / "tests/gates/reference/ball-on-cube-press", scene, run.surface));
+  EXPECT_LT(*errors.force_nrmse.value, 0.02);
+  EXPECT_LT(*errors.shape_rel_l2.value, 0.67);
 }
 
 }  // namespace
