@@ -67,9 +67,9 @@ std::string band_caption(const Plot& plot, const Errors& errors, const reference
     case BandSeen::nowhere:
       return "The reference's uncertainty is unknown, so no band is drawn. " + why_uncertainty_unknown(result);
     case BandSeen::narrower_than_the_line:
-      return errors.reference.force_uncertainty_rel
+      return force_known_to(errors)
                  ? fmt::format("The reference's uncertainty, at most {} of its force, is narrower than its line.",
-                               percent_text(*errors.reference.force_uncertainty_rel))
+                               percent_text(*force_known_to(errors)))
                  : "The reference's uncertainty is narrower than its line.";
     case BandSeen::area:
       return "The blue band is the reference's uncertainty.";
@@ -156,8 +156,8 @@ Drawing largest_error(const Errors& errors, const Abscissa& x) {
                          series(errors, [](const InstantErrors& e) { return 1e3 * e.shape_max_m; })});
   plot.curves.push_back({"between the two surfaces", Look::plain, x.values,
                          series(errors, [](const InstantErrors& e) { return 1e3 * e.hausdorff_m; })});
-  return {"shape-largest-error", "Points may slide along the surface unseen: then the surfaces are nearer than the points.",
-          to_svg(plot)};
+  return {"shape-largest-error",
+          "Points may slide along the surface unseen: then the surfaces are nearer than the points.", to_svg(plot)};
 }
 
 }  // namespace
@@ -169,6 +169,14 @@ std::vector<Drawing> ComparisonDrawings::all() const {
   out.insert(out.end(), shapes.begin(), shapes.end());
   out.push_back({"bodies", "", bodies_in_a_row, true});
   return out;
+}
+
+std::optional<double> force_known_to(const Errors& errors) {
+  for (const InstantErrors& e : errors.instants) {
+    if (e.in_contact && !std::isfinite(e.force_uncertainty_n)) return std::nullopt;
+  }
+  const std::optional<double>& known = errors.reference.force_uncertainty_rel;
+  return known && std::isfinite(*known) ? known : std::nullopt;
 }
 
 std::string why_uncertainty_unknown(const reference::Result& result) {

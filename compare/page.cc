@@ -21,8 +21,9 @@ constexpr const char* style = R"(
 body { font: 16px/1.55 system-ui, "Segoe UI", Roboto, sans-serif; color: var(--ink); background: var(--page);
   max-width: 1240px; margin: 0 auto; padding: 1.6rem 1.5rem 4rem; }
 h1 { font-size: 1.7rem; line-height: 1.25; margin: 0 0 .2rem; }
-h2 { font-size: 1.25rem; margin: 0 0 .6rem; } h3 { font-size: 1.05rem; margin: 1.2rem 0 .4rem; }
-section { margin-top: 2.2rem; padding-top: 1.2rem; border-top: 1px solid var(--line); }
+h2 { font-size: 1.25rem; margin: 0 0 .6rem; }
+body > h2 { margin: 2.2rem 0 .6rem; padding-top: 1.2rem; border-top: 1px solid var(--line); } h3 { font-size: 1.05rem; margin: 1.2rem 0 .4rem; }
+body > section { margin-top: 2.2rem; padding-top: 1.2rem; border-top: 1px solid var(--line); }
 p { max-width: 46rem; margin: .6rem 0; }
 .dim, figcaption { color: var(--dim); }
 nav { display: flex; flex-wrap: wrap; gap: .2rem 1.1rem; margin: .5rem 0 1rem; font-size: .9rem; }
@@ -70,7 +71,7 @@ summary { cursor: pointer; font-weight: 600; } summary h2 { display: inline; } d
   .screen, nav, .tip { display: none; } .first { grid-template-columns: 1fr; } .bodies { grid-template-columns: repeat(3, 1fr); }
   body { max-width: none; padding: 0; font-size: 10.5pt; } figure, tr, .tile, .bodies svg { break-inside: avoid; }
   .plots { grid-template-columns: 1fr 1fr; } .tiles { grid-template-columns: repeat(auto-fit, minmax(120px, 1fr)); }
-  h2, h3 { break-after: avoid; } section { margin-top: 1.2rem; padding-top: .6rem; }
+  h2, h3 { break-after: avoid; } body > section { margin-top: 1.2rem; padding-top: .6rem; }
 }
 )";
 
@@ -168,9 +169,10 @@ std::string in_order(const std::vector<Section>& sections) {
   std::string out;
   for (const Section& one : sections) {
     // The link of a folded part leads to what is folded, so that a browser opens it.
-    out += one.folded ? fmt::format("<section>\n<details>\n<summary>{}</summary>\n<div id=\"{}\">\n{}</div>\n</details>\n",
-                                    tag("h2", one.title), slug(one.title), one.body)
-                      : fmt::format("<section id=\"{}\">\n{}\n{}", slug(one.title), tag("h2", one.title), one.body);
+    out += one.folded
+               ? fmt::format("<section>\n<details>\n<summary>{}</summary>\n<div id=\"{}\">\n{}</div>\n</details>\n",
+                             tag("h2", one.title), slug(one.title), one.body)
+               : fmt::format("<section id=\"{}\">\n{}\n{}", slug(one.title), tag("h2", one.title), one.body);
     out += "</section>\n";
   }
   return out;
@@ -205,7 +207,8 @@ std::string page(const std::string& title, const std::string& body) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
   // The browser holds the page to what it promises.
   out +=
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; script-src "
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
+      "script-src "
       "'unsafe-inline'; img-src 'self' file: data:\"/>\n";
   out += tag("title", title + " | Touchstone") + "\n<style>" + style + "</style>\n</head>\n<body>\n";
   const bool plots = body.find("<figure") != std::string::npos;

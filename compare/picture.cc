@@ -159,8 +159,9 @@ std::string colour_bar(const ColourScale& scale, double left_px, double top_px, 
                        x, top_px + 11, top_px + 15);
     out += label(x, top_px + 27, "middle", number_text(tick));
   }
-  return out + label(left_px + 0.5 * width_px, top_px + 44, "middle",
-                     fmt::format("{} [mm]{}", scale.what, scale.clipped ? "; the last colour also stands for more" : ""));
+  return out +
+         label(left_px + 0.5 * width_px, top_px + 44, "middle",
+               fmt::format("{} [mm]{}", scale.what, scale.clipped ? "; the last colour also stands for more" : ""));
 }
 
 double largest(const Eigen::VectorXd& values) {
@@ -265,10 +266,11 @@ std::vector<std::string> half_cut_svgs(const scene::Scene& scene, const fast::Ru
   const bool clipped = largest(fast_size_m) > 1.001 * full_m;
   const HalfCut cut(scene, run.surface, result.instants[instant].tool);
   constexpr const char* between = "distance between the two sides' points";
-  return {cut.svg("Reference", reference_m, reference_size_m, {ColourMap::displacement, full_m, "displacement"}, row_px),
-          cut.svg("Fast model", fast_m, fast_size_m, {ColourMap::displacement, full_m, "displacement", clipped}, row_px),
-          cut.svg("Error, on the reference's shape", reference_m, error_m, {ColourMap::error, largest(error_m), between},
-                  row_px)};
+  return {
+      cut.svg("Reference", reference_m, reference_size_m, {ColourMap::displacement, full_m, "displacement"}, row_px),
+      cut.svg("Fast model", fast_m, fast_size_m, {ColourMap::displacement, full_m, "displacement", clipped}, row_px),
+      cut.svg("Error, on the reference's shape", reference_m, error_m, {ColourMap::error, largest(error_m), between},
+              row_px)};
 }
 
 std::string half_cuts_in_a_row(const std::vector<std::string>& half_cuts) {

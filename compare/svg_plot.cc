@@ -419,7 +419,7 @@ std::pair<double, double> x_axis_px(const Plot& plot, int width_px, int height_p
 BandSeen band_seen(const Plot& plot, const Band& band, int width_px, int height_px) {
   const std::optional<Frame> frame = frame_of(plot, width_px, height_px);
   if (!frame || !any_point(plot, band.x, band.high)) return BandSeen::nowhere;
-  constexpr double line_px = 2.0;
+  constexpr double line_px = 4.0;  // with its rim, or nobody sees it
   for (std::size_t i = 0; i < band.x.size(); ++i) {
     if (!frame->x.can_show(band.x[i]) || !frame->y.can_show(band.high[i]) || !std::isfinite(band.low[i])) continue;
     const double low = frame->y.log() ? std::max(band.low[i], frame->y.low()) : band.low[i];

@@ -79,7 +79,8 @@ std::string number_text(double value, int digits) {
 
 std::string percent_text(double ratio) {
   if (!std::isfinite(ratio)) return "not finite";
-  if (ratio != 0.0 && std::abs(ratio) < least_ratio) return fmt::format("below {}{}%", 100.0 * least_ratio, no_break);
+  if (ratio != 0.0 && std::abs(ratio) < least_ratio)
+    return fmt::format("below {:.4f}{}%", 100.0 * least_ratio, no_break);
   return fmt::format("{}{}%", number_text(100.0 * ratio), no_break);
 }
 

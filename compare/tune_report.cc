@@ -350,7 +350,10 @@ std::string regime_section(const Tuning& tuning, const TunedModel& model) {
 
 std::string model_section(const Tuning& tuning, const TunedModel& model) {
   std::string out = tag("h2", "The " + model.name() + " model") + "\n";
-  for (const std::string& sentence : model.limits) out += tag("p", sentence) + "\n";
+  // The first model's stand at the top of the page.
+  if (&model != &tuning.models.front()) {
+    for (const std::string& sentence : model.limits) out += tag("p", sentence) + "\n";
+  }
   for (const StageFit& stage : model.stages) out += stage_section(stage);
   out += tag("h3", "Fit and held-out forces") + "\n<div class=\"plots\">\n";
   out += figure(to_svg(residual_plot(tuning, model)), "A pattern here is the law's form, not noise.");
