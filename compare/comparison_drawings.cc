@@ -207,8 +207,9 @@ ComparisonDrawings comparison_drawings(const scene::Scene& scene, const fast::Ru
   out.shapes = {{"section", "Where the cut plane of the rest body has gone; true scale.",
                  section_svg(scene, run, result, errors.deepest, false)},
                 {"section-contact",
-                 "A surface should lie on the tool where they touch, and nowhere inside it; between its points it is "
-                 "drawn straight.",
+                 "A surface should lie on the tool where they touch, and nowhere inside it. The reference is drawn on "
+                 "its own mesh, with dots at its nodes in this plane. The fast model is straight between its own points, "
+                 "the squares.",
                  section_svg(scene, run, result, errors.deepest, true)},
                 largest_error(errors, first)};
   const std::vector<std::string> bodies = half_cut_svgs(scene, run, result, errors.deepest);

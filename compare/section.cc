@@ -84,7 +84,13 @@ std::vector<EdgePoint> triangle_behind_y(const scene::Surface& surface, std::siz
   return polygon;
 }
 
-std::vector<std::vector<EdgePoint>> cut_at_y(const scene::Surface& surface, double y_m) {
+std::vector<std::vector<EdgePoint>> cut_at_y(const scene::Surface& surface, double y_m, double gap_share) {
+  if (surface.triangles.empty()) return {};
+  const double same_place_m =
+      gap_share * (surface.points_m.rowwise().maxCoeff() - surface.points_m.rowwise().minCoeff()).norm();
+  const auto length_m = [&](const Segment& segment) {
+    return (segment.ends[0].of(surface.points_m) - segment.ends[1].of(surface.points_m)).norm();
+  };
   std::vector<Segment> segments;
   for (const auto& corners : surface.triangles) {
     Segment segment;
@@ -95,12 +101,11 @@ std::vector<std::vector<EdgePoint>> cut_at_y(const scene::Surface& surface, doub
         segment.ends[found++] = crossing(surface, from, to, y_m);
       }
     }
-    if (found == 2) segments.push_back(segment);
+    // Where many triangles meet a hair off the plane nothing but the place matters.
+    if (found == 2 && length_m(segment) > 0.01 * same_place_m) segments.push_back(segment);
   }
 
   // Chain by nearest end: patches do not share vertices, so the same place has several indices.
-  const double same_place_m =
-      1e-6 * (surface.points_m.rowwise().maxCoeff() - surface.points_m.rowwise().minCoeff()).norm();
   std::vector<std::vector<EdgePoint>> outlines;
   for (Segment& first : segments) {
     if (first.used) continue;
