@@ -51,6 +51,7 @@ Comparison write_comparison(const std::filesystem::path& folder, const scene::Sc
     comparison.text += wrapped(paragraph) + "\n\n";
   scene::write_csv(folder / "curve.csv", curve_columns(run, result, errors));
   write_surfaces(folder, run, result, errors);
+  write_tool(folder, scene.tool, result.instants);
   scene::write_file(folder / "shape.svg", as_file(half_cut_svg(scene, run, result, errors.deepest)));
   scene::write_summary(folder / "summary.json", comparison.figures);
   scene::write_manifest(folder / "manifest.json", manifest);

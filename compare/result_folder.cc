@@ -131,6 +131,7 @@ ResultFolder read_result_folder(const std::filesystem::path& folder) {
     const Json manifest = read_object(folder / "manifest.json");
     out.command = text_or_nothing(manifest, "command");
     out.scene_hash = text_or_nothing(manifest, "scene_hash");
+    out.title = text_or_nothing(manifest, "title");
     out.resolved_scene = text_or_nothing(manifest, "resolved_scene");
     out.version = text_or_nothing(manifest, "version") + " " + text_or_nothing(manifest, "commit");
     out.date = text_or_nothing(manifest, "date");

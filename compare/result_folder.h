@@ -15,6 +15,7 @@ struct ResultFolder {
   std::filesystem::path folder;
   std::string command;               ///< of the manifest, such as "touchstone compare"
   std::string scene_hash;            ///< "" where the manifest has none
+  std::string title;                 ///< of the scene, or its name; "" where the manifest has none
   std::string resolved_scene;        ///< TOML with every value in force
   std::string version;               ///< of the program, with its commit
   std::string date;                  ///< when it was made

@@ -6,7 +6,6 @@
 #include "compare/svg_plot.h"
 #include "compare/text.h"
 #include "scene/error.h"
-#include "scene/scene_io.h"
 
 #include <fmt/format.h>
 
@@ -73,15 +72,6 @@ std::string short_name(const std::vector<ResultFolder>& results, std::size_t at)
     if (alike == 1) return name;
   }
   return results[at].folder.generic_string();
-}
-
-/// Of the scene, whose own files may have gone since.
-std::string title_of(const ResultFolder& result, const std::string& otherwise) {
-  try {
-    return scene_title(scene::parse_scene(result.resolved_scene, result.folder / "manifest.json"));
-  } catch (const scene::InputError&) {
-    return otherwise;
-  }
 }
 
 std::string headline_cell(const ResultFolder& result, std::string_view key) {
@@ -241,8 +231,8 @@ std::string results_page_html(const std::vector<ResultFolder>& results, const st
   std::vector<Entry> entries;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const std::string name = short_name(results, i);
-    entries.push_back(
-        {results[i], name, title_of(results[i], name), relative_link(results[i].folder / "report.html", place)});
+    entries.push_back({results[i], name, results[i].title.empty() ? name : results[i].title,
+                       relative_link(results[i].folder / "report.html", place)});
   }
   const std::string title = fmt::format("{} result{}", entries.size(), entries.size() == 1 ? "" : "s");
   return page(title,

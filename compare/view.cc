@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <vtkActor.h>
+#include <vtkAlgorithmOutput.h>
 #include <vtkAxis.h>
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
@@ -19,6 +20,7 @@
 #include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkInteractorStyleTrackballCamera.h>
+#include <vtkJPEGWriter.h>
 #include <vtkLookupTable.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNamedColors.h>
@@ -49,9 +51,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 
 namespace touchstone::compare {
 namespace {
@@ -61,6 +65,8 @@ constexpr int width_px = 1280, height_px = 760;
 constexpr double body_share = 0.62;
 constexpr std::array ink = {0.11, 0.12, 0.13};
 constexpr int tool_triangles = 3000;
+/// Of 100: thin lines and letters stay clean.
+constexpr int jpeg_quality = 95;
 
 struct Key {
   std::string_view name, shown, meaning;
@@ -175,6 +181,27 @@ void set_ink(vtkTextProperty* text, int size) {
   text->ItalicOff();
   text->BoldOff();
   text->ShadowOff();
+}
+
+enum class PictureFormat { png, jpeg };
+
+/// By the file's ending, in any case of letters; nothing for any other ending.
+std::optional<PictureFormat> format_of(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending == ".png") return PictureFormat::png;
+  if (ending == ".jpg" || ending == ".jpeg") return PictureFormat::jpeg;
+  return std::nullopt;
+}
+
+/// The image as the bytes of a file.
+template <class Writer>
+std::string encoded(vtkAlgorithmOutput* image, Writer* writer) {
+  writer->SetInputConnection(image);
+  writer->WriteToMemoryOn();
+  writer->Write();
+  vtkUnsignedCharArray* bytes = writer->GetResult();
+  return {reinterpret_cast<const char*>(bytes->GetPointer(0)), static_cast<std::size_t>(bytes->GetNumberOfValues())};
 }
 
 }  // namespace
@@ -480,19 +507,24 @@ std::string ResultView::keys_text() {
   return text + fmt::format("{:<12} {}", "mouse", "turn; wheel: zoom; middle button: move");
 }
 
+bool ResultView::can_write(const std::filesystem::path& file) { return format_of(file).has_value(); }
+
 void ResultView::write_picture(const std::filesystem::path& file) {
+  const std::optional<PictureFormat> format = format_of(file);
+  if (!format) throw scene::InputError({{file.string(), 0, 0, "unknown ending; expected .png, .jpg or .jpeg"}});
   parts_->window->SetOffScreenRendering(1);
   parts_->window->Render();
   vtkNew<vtkWindowToImageFilter> image;
   image->SetInput(parts_->window);
   image->ReadFrontBufferOff();
-  vtkNew<vtkPNGWriter> writer;
-  writer->SetInputConnection(image->GetOutputPort());
-  writer->WriteToMemoryOn();
-  writer->Write();
-  vtkUnsignedCharArray* bytes = writer->GetResult();
-  scene::write_file(file, std::string_view(reinterpret_cast<const char*>(bytes->GetPointer(0)),
-                                           static_cast<std::size_t>(bytes->GetNumberOfValues())));
+  if (*format == PictureFormat::jpeg) {
+    vtkNew<vtkJPEGWriter> writer;
+    writer->SetQuality(jpeg_quality);
+    scene::write_file(file, encoded(image->GetOutputPort(), writer.Get()));
+  } else {
+    vtkNew<vtkPNGWriter> writer;
+    scene::write_file(file, encoded(image->GetOutputPort(), writer.Get()));
+  }
 }
 
 void ResultView::run() {

@@ -29,7 +29,10 @@ class ResultView {
   /// Lines of "key  meaning".
   [[nodiscard]] static std::string keys_text();
 
-  /// The window off the screen as a PNG. @throws std::filesystem::filesystem_error
+  /// Can write_picture() write a file of this ending?
+  [[nodiscard]] static bool can_write(const std::filesystem::path& file);
+  /// The window off the screen, as a PNG or JPEG by the file's ending: .png, .jpg or .jpeg, in any case of letters.
+  /// @throws scene::InputError for another ending, std::filesystem::filesystem_error
   void write_picture(const std::filesystem::path& file);
   /// Opens the window and returns when it is closed.
   void run();

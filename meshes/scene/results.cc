@@ -2,6 +2,7 @@
 
 #include "scene/build_info.h"
 #include "scene/first_contact.h"
+#include "scene/mesh_file.h"
 #include "scene/scene_io.h"
 
 #include <nlohmann/json.hpp>
@@ -144,12 +145,20 @@ StageTime Stopwatch::read(const std::string& stage) const {
           static_cast<double>(std::clock() - cpu_) / CLOCKS_PER_SEC};
 }
 
+std::string kept_tool_name(const Tool& tool) {
+  return content_of_file(tool.mesh) != nullptr ? "tool" + std::filesystem::path(tool.file).extension().string() : "";
+}
+
 Manifest make_manifest(const Scene& scene, const std::string& command) {
   utsname host{};
   uname(&host);
+  Scene kept = scene;
+  const std::string tool_name = kept_tool_name(scene.tool);
+  if (!tool_name.empty()) kept.tool.file = tool_name;
   Manifest manifest{command,
                     scene_hash(scene),
-                    resolved_toml(scene),
+                    scene.title.empty() ? scene.name : scene.title,
+                    resolved_toml(kept),
                     {{"version", build_info.version},
                      {"commit", build_info.commit},
                      {"compiler", build_info.compiler},
@@ -159,16 +168,22 @@ Manifest make_manifest(const Scene& scene, const std::string& command) {
                      {"processor", processor_name()},
                      {"processors", std::to_string(std::thread::hardware_concurrency())},
                      {"date", utc_now()}},
-                    {}};
+                    {},
+                    tool_name,
+                    scene.tool.mesh};
   if (const std::string warning = no_contact_warning(scene); !warning.empty())
     manifest.entries.emplace_back("warning", warning);
   return manifest;
 }
 
 void write_manifest(const std::filesystem::path& path, const Manifest& manifest) {
+  if (const std::string* content = content_of_file(manifest.tool_mesh)) {
+    write_file(path.parent_path() / manifest.tool_name, *content);
+  }
   Json json;
   json["command"] = manifest.command;
   json["scene_hash"] = manifest.scene_hash;
+  if (!manifest.title.empty()) json["title"] = manifest.title;
   for (const auto& [name, value] : manifest.entries) json[name] = value;
   for (const StageTime& time : manifest.times) {
     json["times"][time.stage] = {{"wall_s", number_or_null(time.wall_s)}, {"cpu_s", number_or_null(time.cpu_s)}};

@@ -39,6 +39,7 @@ TEST_F(ResultFolderTest, IsReadBackAsItWasWritten) {
   const ResultFolder read = read_result_folder(folder_.path());
   EXPECT_EQ(read.command, sides_.manifest.command);
   EXPECT_EQ(read.scene_hash, sides_.manifest.scene_hash);
+  EXPECT_EQ(read.title, sides_.manifest.title);
   EXPECT_EQ(read.resolved_scene, sides_.manifest.resolved_scene);
   ASSERT_EQ(read.figures.size(), comparison_.figures.size());
   for (const scene::Figure& written : comparison_.figures) {

@@ -54,6 +54,19 @@ TEST_F(ResultsPage, IsWellFormedAndLinksEveryResultRelatively) {
   EXPECT_FALSE(std::regex_search(html, std::regex("(src|href)=\"(https?:)?/")));
 }
 
+TEST_F(ResultsPage, KeepsTheTitleOfAMeshToolsResultThatWasMoved) {
+  const testing::Sides sides = testing::pressed_by_mallet(folder_.path() / "inputs");
+  std::filesystem::create_directories(folder_.path() / "made");
+  (void)write_comparison(folder_.path() / "made", sides.scene, sides.run, sides.result, sides.manifest);
+  std::filesystem::remove_all(folder_.path() / "inputs");
+  std::filesystem::rename(folder_.path() / "made", folder_.path() / "moved");
+  const ResultFolder result = read_result_folder(folder_.path() / "moved");
+  const scene::Scene scene = scene::parse_scene(result.resolved_scene, result.folder / "manifest.json");
+  EXPECT_EQ(scene::scene_hash(scene), result.scene_hash);
+  EXPECT_THAT(results_page_html({result}, folder_.path()),
+              HasSubstr(">A mallet's head pressed on a rubber cube (paper, Fig. 15)</a>"));
+}
+
 TEST_F(ResultsPage, SaysWhichErrorsCannotBeDistinguished) {
   const std::string apart = results_page_html({make("apart")}, folder_.path());
   EXPECT_EQ(count(apart, "class=\"under\">not distinguishable<"), 0u);

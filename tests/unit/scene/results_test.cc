@@ -1,6 +1,7 @@
 #include "scene/results.h"
 
 #include "scene/error.h"
+#include "scene/scene_io.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -73,6 +74,26 @@ TEST_F(ResultFolder, RecordsBecomeColumnsOfEqualLength) {
   EXPECT_EQ(value("fast_region0_force_z_n"), 3.0);
   EXPECT_EQ(value("fast_region0_torque_x_nm"), 4.0);
   EXPECT_EQ(value("fast_region0_area_m2"), 7e-6);
+}
+
+TEST_F(ResultFolder, CarriesItsMeshToolWhereverItIsMoved) {
+  const std::filesystem::path shipped = TOUCHSTONE_SOURCE_DIR "/meshes";
+  const std::filesystem::path inputs = dir_ / "inputs", made = dir_ / "made", moved = dir_ / "far" / "away";
+  for (const auto& folder : {inputs / "tools", inputs / "scenes", made, moved.parent_path()}) {
+    std::filesystem::create_directories(folder);
+  }
+  std::filesystem::copy(shipped / "tools/mallet.stl", inputs / "tools");
+  std::filesystem::copy(shipped / "scenes/mallet-head-on-cube.toml", inputs / "scenes");
+  const Scene scene = load_scene(inputs / "scenes/mallet-head-on-cube.toml");
+  std::filesystem::remove_all(inputs);  // even before the results are written
+  write_manifest(made / "manifest.json", make_manifest(scene, "touchstone fast"));
+  std::filesystem::rename(made, moved);
+  EXPECT_EQ(read_file(moved / "tool.stl"), read_file(shipped / "tools/mallet.stl"));
+  const auto manifest = nlohmann::json::parse(read_file(moved / "manifest.json").value());
+  EXPECT_EQ(manifest["title"], "A mallet's head pressed on a rubber cube (paper, Fig. 15)");
+  const Scene again = parse_scene(manifest["resolved_scene"], moved / "manifest.json");
+  EXPECT_EQ(scene_hash(again), scene_hash(scene));
+  EXPECT_EQ(manifest["scene_hash"], scene_hash(scene));
 }
 
 TEST(Stopwatch, ReadsShortStages) {
