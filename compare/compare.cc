@@ -50,6 +50,7 @@ Comparison write_comparison(const std::filesystem::path& folder, const scene::Sc
   Comparison comparison{make_figures(errors, run, result), told.text()};
   scene::write_csv(folder / "curve.csv", curve_columns(run, result, errors));
   write_surfaces(folder, run, result, errors);
+  write_tool(folder, scene.tool, result.instants);
   scene::write_file(folder / "shape.svg", as_file(drawings.bodies_in_a_row));
   for (const NextStep& step : told.next) {
     if (!step.file_name.empty()) scene::write_file(folder / step.file_name, step.file_text);

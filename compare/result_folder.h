@@ -15,6 +15,7 @@ struct ResultFolder {
   std::filesystem::path folder;
   std::string command;               ///< of the manifest, such as "touchstone compare"
   std::string scene_hash;            ///< "" where the manifest has none
+  std::string title;                 ///< of the scene, or its name; "" where the manifest has none
   std::string resolved_scene;        ///< TOML with every value in force
   std::string version;               ///< of the program, with its commit
   std::string date;                  ///< when it was made
@@ -32,6 +33,10 @@ struct ResultFolder {
 /// Reads manifest.json, summary.json and curve.csv.
 /// @throws scene::InputError with every file that is missing or damaged, and the line where it is
 [[nodiscard]] ResultFolder read_result_folder(const std::filesystem::path& folder);
+
+/// Reads what scene::write_summary wrote. A number that was not finite is NaN, with the reason as its text.
+/// @throws scene::InputError when the file is missing or damaged, and the line where it is
+[[nodiscard]] scene::Figures read_figures(const std::filesystem::path& file);
 
 /// Reads what scene::write_csv wrote. @param file  for messages
 /// @throws scene::InputError with the line that has another number of values than the head, or no number

@@ -5,6 +5,7 @@
 #include "scene/files.h"
 #include "scene/first_contact.h"
 #include "scene/hash.h"
+#include "scene/mesh_file.h"
 #include "scene/results.h"
 #include "scene/scene_io.h"
 
@@ -86,11 +87,11 @@ exec "$program" study run "$study" --index "$SLURM_ARRAY_TASK_ID" --step {tasks}
 
 /// Copies a mesh tool into the study's folder, which then holds all it needs wherever it is moved.
 /// @returns its path from a scene there
-std::string keep_tool(const std::filesystem::path& from, const std::filesystem::path& folder) {
-  const std::string bytes = scene::read_file(from).value();
-  const std::string name = scene::hash_text(bytes) + from.extension().string();
+std::string keep_tool(const scene::Tool& tool, const std::filesystem::path& folder) {
+  const std::string& content = *scene::content_of_file(tool.mesh);
+  const std::string name = scene::hash_text(content) + "-" + scene::kept_tool_name(tool);
   std::filesystem::create_directories(folder / "tools");
-  if (!std::filesystem::exists(folder / "tools" / name)) scene::write_file(folder / "tools" / name, bytes);
+  if (!std::filesystem::exists(folder / "tools" / name)) scene::write_file(folder / "tools" / name, content);
   return "../tools/" + name;
 }
 
@@ -114,7 +115,7 @@ StudyManifest expand(const scene::Study& study, const std::filesystem::path& fol
     scene::Scene& scene = scenes[k];
     const scene::StudyCase& one = study.cases[k];
     scene.title = (scene.title.empty() ? scene.name : scene.title) + ": " + one.name;
-    if (scene.tool.mesh) scene.tool.file = keep_tool(study.scene_file.parent_path() / scene.tool.file, folder);
+    if (scene.tool.mesh) scene.tool.file = keep_tool(scene.tool, folder);
     const std::string text = scene::resolved_toml(scene);
     ManifestCase entry{static_cast<int>(manifest.cases.size()) + 1,
                        case_id(study.run, scene::parse_scene(text, folder / "scenes" / "case.toml")),
@@ -170,6 +171,21 @@ StudyManifest read_manifest(const std::filesystem::path& folder) {
     refuse(error.what());
   }
   return manifest;
+}
+
+std::optional<StudyPlace> place_in_study(const std::filesystem::path& result_folder) {
+  std::filesystem::path folder = std::filesystem::weakly_canonical(result_folder);
+  if (!folder.has_filename()) folder = folder.parent_path();
+  const std::filesystem::path study = folder.parent_path().parent_path();
+  if (folder.parent_path().filename() != "results" || !std::filesystem::exists(study / "manifest.json")) return {};
+  try {
+    for (const ManifestCase& one : read_manifest(study).cases) {
+      if (folder.filename() == one.id) return StudyPlace{study, one.index, one.name};
+    }
+  } catch (const scene::InputError&) {
+    // Some other manifest: the folder only happens to be called as in a study.
+  }
+  return {};
 }
 
 }  // namespace touchstone::compare

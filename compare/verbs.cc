@@ -44,6 +44,7 @@ int run_fast(const fast::VerbOptions& options, const ReferenceOptions&) {
   const fast::Run run = fast::run_into_folder(scene, folder, manifest, options.quiet);
   manifest.times.push_back(watch.read("fast"));
   write_fast_surfaces(folder, run);
+  write_tool(folder, scene.tool, run.instants);
   write_fast_report(folder, scene, run, manifest);
   std::cout << fast::summary_text(run) << "Report: " << (folder / "report.html").string() << '\n';
   return fast::done;
@@ -62,6 +63,7 @@ int run_reference(const fast::VerbOptions& options, const ReferenceOptions& refe
     manifest.times.push_back(watch.read("reference"));
     write_reference(folder, result, manifest);
     write_reference_surfaces(folder, surface, result);
+    write_tool(folder, scene.tool, result.instants);
     std::cout << reference_text(result) << "Results: " << folder.string() << '\n';
     return fast::done;
   });

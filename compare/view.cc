@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <vtkActor.h>
+#include <vtkAlgorithmOutput.h>
 #include <vtkAxis.h>
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
@@ -19,6 +20,7 @@
 #include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkInteractorStyleTrackballCamera.h>
+#include <vtkJPEGWriter.h>
 #include <vtkLookupTable.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNamedColors.h>
@@ -49,9 +51,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 
 namespace touchstone::compare {
 namespace {
@@ -60,7 +64,11 @@ constexpr int width_px = 1280, height_px = 760;
 /// The body's part of the window; the curve has the rest.
 constexpr double body_share = 0.62;
 constexpr std::array ink = {0.11, 0.12, 0.13};
+/// Of a point whose value is not known.
+constexpr double unknown_grey = 0.75;
 constexpr int tool_triangles = 3000;
+/// Of 100: thin lines and letters stay clean.
+constexpr int jpeg_quality = 95;
 
 struct Key {
   std::string_view name, shown, meaning;
@@ -147,6 +155,7 @@ vtkSmartPointer<vtkLookupTable> lookup_table(ColourMap map) {
   auto table = vtkSmartPointer<vtkLookupTable>::New();
   constexpr int entries = 256;
   table->SetNumberOfTableValues(entries);
+  table->SetNanColor(unknown_grey, unknown_grey, unknown_grey, 1.0);
   for (int i = 0; i < entries; ++i) {
     const double at = static_cast<double>(i) / (entries - 1) * static_cast<double>(steps.size() - 1);
     const std::size_t low = std::min(static_cast<std::size_t>(at), steps.size() - 2);
@@ -175,6 +184,27 @@ void set_ink(vtkTextProperty* text, int size) {
   text->ItalicOff();
   text->BoldOff();
   text->ShadowOff();
+}
+
+enum class PictureFormat { png, jpeg };
+
+/// By the file's ending, in any case of letters; nothing for any other ending.
+std::optional<PictureFormat> format_of(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending == ".png") return PictureFormat::png;
+  if (ending == ".jpg" || ending == ".jpeg") return PictureFormat::jpeg;
+  return std::nullopt;
+}
+
+/// The image as the bytes of a file.
+template <class Writer>
+std::string encoded(vtkAlgorithmOutput* image, Writer* writer) {
+  writer->SetInputConnection(image);
+  writer->WriteToMemoryOn();
+  writer->Write();
+  vtkUnsignedCharArray* bytes = writer->GetResult();
+  return {reinterpret_cast<const char*>(bytes->GetPointer(0)), static_cast<std::size_t>(bytes->GetNumberOfValues())};
 }
 
 }  // namespace
@@ -243,6 +273,14 @@ struct ResultView::Parts {
       }
     }
     return found;
+  }
+
+  /// Has the colouring a value anywhere at this instant?
+  [[nodiscard]] bool any_value() const {
+    for (vtkIdType i = 0; i < surfaces[instant]->GetNumberOfPoints(); ++i) {
+      if (std::isfinite(value_m(instant, i))) return true;
+    }
+    return false;
   }
 
   void make_space(const ResultFolder& result) {
@@ -367,6 +405,8 @@ struct ResultView::Parts {
     body_mapper->UseLookupTableScalarRangeOn();
     bar->SetLookupTable(table);
     bar->SetTitle((colourings[colouring].name + "\n[mm]\n").c_str());
+    const bool known = any_value();
+    bar->SetVisibility(known ? 1 : 0);
 
     const scene::Pose& pose = poses[instant];
     vtkNew<vtkMatrix4x4> matrix;
@@ -382,6 +422,7 @@ struct ResultView::Parts {
     for (const scene::Column& force : forces) {
       text += fmt::format("{} {}   ", force.name, quantity_text(force.values[instant], "N"));
     }
+    if (!known) text += "\nThe " + colourings[colouring].name + " is unknown: the body is grey.\n";
     words->SetInput((text + "  (h: keys)").c_str());
     for (const vtkIdType row : {0, 1}) cursor->SetValue(row, 0, time_s[instant]);
     cursor->Modified();
@@ -436,6 +477,8 @@ std::size_t ResultView::instant() const { return parts_->instant; }
 std::string ResultView::side() const { return parts_->bodies[parts_->body].name; }
 std::string ResultView::colour() const { return parts_->colourings[parts_->colouring].name; }
 
+std::string ResultView::words() const { return parts_->words->GetInput(); }
+
 void ResultView::show_instant(long instant) {
   parts_->instant = static_cast<std::size_t>(std::clamp(instant, 0L, static_cast<long>(instant_count()) - 1));
   parts_->show();
@@ -480,19 +523,24 @@ std::string ResultView::keys_text() {
   return text + fmt::format("{:<12} {}", "mouse", "turn; wheel: zoom; middle button: move");
 }
 
+bool ResultView::can_write(const std::filesystem::path& file) { return format_of(file).has_value(); }
+
 void ResultView::write_picture(const std::filesystem::path& file) {
+  const std::optional<PictureFormat> format = format_of(file);
+  if (!format) throw scene::InputError({{file.string(), 0, 0, "unknown ending; expected .png, .jpg or .jpeg"}});
   parts_->window->SetOffScreenRendering(1);
   parts_->window->Render();
   vtkNew<vtkWindowToImageFilter> image;
   image->SetInput(parts_->window);
   image->ReadFrontBufferOff();
-  vtkNew<vtkPNGWriter> writer;
-  writer->SetInputConnection(image->GetOutputPort());
-  writer->WriteToMemoryOn();
-  writer->Write();
-  vtkUnsignedCharArray* bytes = writer->GetResult();
-  scene::write_file(file, std::string_view(reinterpret_cast<const char*>(bytes->GetPointer(0)),
-                                           static_cast<std::size_t>(bytes->GetNumberOfValues())));
+  if (*format == PictureFormat::jpeg) {
+    vtkNew<vtkJPEGWriter> writer;
+    writer->SetQuality(jpeg_quality);
+    scene::write_file(file, encoded(image->GetOutputPort(), writer.Get()));
+  } else {
+    vtkNew<vtkPNGWriter> writer;
+    scene::write_file(file, encoded(image->GetOutputPort(), writer.Get()));
+  }
 }
 
 void ResultView::run() {

@@ -21,6 +21,7 @@ class ResultView {
   [[nodiscard]] std::size_t instant() const;
   [[nodiscard]] std::string side() const;    ///< shown: "reference", "fast model", or "body" where there is one only
   [[nodiscard]] std::string colour() const;  ///< what colours the body, such as "error"
+  [[nodiscard]] std::string words() const;   ///< over the picture: instant, depth, forces
 
   /// Clamped to the instants there are.
   void show_instant(long instant);
@@ -29,7 +30,10 @@ class ResultView {
   /// Lines of "key  meaning".
   [[nodiscard]] static std::string keys_text();
 
-  /// The window off the screen as a PNG. @throws std::filesystem::filesystem_error
+  /// Can write_picture() write a file of this ending?
+  [[nodiscard]] static bool can_write(const std::filesystem::path& file);
+  /// The window off the screen, as a PNG or JPEG by the file's ending: .png, .jpg or .jpeg, in any case of letters.
+  /// @throws scene::InputError for another ending, std::filesystem::filesystem_error
   void write_picture(const std::filesystem::path& file);
   /// Opens the window and returns when it is closed.
   void run();

@@ -32,6 +32,10 @@ void press_until(ResultView& view, const std::string& key, const std::string& wa
 }  // namespace
 
 int view_result(const ViewOptions& options) {
+  if (!options.screenshot.empty() && !ResultView::can_write(options.screenshot)) {
+    throw scene::InputError("--screenshot " + options.screenshot.string() +
+                            ": unknown ending; expected .png, .jpg or .jpeg");
+  }
   const ResultFolder result = read_result_folder(options.folder);
   std::optional<VirtualDisplay> display;
   if (!has_display()) {
@@ -63,7 +67,8 @@ int view_result(const ViewOptions& options) {
 CLI::App* add_view_verb(CLI::App& app, ViewOptions& options, int& exit_code) {
   CLI::App* verb = app.add_subcommand("view", "a window on a result: body, tool, force curve, one instant at a time");
   verb->add_option("DIR", options.folder, "result folder of fast, reference or compare")->required();
-  verb->add_option("--screenshot", options.screenshot, "write this PNG file and open no window");
+  verb->add_option("--screenshot", options.screenshot,
+                   "write this PNG or JPEG file, by its ending, and open no window");
   verb->add_option("--instant", options.instant, "show this instant, from 1 (default: the deepest)")
       ->check(CLI::PositiveNumber);
   verb->add_option("--side", options.side, "reference or fast model");

@@ -10,6 +10,7 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
 #include <vtkXMLPolyDataWriter.h>
 
 #include <functional>
@@ -17,6 +18,9 @@
 
 namespace touchstone::compare {
 namespace {
+
+/// Of an analytic tool's surface, to look round.
+constexpr int tool_triangles = 3000;
 
 void add_vectors(vtkPolyData* data, const char* name, const Eigen::Matrix3Xd& vectors) {
   vtkNew<vtkDoubleArray> array;
@@ -40,12 +44,7 @@ void add_region(vtkPolyData* data, const char* name, const std::vector<bool>& to
   data->GetPointData()->AddArray(array);
 }
 
-std::string file_name(std::size_t instant) { return fmt::format("surface_{:04}.vtp", instant); }
-
-/// Writes one file per instant and the collection; `add_arrays(instant, data)` puts the point arrays in.
-void write_series(const std::filesystem::path& folder, const scene::Surface& surface,
-                  const std::vector<scene::InstantRecord>& instants,
-                  const std::function<void(std::size_t, vtkPolyData*)>& add_arrays) {
+vtkSmartPointer<vtkPolyData> polydata_of(const scene::Surface& surface) {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   for (const auto& p : surface.points_m.colwise()) points->InsertNextPoint(p.x(), p.y(), p.z());
@@ -54,16 +53,23 @@ void write_series(const std::filesystem::path& folder, const scene::Surface& sur
     const vtkIdType corners[] = {a, b, c};
     cells->InsertNextCell(3, corners);
   }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetPolys(cells);
+  return data;
+}
 
+/// Writes <name>_0000.vtp ..., one file per instant, and the collection <name>.pvd.
+/// @param at  the surface at an instant
+void write_series(const std::filesystem::path& folder, const std::string& name,
+                  const std::vector<scene::InstantRecord>& instants,
+                  const std::function<vtkSmartPointer<vtkPolyData>(std::size_t)>& at) {
+  const auto file_name = [&](std::size_t instant) { return fmt::format("{}_{:04}.vtp", name, instant); };
   std::string collection =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  "
       "<Collection>\n";
   for (std::size_t t = 0; t < instants.size(); ++t) {
-    vtkNew<vtkPolyData> data;
-    data->SetPoints(points);
-    data->SetPolys(cells);
-    add_arrays(t, data);
-
+    const vtkSmartPointer<vtkPolyData> data = at(t);
     vtkNew<vtkXMLPolyDataWriter> writer;
     writer->SetInputData(data);
     writer->SetDataModeToBinary();
@@ -74,16 +80,29 @@ void write_series(const std::filesystem::path& folder, const scene::Surface& sur
     collection +=
         fmt::format("    <DataSet timestep=\"{:.17g}\" part=\"0\" file=\"{}\"/>\n", instants[t].time_s, file_name(t));
   }
-  scene::write_file(folder / "surface.pvd", collection + "  </Collection>\n</VTKFile>\n");
+  scene::write_file(folder / (name + ".pvd"), collection + "  </Collection>\n</VTKFile>\n");
   for (std::size_t t = instants.size(); std::filesystem::remove(folder / file_name(t)); ++t) {
   }
+}
+
+/// The body's rest surface with `add_arrays(instant, data)` for its point arrays.
+void write_body(const std::filesystem::path& folder, const scene::Surface& surface,
+                const std::vector<scene::InstantRecord>& instants,
+                const std::function<void(std::size_t, vtkPolyData*)>& add_arrays) {
+  const vtkSmartPointer<vtkPolyData> rest = polydata_of(surface);
+  write_series(folder, "surface", instants, [&](std::size_t t) {
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->ShallowCopy(rest);
+    add_arrays(t, data);
+    return data;
+  });
 }
 
 }  // namespace
 
 void write_surfaces(const std::filesystem::path& folder, const fast::Run& run, const reference::Result& result,
                     const Errors& errors) {
-  write_series(folder, run.surface, run.instants, [&](std::size_t t, vtkPolyData* data) {
+  write_body(folder, run.surface, run.instants, [&](std::size_t t, vtkPolyData* data) {
     const Eigen::Matrix3Xd& fast_m = run.instants[t].displacement_m;
     const Eigen::Matrix3Xd& reference_m = result.instants[t].displacement_m;
     const Eigen::Matrix3Xd error_m = fast_m - reference_m;
@@ -98,8 +117,19 @@ void write_surfaces(const std::filesystem::path& folder, const fast::Run& run, c
   });
 }
 
+void write_tool(const std::filesystem::path& folder, const scene::Tool& tool,
+                const std::vector<scene::InstantRecord>& instants) {
+  const scene::Surface own = scene::tool_surface(tool, tool_triangles);
+  write_series(folder, "tool", instants, [&](std::size_t t) {
+    const scene::Pose& pose = instants[t].tool;
+    scene::Surface placed = own;
+    placed.points_m = (pose.orientation.toRotationMatrix() * own.points_m).colwise() + pose.position_m;
+    return polydata_of(placed);
+  });
+}
+
 void write_fast_surfaces(const std::filesystem::path& folder, const fast::Run& run) {
-  write_series(folder, run.surface, run.instants, [&](std::size_t t, vtkPolyData* data) {
+  write_body(folder, run.surface, run.instants, [&](std::size_t t, vtkPolyData* data) {
     add_vectors(data, "displacement_m", run.instants[t].displacement_m);
     add_vectors(data, "normal", run.normals[t]);
   });
@@ -107,7 +137,7 @@ void write_fast_surfaces(const std::filesystem::path& folder, const fast::Run& r
 
 void write_reference_surfaces(const std::filesystem::path& folder, const scene::Surface& surface,
                               const reference::Result& result) {
-  write_series(folder, surface, result.instants, [&](std::size_t t, vtkPolyData* data) {
+  write_body(folder, surface, result.instants, [&](std::size_t t, vtkPolyData* data) {
     add_vectors(data, "displacement_m", result.instants[t].displacement_m);
     add_numbers(data, "displacement_uncertainty_m", result.displacement_uncertainty_m[t]);
   });

@@ -1,6 +1,7 @@
 #include "scene/mesh_formats.h"
 
 #include "scene/error.h"
+#include "scene/files.h"
 #include "scene/triangle_mesh.h"
 
 #include <algorithm>
@@ -174,11 +175,14 @@ RawMesh read_obj(const std::string& bytes, const std::string& name) {
   return mesh;
 }
 
-RawMesh read_mesh_file(const std::filesystem::path& file) {
+std::string read_mesh_bytes(const std::filesystem::path& file) {
+  std::optional<std::string> bytes = read_file(file);
+  if (!bytes) fail(file.string(), "cannot be read");
+  return *std::move(bytes);
+}
+
+RawMesh read_mesh(const std::string& bytes, const std::filesystem::path& file) {
   const std::string name = file.string();
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file)) fail(name, "cannot be read");
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (ending == ".stl") return read_stl(bytes, name);

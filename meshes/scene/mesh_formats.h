@@ -19,9 +19,12 @@ struct RawMesh {
   std::vector<std::array<std::int32_t, 3>> triangles;
 };
 
+/// @throws InputError when the file cannot be read
+[[nodiscard]] std::string read_mesh_bytes(const std::filesystem::path& file);
+
 /// By the file's ending: .stl, .obj or .ply, in any case of letters.
 /// @throws InputError with the line, or with the byte of a binary file
-[[nodiscard]] RawMesh read_mesh_file(const std::filesystem::path& file);
+[[nodiscard]] RawMesh read_mesh(const std::string& bytes, const std::filesystem::path& file);
 
 /// One format each, from the file's bytes. @param name of the file, for faults
 [[nodiscard]] RawMesh read_stl(const std::string& bytes, const std::string& name);

@@ -2,6 +2,7 @@
 
 #include "scene/build_info.h"
 #include "scene/first_contact.h"
+#include "scene/mesh_file.h"
 #include "scene/scene_io.h"
 
 #include <nlohmann/json.hpp>
@@ -121,7 +122,13 @@ void write_csv(const std::filesystem::path& path, const std::vector<Column>& col
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
       if (i > 0) text += ',';
-      text.append(number, std::to_chars(number, number + sizeof number, columns[i].values.at(row)).ptr);
+      const double value = columns[i].values.at(row);
+      // Without the sign that a NaN may have, which not every reader takes.
+      if (std::isnan(value)) {
+        text += "nan";
+      } else {
+        text.append(number, std::to_chars(number, number + sizeof number, value).ptr);
+      }
     }
     text += '\n';
   }
@@ -130,12 +137,15 @@ void write_csv(const std::filesystem::path& path, const std::vector<Column>& col
 
 void write_summary(const std::filesystem::path& path, const Figures& figures) {
   Json json;
-  Json units;
+  Json units, reasons;
   for (const Figure& figure : figures) {
-    json[figure.key] = figure.text.empty() ? number_or_null(figure.number) : Json(figure.text);
+    const bool is_text = !figure.text.empty() && std::isfinite(figure.number);
+    json[figure.key] = is_text ? Json(figure.text) : number_or_null(figure.number);
     units[figure.key] = figure.unit;
+    if (!is_text && !figure.text.empty()) reasons[figure.key] = figure.text;
   }
   json["units"] = units;
+  if (!reasons.is_null()) json["reasons"] = reasons;
   write_file(path, json.dump(2) + "\n");
 }
 
@@ -144,12 +154,20 @@ StageTime Stopwatch::read(const std::string& stage) const {
           static_cast<double>(std::clock() - cpu_) / CLOCKS_PER_SEC};
 }
 
+std::string kept_tool_name(const Tool& tool) {
+  return content_of_file(tool.mesh) != nullptr ? "tool" + std::filesystem::path(tool.file).extension().string() : "";
+}
+
 Manifest make_manifest(const Scene& scene, const std::string& command) {
   utsname host{};
   uname(&host);
+  Scene kept = scene;
+  const std::string tool_name = kept_tool_name(scene.tool);
+  if (!tool_name.empty()) kept.tool.file = tool_name;
   Manifest manifest{command,
                     scene_hash(scene),
-                    resolved_toml(scene),
+                    scene.title.empty() ? scene.name : scene.title,
+                    resolved_toml(kept),
                     {{"version", build_info.version},
                      {"commit", build_info.commit},
                      {"compiler", build_info.compiler},
@@ -159,16 +177,22 @@ Manifest make_manifest(const Scene& scene, const std::string& command) {
                      {"processor", processor_name()},
                      {"processors", std::to_string(std::thread::hardware_concurrency())},
                      {"date", utc_now()}},
-                    {}};
+                    {},
+                    tool_name,
+                    scene.tool.mesh};
   if (const std::string warning = no_contact_warning(scene); !warning.empty())
     manifest.entries.emplace_back("warning", warning);
   return manifest;
 }
 
 void write_manifest(const std::filesystem::path& path, const Manifest& manifest) {
+  if (const std::string* content = content_of_file(manifest.tool_mesh)) {
+    write_file(path.parent_path() / manifest.tool_name, *content);
+  }
   Json json;
   json["command"] = manifest.command;
   json["scene_hash"] = manifest.scene_hash;
+  if (!manifest.title.empty()) json["title"] = manifest.title;
   for (const auto& [name, value] : manifest.entries) json[name] = value;
   for (const StageTime& time : manifest.times) {
     json["times"][time.stage] = {{"wall_s", number_or_null(time.wall_s)}, {"cpu_s", number_or_null(time.cpu_s)}};

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <ctime>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,11 +28,11 @@ struct Column {
 /// time_s and the tool's pose, which both sides share.
 [[nodiscard]] std::vector<Column> track_columns(const std::vector<InstantRecord>& records);
 
-/// Comma-separated, one header line, numbers as short as they read back exactly.
+/// Comma-separated, one header line, numbers as short as they read back exactly; unknown is nan.
 void write_csv(const std::filesystem::path& path, const std::vector<Column>& columns);
 
-/// One flat JSON object, dotted key to number or text, plus "units" with the same keys.
-/// A number that is not finite is written as null.
+/// One flat JSON object, dotted key to number or text, plus "units" with the same keys. A number that is not finite is
+/// null, and its text, which then says why, stands in "reasons" under the same key.
 void write_summary(const std::filesystem::path& path, const Figures& figures);
 
 /// Wall and CPU time of a named stage [s].
@@ -50,18 +51,27 @@ class Stopwatch {
   std::clock_t cpu_ = std::clock();
 };
 
+/// A mesh tool's file as a copy of it is kept: "tool" with the file's ending. Empty for any other tool.
+[[nodiscard]] std::string kept_tool_name(const Tool& tool);
+
 /// Manifest as lines of name and value: scene hash, version, compiler, host, date, times.
 struct Manifest {
   std::string command;
   std::string scene_hash;
+  std::string title;                                         ///< of the scene, or its name
   std::string resolved_scene;                                ///< TOML with every value in force
   std::vector<std::pair<std::string, std::string>> entries;  ///< version, compiler, host, date, and what a verb adds
   std::vector<StageTime> times;
+  std::string tool_name = {};                          ///< of the mesh tool's copy beside the manifest; "" without one
+  std::shared_ptr<const TriangleMesh> tool_mesh = {};  ///< whose file is copied
 };
 
 /// Entries known everywhere: version, commit, compiler, build, host, processors, date, a warning of a missed contact.
+/// The resolved scene names the copy of a mesh tool, so that a result folder can be moved; the hash is of the scene.
 [[nodiscard]] Manifest make_manifest(const Scene& scene, const std::string& command);
 
+/// Writes it as JSON, and the mesh tool's copy beside it.
+/// @throws std::filesystem::filesystem_error
 void write_manifest(const std::filesystem::path& path, const Manifest& manifest);
 
 /// Makes the folder and clears it of what killed runs left half-written, or says in one InputError why it cannot be

@@ -4,6 +4,7 @@
 #include "scene/files.h"
 #include "scene/first_contact.h"
 #include "scene/hash.h"
+#include "scene/mesh_file.h"
 #include "scene/nearest_name.h"
 #include "scene/rules.h"
 #include "scene/track_csv.h"
@@ -221,9 +222,8 @@ class Reader {
     if (scene.tool.shape != ToolShape::mesh || scene.tool.file.empty()) return;
     if (failed_.contains("tool.file") || failed_.contains("tool.unit")) return;
     constexpr double units_m[] = {1.0, 1e-2, 1e-3, 0.0254};
-    auto mesh = read_triangle_mesh(file_.parent_path() / scene.tool.file,
-                                   units_m[static_cast<std::size_t>(scene.tool.unit)], faults_);
-    if (mesh) scene.tool.mesh = std::make_shared<const TriangleMesh>(std::move(*mesh));
+    scene.tool.mesh = read_mesh_of_file(file_.parent_path() / scene.tool.file,
+                                        units_m[static_cast<std::size_t>(scene.tool.unit)], faults_);
   }
 
   template <class T>

@@ -1,6 +1,7 @@
 #include "scene/triangle_mesh.h"
 
 #include "scene/mesh_checks.h"
+#include "scene/mesh_file.h"
 
 namespace touchstone::scene {
 
@@ -40,19 +41,21 @@ Vec3 TriangleMesh::centroid_m() const {
 
 Bounds TriangleMesh::bounds() const { return {points_m.rowwise().minCoeff(), points_m.rowwise().maxCoeff()}; }
 
-std::optional<TriangleMesh> read_triangle_mesh(const std::filesystem::path& file, double unit_m,
-                                               std::vector<Fault>& faults) {
+namespace {
+
+/// Deletes the mesh of a file, and keeps the file's content till then: whoever holds the mesh can ask for it.
+struct MeshOfFile {
+  std::string content;
+  void operator()(const TriangleMesh* mesh) const { delete mesh; }
+};
+
+std::optional<TriangleMesh> checked_mesh(const std::string& content, const std::filesystem::path& file, double unit_m,
+                                         std::vector<Fault>& faults) {
   const auto refuse = [&](const std::string& message) {
     faults.push_back({file.string(), 0, 0, message});
     return std::nullopt;
   };
-  RawMesh raw;
-  try {
-    raw = welded(read_mesh_file(file));
-  } catch (const InputError& error) {
-    faults.insert(faults.end(), error.faults().begin(), error.faults().end());
-    return std::nullopt;
-  }
+  RawMesh raw = welded(read_mesh(content, file));
   // Places in faults are in the file's own unit, as its author sees them.
   std::vector<MeshPiece> pieces;
   if (const auto fault = orient_outwards(raw, pieces)) return refuse(*fault);
@@ -70,6 +73,32 @@ std::optional<TriangleMesh> read_triangle_mesh(const std::filesystem::path& file
   }
   mesh.triangles = std::move(raw.triangles);
   return mesh;
+}
+
+}  // namespace
+
+std::shared_ptr<const TriangleMesh> read_mesh_of_file(const std::filesystem::path& file, double unit_m,
+                                                      std::vector<Fault>& faults) {
+  try {
+    std::string content = read_mesh_bytes(file);
+    std::optional<TriangleMesh> mesh = checked_mesh(content, file, unit_m, faults);
+    if (!mesh) return nullptr;
+    return {new TriangleMesh(*std::move(mesh)), MeshOfFile{std::move(content)}};
+  } catch (const InputError& error) {
+    faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+    return nullptr;
+  }
+}
+
+std::optional<TriangleMesh> read_triangle_mesh(const std::filesystem::path& file, double unit_m,
+                                               std::vector<Fault>& faults) {
+  const std::shared_ptr<const TriangleMesh> mesh = read_mesh_of_file(file, unit_m, faults);
+  return mesh ? std::optional(*mesh) : std::nullopt;
+}
+
+const std::string* content_of_file(const std::shared_ptr<const TriangleMesh>& mesh) {
+  const auto* kept = mesh ? std::get_deleter<MeshOfFile>(mesh) : nullptr;
+  return kept != nullptr ? &kept->content : nullptr;
 }
 
 }  // namespace touchstone::scene

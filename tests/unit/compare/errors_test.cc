@@ -211,7 +211,7 @@ TEST(Errors, KeepANumberThatIsNotFiniteVisible) {
 
 TEST(Errors, AnUnknownBandIsNotAZeroBand) {
   Sides sides = with_forces();
-  sides.result.force_uncertainty_n = {0.1, std::numeric_limits<double>::infinity()};
+  sides.result.force_uncertainty_n = {0.1, std::numeric_limits<double>::quiet_NaN()};
   const Errors e = errors_of(sides);
   EXPECT_FALSE(e.force_nrmse.uncertainty || e.force_peak_rel.uncertainty || e.force_rel_deep.uncertainty);
   EXPECT_TRUE(e.force_nrmse.distinguishable());

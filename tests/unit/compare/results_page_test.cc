@@ -54,6 +54,42 @@ TEST_F(ResultsPage, IsWellFormedAndLinksEveryResultRelatively) {
   EXPECT_FALSE(std::regex_search(html, std::regex("(src|href)=\"(https?:)?/")));
 }
 
+TEST_F(ResultsPage, KeepsTheTitleOfAMeshToolsResultThatWasMoved) {
+  const testing::Sides sides = testing::pressed_by_mallet(folder_.path() / "inputs");
+  std::filesystem::create_directories(folder_.path() / "made");
+  (void)write_comparison(folder_.path() / "made", sides.scene, sides.run, sides.result, sides.manifest);
+  std::filesystem::remove_all(folder_.path() / "inputs");
+  std::filesystem::rename(folder_.path() / "made", folder_.path() / "moved");
+  const ResultFolder result = read_result_folder(folder_.path() / "moved");
+  const scene::Scene scene = scene::parse_scene(result.resolved_scene, result.folder / "manifest.json");
+  EXPECT_EQ(scene::scene_hash(scene), result.scene_hash);
+  EXPECT_THAT(results_page_html({result}, folder_.path()),
+              HasSubstr(">A mallet's head pressed on a rubber cube (paper, Fig. 15)</a>"));
+}
+
+TEST_F(ResultsPage, CallsTheCasesOfAStudyByTheirNamesInItsOrder) {
+  const std::filesystem::path study = folder_.path() / "study";
+  std::filesystem::create_directories(study);
+  scene::write_file(study / "manifest.json",
+                    R"({"format": 1, "kind": "sweep", "name": "s", "title": "", "run": "compare",
+    "axes": [], "cases": [{"index": 1, "id": "fff", "name": "soft", "along": {}, "set": {}},
+                          {"index": 2, "id": "aaa", "name": "stiff", "along": {}, "set": {}}]})");
+  const ResultFolder stiff = make("study/results/aaa"), soft = make("study/results/fff"), other = make("other");
+  const std::string html = results_page_html({other, stiff, soft}, folder_.path());
+  const auto place = [&](const std::string& name) { return html.find("class=\"under\">" + name + "<"); };
+  EXPECT_LT(place("other"), place("soft"));
+  EXPECT_LT(place("soft"), place("stiff"));
+  EXPECT_NE(place("stiff"), std::string::npos);
+  EXPECT_EQ(place("aaa"), std::string::npos);
+  EXPECT_THAT(html, HasSubstr(">stiff</text>")) << "the legend";
+  // Of two studies alike, which one.
+  std::filesystem::copy(study, folder_.path() / "again", std::filesystem::copy_options::recursive);
+  const std::string both =
+      results_page_html({soft, read_result_folder(folder_.path() / "again/results/fff")}, folder_.path());
+  EXPECT_THAT(both, HasSubstr(">study: soft<"));
+  EXPECT_THAT(both, HasSubstr(">again: soft<"));
+}
+
 TEST_F(ResultsPage, SaysWhichErrorsCannotBeDistinguished) {
   const std::string apart = results_page_html({make("apart")}, folder_.path());
   EXPECT_EQ(count(apart, "class=\"under\">not distinguishable<"), 0u);
@@ -66,7 +102,7 @@ TEST_F(ResultsPage, SaysWhichErrorsCannotBeDistinguished) {
 
 TEST_F(ResultsPage, SaysWhereTheUncertaintyIsUnknown) {
   const ResultFolder result = make("unknown", [](testing::Sides& sides) {
-    sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::infinity());
+    sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
   });
   const std::string html = results_page_html({result}, folder_.path());
   EXPECT_THAT(html, HasSubstr("± unknown"));

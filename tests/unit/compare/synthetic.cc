@@ -2,6 +2,7 @@
 
 #include "compare/figures.h"
 #include "compare/report.h"
+#include "scene/scene_io.h"
 
 #include <algorithm>
 #include <cmath>
@@ -145,6 +146,7 @@ Sides pressed(int instants, int triangles) {
                            {"friction", false, "the scene has none", ""}};
   sides.manifest = {"touchstone compare ball-on-cube-press.toml",
                     "4f1c09a7d2be55aa4f1c09a7d2be55aa",
+                    sides.scene.title,
                     "title = \"A ball pressed on a rubber cube (paper, Fig. 13)\"\n\n[body]\nshape = \"box\"\n",
                     {{"version", "0.1.0"}, {"compiler", "GNU 12.2.0"}, {"date", "2026-01-01T00:00:00Z"}},
                     {{"fast", 1.2, 1.1}, {"reference", 317.0, 560.0}}};
@@ -159,6 +161,24 @@ std::string report_of(const Sides& sides) {
   const ComparisonDrawings drawings = comparison_drawings(sides.scene, sides.run, sides.result, errors);
   return report_html(
       {sides.scene, sides.run, sides.result, errors, figures, told, drawings, sides.plans, sides.manifest});
+}
+
+Sides pressed_by_mallet(const std::filesystem::path& folder, int instants) {
+  const std::filesystem::path source = TOUCHSTONE_SOURCE_DIR "/meshes";
+  std::filesystem::create_directories(folder / "scenes");
+  std::filesystem::create_directories(folder / "tools");
+  std::filesystem::copy(source / "tools/mallet.stl", folder / "tools");
+  std::filesystem::copy(source / "scenes/mallet-head-on-cube.toml", folder / "scenes");
+  Sides sides = pressed(instants, 200);
+  sides.scene = scene::load_scene(folder / "scenes/mallet-head-on-cube.toml");
+  sides.manifest = scene::make_manifest(sides.scene, "touchstone compare");
+  // The ball's centre is 10 mm above its lowest point, the mallet's 23.566 mm.
+  for (std::size_t t = 0; t < sides.run.instants.size(); ++t) {
+    for (scene::InstantRecord* record : {&sides.run.instants[t], &sides.result.instants[t]}) {
+      record->tool.position_m.z() += 0.013566;
+    }
+  }
+  return sides;
 }
 
 Sides small() {

@@ -20,6 +20,9 @@ struct Sides {
 };
 [[nodiscard]] Sides pressed(int instants = 23, int triangles = 3952);
 
+/// The same answers of a scene whose tool is the shipped mallet, loaded from copies made in this folder.
+[[nodiscard]] Sides pressed_by_mallet(const std::filesystem::path& folder, int instants = 3);
+
 /// Two instants at depths 1 and 10 mm, four rest points of a tetrahedron with vertex areas 1, 2, 3, 4 m^2, no
 /// displacement, no force, no uncertainty: a case to be filled by hand.
 [[nodiscard]] Sides small();

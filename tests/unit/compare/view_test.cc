@@ -15,12 +15,16 @@
 #include <unistd.h>
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
+#include <vtkJPEGReader.h>
 #include <vtkNew.h>
 #include <vtkPNGReader.h>
 #include <vtkPointData.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <set>
 
 // After all others: its macros take common words.
@@ -138,6 +142,84 @@ TEST_F(ViewTest, NamesASurfaceThatIsMissingOrDamaged) {
   EXPECT_THAT(fault(), HasSubstr(file.string() + ": is no VTK surface"));
   std::filesystem::remove(file);
   EXPECT_THAT(fault(), HasSubstr(file.string() + ": is missing"));
+}
+
+TEST_F(ViewTest, ShowsAMeshToolFromAFolderThatWasMoved) {
+  const testing::TemporaryFolder elsewhere;
+  const testing::Sides sides = testing::pressed_by_mallet(elsewhere.path() / "inputs");
+  const std::filesystem::path made = elsewhere.path() / "made", moved = folder_.path() / "moved";
+  std::filesystem::create_directories(made);
+  (void)write_comparison(made, sides.scene, sides.run, sides.result, sides.manifest);
+  std::filesystem::remove_all(elsewhere.path() / "inputs");
+  std::filesystem::rename(made, moved);
+  const VirtualDisplay display;
+  ResultView view(read_result_folder(moved));
+  const std::vector<Rgb> with_tool = picture(view);
+  view.press("t");
+  EXPECT_GT(difference(with_tool, picture(view)), 0.01) << "the tool is not in the picture";
+}
+
+TEST_F(ViewTest, SaysThatAnUncertaintyIsUnknownAndLeavesTheBodyGrey) {
+  testing::Sides sides = testing::pressed(4, 600);
+  for (Eigen::VectorXd& u_m : sides.result.displacement_uncertainty_m) {
+    u_m.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  sides.manifest.resolved_scene = read_result_folder(folder_.path()).resolved_scene;
+  (void)write_comparison(folder_.path(), sides.scene, sides.run, sides.result, sides.manifest);
+  const VirtualDisplay display;
+  ResultView view(read_result_folder(folder_.path()));
+  view.press("c");
+  view.press("t");  // the tool is grey, too
+  const auto coloured = [](const std::vector<Rgb>& pixels) {
+    // Left of the curve; a coloured pixel's channels differ, as no grey one's do.
+    return std::count_if(pixels.begin(), pixels.end(), [](const Rgb& p) {
+      return *std::max_element(p.begin(), p.end()) - *std::min_element(p.begin(), p.end()) > 60;
+    });
+  };
+  ASSERT_EQ(view.colour(), "error");
+  EXPECT_EQ(view.words().find("unknown"), std::string::npos);
+  const auto with_error = coloured(picture(view));
+  view.press("c");
+  ASSERT_EQ(view.colour(), "uncertainty");
+  EXPECT_NE(view.words().find("The uncertainty is unknown"), std::string::npos);
+  EXPECT_LT(coloured(picture(view)), with_error / 2);
+}
+
+TEST_F(ViewTest, WritesTheFormatThatTheEndingNames) {
+  const VirtualDisplay display;
+  ResultView view(read_result_folder(folder_.path()));
+  const auto first_bytes = [&](const char* name) {
+    view.write_picture(folder_.path() / name);
+    return scene::read_file(folder_.path() / name).value().substr(0, 4);
+  };
+  EXPECT_EQ(first_bytes("a.png"), "\x89PNG");
+  EXPECT_EQ(first_bytes("a.PNG"), "\x89PNG");
+  EXPECT_EQ(first_bytes("a.jpg").substr(0, 3), "\xFF\xD8\xFF");
+  EXPECT_EQ(first_bytes("a.JPEG").substr(0, 3), "\xFF\xD8\xFF");
+  vtkNew<vtkJPEGReader> reader;
+  reader->SetFileName((folder_.path() / "a.jpg").c_str());
+  reader->Update();
+  vtkDataArray* colours = reader->GetOutput()->GetPointData()->GetScalars();
+  ASSERT_NE(colours, nullptr);
+  const std::vector<Rgb> exact = pixels_of(folder_.path() / "a.png");
+  ASSERT_EQ(colours->GetNumberOfTuples(), static_cast<vtkIdType>(exact.size()));
+  double apart = 0.0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      apart += std::abs(colours->GetComponent(static_cast<vtkIdType>(i), k) - exact[i][static_cast<std::size_t>(k)]);
+    }
+  }
+  EXPECT_LT(apart / (3.0 * static_cast<double>(exact.size())), 2.0) << "mean difference of a colour, of 255";
+  EXPECT_THROW(view.write_picture(folder_.path() / "a.gif"), scene::InputError);
+}
+
+TEST_F(ViewTest, RefusesAPictureOfAnotherEndingBeforeAnyWork) {
+  for (const char* name : {"a.bmp", "a", "jpg"}) {
+    const Ended refused =
+        run(std::string(TOUCHSTONE_BINARY) + " view /no/such/result --screenshot " + (folder_.path() / name).string());
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_THAT(refused.text, HasSubstr(std::string(name) + ": unknown ending; expected .png, .jpg or .jpeg"));
+  }
 }
 
 TEST_F(ViewTest, WithoutADisplaySaysSoInOneLineAndWritesThePictureIfAsked) {

@@ -104,6 +104,33 @@ TEST_F(VtkOut, LeavesNoSurfaceOfAnEarlierLongerRun) {
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "surface_0002.vtp"));
 }
 
+TEST_F(VtkOut, ToolStandsWhereThePoseSays) {
+  const scene::Pose turned{scene::Vec3(0.01, -0.02, 0.08),
+                           Eigen::Quaterniond(Eigen::AngleAxisd(0.4, scene::Vec3(1, 2, 3).normalized()))};
+  sides_.run.instants[1].tool = turned;
+  write_tool(folder_.path(), sides_.scene.tool, sides_.run.instants);
+  vtkPolyData* ball = load("tool_0001.vtp");
+  ASSERT_GT(ball->GetNumberOfCells(), 1000);
+  for (vtkIdType i = 0; i < ball->GetNumberOfPoints(); ++i) {
+    ASSERT_NEAR((scene::Vec3(ball->GetPoint(i)) - turned.position_m).norm(), sides_.scene.tool.radius_m, 1e-12);
+  }
+  const testing::Sides mallet = testing::pressed_by_mallet(folder_.path() / "inputs");
+  sides_.run.instants.pop_back();
+  write_tool(folder_.path(), mallet.scene.tool, sides_.run.instants);
+  vtkPolyData* placed = load("tool_0001.vtp");
+  const scene::TriangleMesh own = scene::tool_mesh(mallet.scene.tool);
+  ASSERT_EQ(placed->GetNumberOfPoints(), own.points_m.cols());
+  ASSERT_EQ(placed->GetNumberOfCells(), static_cast<vtkIdType>(own.triangles.size()));
+  for (vtkIdType i = 0; i < placed->GetNumberOfPoints(); ++i) {
+    const scene::Vec3 expected = turned.orientation * own.points_m.col(i) + turned.position_m;
+    ASSERT_LT((scene::Vec3(placed->GetPoint(i)) - expected).norm(), 1e-12);
+  }
+  const std::string collection = read(folder_.path() / "tool.pvd");
+  EXPECT_TRUE(testing::is_well_formed(collection));
+  EXPECT_NE(collection.find("timestep=\"0.55000000000000004\" part=\"0\" file=\"tool_0001.vtp\""), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "tool_0002.vtp")) << "of the longer run before";
+}
+
 TEST_F(VtkOut, OneSideAloneHasItsOwnArrays) {
   const testing::TemporaryFolder fast, reference;
   write_fast_surfaces(fast.path(), sides_.run);

@@ -1,6 +1,7 @@
 #include "scene/results.h"
 
 #include "scene/error.h"
+#include "scene/scene_io.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -57,6 +58,23 @@ TEST_F(ResultFolder, SummaryIsFlatWithUnitsForEveryKey) {
   EXPECT_EQ(json["units"].size() + 1, json.size());
 }
 
+TEST_F(ResultFolder, ANumberThatIsNotKnownIsNullWithTheReasonBesideIt) {
+  write_summary(dir_ / "s.json", {{"force.nrmse_uncertainty", NAN, "unknown", ""},
+                                  {"fit.condition", INFINITY, "infinite", ""},
+                                  {"fast.status", 0, "ok", ""}});
+  const auto json = nlohmann::json::parse(read("s.json"));
+  EXPECT_TRUE(json["force.nrmse_uncertainty"].is_null());
+  EXPECT_TRUE(json["fit.condition"].is_null());
+  EXPECT_EQ(json["reasons"], nlohmann::json({{"force.nrmse_uncertainty", "unknown"}, {"fit.condition", "infinite"}}));
+  EXPECT_EQ(json["fast.status"], "ok");
+  EXPECT_EQ(json["units"].size(), 3u);
+}
+
+TEST_F(ResultFolder, CsvSaysNanWithoutASign) {
+  write_csv(dir_ / "c.csv", {{"a_n", {NAN, std::copysign(NAN, -1.0), 1.0}}});
+  EXPECT_EQ(read("c.csv"), "a_n\nnan\nnan\n1\n");
+}
+
 TEST_F(ResultFolder, RecordsBecomeColumnsOfEqualLength) {
   std::vector<InstantRecord> records(3);
   records[1].regions.push_back({0.002, Vec3(1, 2, 3), Vec3(4, 5, 6), 7e-6});
@@ -73,6 +91,26 @@ TEST_F(ResultFolder, RecordsBecomeColumnsOfEqualLength) {
   EXPECT_EQ(value("fast_region0_force_z_n"), 3.0);
   EXPECT_EQ(value("fast_region0_torque_x_nm"), 4.0);
   EXPECT_EQ(value("fast_region0_area_m2"), 7e-6);
+}
+
+TEST_F(ResultFolder, CarriesItsMeshToolWhereverItIsMoved) {
+  const std::filesystem::path shipped = TOUCHSTONE_SOURCE_DIR "/meshes";
+  const std::filesystem::path inputs = dir_ / "inputs", made = dir_ / "made", moved = dir_ / "far" / "away";
+  for (const auto& folder : {inputs / "tools", inputs / "scenes", made, moved.parent_path()}) {
+    std::filesystem::create_directories(folder);
+  }
+  std::filesystem::copy(shipped / "tools/mallet.stl", inputs / "tools");
+  std::filesystem::copy(shipped / "scenes/mallet-head-on-cube.toml", inputs / "scenes");
+  const Scene scene = load_scene(inputs / "scenes/mallet-head-on-cube.toml");
+  std::filesystem::remove_all(inputs);  // even before the results are written
+  write_manifest(made / "manifest.json", make_manifest(scene, "touchstone fast"));
+  std::filesystem::rename(made, moved);
+  EXPECT_EQ(read_file(moved / "tool.stl"), read_file(shipped / "tools/mallet.stl"));
+  const auto manifest = nlohmann::json::parse(read_file(moved / "manifest.json").value());
+  EXPECT_EQ(manifest["title"], "A mallet's head pressed on a rubber cube (paper, Fig. 15)");
+  const Scene again = parse_scene(manifest["resolved_scene"], moved / "manifest.json");
+  EXPECT_EQ(scene_hash(again), scene_hash(scene));
+  EXPECT_EQ(manifest["scene_hash"], scene_hash(scene));
 }
 
 TEST(Stopwatch, ReadsShortStages) {
