@@ -63,9 +63,7 @@ scene::Scene asked(scene::Scene scene, const ReferenceOptions& options) {
 }
 
 std::string progress_text(const reference::Progress& p) {
-  if (p.level == 0 || p.note == "from the store") {
-    return "reference: " + p.note + (p.seconds_left >= 0.0 ? time_left_text(p) : "");
-  }
+  if (p.level == 0) return "reference: " + p.note + time_left_text(p);
   // What matters most first: a narrow terminal cuts the rest off.
   std::string text = fmt::format("mesh {} of {}{}", p.level, p.at_least ? "at least " : "", p.levels);
   if (p.event)

@@ -29,8 +29,8 @@ struct Cost {
 /// @param threads  the solver's
 [[nodiscard]] Cost expected_cost(const MeshWork& work, int threads);
 
-/// Memory that the solve of a mesh takes, of the whole process [bytes]: measured with CHOLMOD on graded blocks, a
-/// factor of 98 MB at 17 thousand and 1.06 GB at 93 thousand unknowns, and half as much again around it.
+/// Memory that the solve of a mesh takes, of the whole process at its largest [bytes]: fitted to the shipped scenes,
+/// most of it the factor and the work space of its making.
 [[nodiscard]] double expected_memory_bytes(int dim, double unknowns);
 
 /// How much slower than expected_cost() a run is, from what it has finished: the ratio of the sums, which begins at

@@ -79,8 +79,7 @@ class Run {
     while (add_level(store)) {
     }
     if (result_.from_store) {
-      show(
-          {.level = solved_levels(), .instant = count(), .instants = count(), .event = true, .note = "from the store"});
+      show({.instants = count(), .event = true, .note = "from the store"});
     }
     return std::move(result_);
   }
@@ -106,7 +105,7 @@ class Run {
   }
 
   void show(Progress progress) const {
-    progress.levels = known_levels();
+    progress.levels = std::max(known_levels(), progress.level);
     progress.at_least = !scene_.reference.levels;
     if (options_.progress) options_.progress(progress);
   }
@@ -190,12 +189,11 @@ class Run {
     if (!scene_.reference.levels && level >= most_levels) {
       return stop_at(not_started(level) + "no scene is refined further");
     }
-    const int missing = missing_steps(store, level);
     std::unique_ptr<Mesh<dim>> mesh;
     Level answer;
     try {
       mesh = std::make_unique<Mesh<dim>>(level_mesh<dim>(scene_, choice_, level));
-      if (const std::string why = limit_before(*mesh, missing); !why.empty()) return end_before(level, why);
+      if (const std::string why = limit_before(level, *mesh, store); !why.empty()) return end_before(level, why);
       solve_level(level, *mesh, store, answer);
     } catch (const TimeIsUp&) {
       return end_before(level, time_up_text(level, *mesh, store, static_cast<int>(answer.steps.size())));
@@ -293,7 +291,7 @@ class Run {
     return options_.memory_limit_bytes.value_or(0.8 * physical_memory_bytes());
   }
 
-  /// "3 meshes would take about 2.1 h", or nothing when that is no more than has been said.
+  /// ", and 3 meshes about 2.1 h", or nothing when that is no more than has been said.
   [[nodiscard]] std::string all_meshes_text(int level, double mesh_s, double later_s) const {
     if (level + 1 >= known_levels()) return "";
     const double all_s = mesh_s + later_s;
@@ -302,8 +300,8 @@ class Run {
   }
 
   /// Why not to begin with a level, in words; empty when nothing speaks against it.
-  /// @param missing  load steps that the store has not
-  [[nodiscard]] std::string limit_before(const Mesh<dim>& mesh, int missing) const {
+  [[nodiscard]] std::string limit_before(int level, const Mesh<dim>& mesh, const Store& store) const {
+    const int missing = missing_steps(store, level);
     if (missing == 0) return {};
     const Cost needed = cost(unknowns_of(mesh), missing);
     std::ostringstream text;
@@ -315,7 +313,8 @@ class Run {
     const double needed_s = pace_.factor() * needed.seconds;
     if (needed_s > seconds_to_go()) {
       text << duration_text(needed_s) << " for " << missing << (missing == 1 ? " load step" : " load steps")
-           << ", more than the " << duration_text(std::max(0.0, seconds_to_go())) << " left";
+           << ", more than the " << duration_text(std::max(0.0, seconds_to_go())) << " left"
+           << all_meshes_text(level, needed_s, pace_.factor() * expected_after_s(level, mesh, store));
       return text.str();
     }
     return {};
@@ -522,7 +521,8 @@ class Run {
     const auto at = stored(instant), before = stored(instant - 1);
     if (!at) return {};
     const std::vector<double> times_s(times_s_.begin(), times_s_.begin() + instant + 1);
-    const double later_s = expected_after_s(solved_levels() - 1, *coarser_, store) - expected_s(missing, 0);
+    const double later_s =
+        missing.empty() ? 0.0 : expected_after_s(solved_levels() - 1, *coarser_, store) - expected_s(missing, 0);
     std::size_t now = missing.size();  // the one being measured
     Clock::time_point began;
     const auto watch = [&](const std::string& part, int) {
