@@ -5,7 +5,7 @@
 
 namespace touchstone::reference {
 
-inline constexpr int most_cells = 1'000'000;
+inline constexpr int most_cells = 300'000;
 
 /// A grading asks for more cells than any machine could solve.
 class MeshTooLarge : public scene::InputError {
