@@ -16,17 +16,15 @@ struct IterationSeconds {
 };
 
 constexpr IterationSeconds in_the_plane{2.4e-6, 0.006, 1.3}, in_space{5e-6, 0.11, 1.45};
-constexpr double friction_slower = 1.6;  // more factors, and conjugate gradients for what is not symmetric
-constexpr double iterations_per_step = 3.6, iterations_per_step_with_friction = 7.0;
+constexpr double iterations_per_step = 3.6, iterations_per_step_with_friction = 7.2;
 constexpr double shared_between_threads = 0.65;  // of the work
 
 }  // namespace
 
 Cost expected_cost(const MeshWork& work, int threads) {
   const IterationSeconds& one = work.dim == 2 ? in_the_plane : in_space;
-  double iteration_s =
+  const double iteration_s =
       one.per_unknown * work.unknowns + one.factor_at_ten_k * std::pow(1e-4 * work.unknowns, one.factor_power);
-  if (work.friction) iteration_s *= friction_slower;
   Cost cost;
   cost.newton_iterations = work.load_steps * (work.friction ? iterations_per_step_with_friction : iterations_per_step);
   const double serial = 1.0 - shared_between_threads;

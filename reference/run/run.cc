@@ -291,11 +291,11 @@ class Run {
     return options_.memory_limit_bytes.value_or(0.8 * physical_memory_bytes());
   }
 
-  /// ", and 3 meshes about 2.1 h", or nothing when that is no more than has been said.
+  /// ", and all that is left of 3 meshes about 2.1 h", or nothing when that is no more than has been said.
   [[nodiscard]] std::string all_meshes_text(int level, double mesh_s, double later_s) const {
     if (level + 1 >= known_levels()) return "";
     const double all_s = mesh_s + later_s;
-    return ", and " + meshes_text(known_levels()) +
+    return ", and all that is left of " + meshes_text(known_levels()) +
            (std::isfinite(all_s) ? " about " + duration_text(all_s) : " more than can be done");
   }
 
