@@ -65,7 +65,7 @@ int run_reference(const fast::VerbOptions& options, const ReferenceOptions& refe
     write_reference_surfaces(folder, surface, result);
     write_tool(folder, scene.tool, result.instants);
     std::cout << reference_text(result) << "Results: " << folder.string() << '\n';
-    return fast::done;
+    return exit_of(result, reference);
   });
 }
 
@@ -90,8 +90,8 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
     manifest.entries.emplace_back("reference_key", result.key);
     manifest.entries.emplace_back("command_line", command_text(call, ""));
     const Comparison comparison = write_comparison(folder, scene, run, result, manifest, call);
-    std::cout << comparison.text << "Report: " << (folder / "report.html").string() << '\n';
-    return fast::done;
+    std::cout << comparison.text << refinement_text(result) << "Report: " << (folder / "report.html").string() << '\n';
+    return exit_of(result, reference);
   });
 }
 
