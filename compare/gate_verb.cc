@@ -97,6 +97,13 @@ void add_gate_verb(CLI::App& app, GateOptions& options, int& exit_code) {
   verb->add_option("--junit", options.junit, "also write JUnit's XML to this file");
   verb->add_option("--base", options.base, "commit or branch whose limits may not be widened without a waiver");
   verb->add_flag("--list", options.list, "names, quantities and limits, nothing is run");
+  verb->add_flag_callback(
+      "--keys",
+      [] {
+        std::cout << scene::gate_reference_markdown();
+        throw CLI::Success();
+      },
+      "print every key of a gate file as Markdown tables");
   verb->add_flag("--quiet", options.quiet, "no progress, only results and errors");
   CLI::Option* prove = verb->add_flag("--prove", options.prove,
                                       "apply every gate's own change too; exit 1 unless it turns the gate red");

@@ -90,6 +90,15 @@ std::string anchors_text(const AnchorPoints& anchors) {
   return out;
 }
 
+std::string one_region_text(const scene::Tool& tool) {
+  if (!tool.convex()) return "fast.max_regions = 1";
+  const std::string touch = "a convex body and a convex tool touch in one region";
+  if (!tool.mesh) return touch;
+  const scene::Bounds bounds = tool.mesh->bounds();
+  const double dent_m = scene::convex_tolerance_rel * (bounds.upper_m - bounds.lower_m).norm();
+  return touch + text("; the tool's mesh has no dent deeper than %.2g mm", dent_m * 1e3);
+}
+
 }  // namespace
 
 scene::Plan plan(const scene::Scene& scene) {
@@ -113,15 +122,14 @@ scene::Plan plan(const scene::Scene& scene) {
               model.tool.count(), model.tool.spacing_m * 1e3, measured.points),
          measured.cost({Stage::detection}));
   if (model.max_regions > 1) {
-    models(
-        "several regions",
-        text("the tool is no convex solid: up to %d, %d at the track's instants, told apart at %.3g mm; each meets the "
-             "body as the earlier ones left it",
-             model.max_regions, measured.regions, scene.fast.r_th_m * 1e3),
-        measured.cost({Stage::regions}));
+    models("several regions",
+           text("the tool's mesh is not convex: up to %d, %d at the track's instants, told apart at %.3g mm; each "
+                "meets the "
+                "body as the earlier ones left it",
+                model.max_regions, measured.regions, scene.fast.r_th_m * 1e3),
+           measured.cost({Stage::regions}));
   } else {
-    leaves_out("several regions",
-               scene.tool.convex() ? "a convex body and a convex tool touch in one region" : "fast.max_regions = 1");
+    leaves_out("several regions", one_region_text(scene.tool));
   }
   models("contact force",
          std::string(scene.contact.law == scene::ContactLaw::duffing ? "Duffing law" : "area-aware law") +

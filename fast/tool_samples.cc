@@ -182,10 +182,12 @@ void halve_until(double limit_m2, const std::array<Vec3, 3>& corners, Cloud& clo
   halve_until(limit_m2, {middle, b, c}, cloud);
 }
 
-/// One sample for each group of neighbours that look the same way and together are at most the limit.
+/// One sample for each group of neighbours that look the same way.
 class Grouping {
  public:
-  Grouping(const Cloud& fine, double limit_m2) : fine_(fine), limit_m2_(limit_m2) {
+  /// @param even  groups of nearly `area_m2`, so that their number is foreseen; otherwise of that at most, half of it
+  /// for many
+  Grouping(const Cloud& fine, double area_m2, bool even) : fine_(fine), limit_m2_(area_m2), even_(even) {
     // By the axis they look along first: the two sides of a thin sheet never share a sample.
     std::array<std::vector<std::size_t>, 6> looking;
     for (std::size_t i = 0; i < fine.points_m.size(); ++i) {
@@ -217,7 +219,9 @@ class Grouping {
     // Within about 25 degrees of their mean.
     const bool same_way = normal_sum.norm() >= 0.9 * area_m2;
     const double reach_m = (upper_m - lower_m).norm();
-    if (end - begin == 1 || (same_way && area_m2 <= limit_m2_ && reach_m * reach_m <= 3.0 * limit_m2_)) {
+    const int parts = parts_of(area_m2);
+    const bool compact = reach_m * reach_m <= 3.0 * std::max(area_m2, limit_m2_);
+    if (end - begin == 1 || (same_way && parts == 1 && compact)) {
       std::size_t nearest = order_[begin];
       for (std::size_t k = begin; k < end; ++k) {
         const auto off = [&](std::size_t i) { return (fine_.points_m[i] - center_sum / area_m2).squaredNorm(); };
@@ -235,27 +239,38 @@ class Grouping {
                 const double at_a = fine_.points_m[a][axis], at_b = fine_.points_m[b][axis];
                 return at_a != at_b ? at_a < at_b : a < b;
               });
+    const double share = parts == 1 ? 0.5 : static_cast<double>(parts / 2) / parts;
     double half_m2 = 0.0;
-    while (middle < end && half_m2 < 0.5 * area_m2) half_m2 += fine_.area_m2[order_[middle++]];
+    while (middle < end && half_m2 < share * area_m2) half_m2 += fine_.area_m2[order_[middle++]];
     middle = std::clamp(middle, begin + 1, end - 1);
     split(begin, middle);
     split(middle, end);
   }
 
+  /// How many groups an area should become; 2 stands for more where they need not be even.
+  [[nodiscard]] int parts_of(double area_m2) const {
+    if (!even_) return area_m2 <= limit_m2_ ? 1 : 2;
+    return std::max(1, static_cast<int>(std::lround(area_m2 / limit_m2_)));
+  }
+
   const Cloud& fine_;
   double limit_m2_;
+  bool even_;
   std::vector<std::size_t> order_;
   Cloud coarse_;
 };
 
 ToolSamples sample_mesh(const scene::TriangleMesh& mesh, int count) {
   const double surface_m2 = mesh.area_m2(), limit_m2 = surface_m2 / count;
+  // A convex mesh may stand for a shape, so its samples are no more than the shape's: put together from smaller parts.
+  constexpr double parts_per_sample = 8.0;
   Cloud cloud;
   for (const auto& triangle : mesh.triangles)
-    halve_until(limit_m2,
+    halve_until(mesh.convex ? limit_m2 / parts_per_sample : limit_m2,
                 {mesh.points_m.col(triangle[0]), mesh.points_m.col(triangle[1]), mesh.points_m.col(triangle[2])},
                 cloud);
-  if (cloud.points_m.size() > 2 * static_cast<std::size_t>(count)) cloud = Grouping(cloud, limit_m2).coarse();
+  if (cloud.points_m.size() > 2 * static_cast<std::size_t>(count))
+    cloud = Grouping(cloud, limit_m2, mesh.convex).coarse();
   return in_tree_order(cloud, surface_m2);
 }
 

@@ -46,7 +46,8 @@ struct ToolSamples {
 /// - capsule, cylinder: rings of evenly spaced points, at least two along each piece of the profile
 /// - box: a grid on every face
 /// - mesh: triangles are halved at their longest side until small enough; of a finer mesh, neighbouring triangles that
-///   look the same way share a sample, at the one nearest their middle
+///   look the same way share a sample, at the one nearest their middle. Those of a convex mesh are shared out evenly:
+///   their number is that of the shape it may stand for, to some percent
 /// The pattern is mirrored where the tool is, so a straight press has no side force or torque of the sampling's making.
 /// Samples stand within the faces, none on an edge or corner.
 [[nodiscard]] ToolSamples sample_tool(const scene::Tool& tool, int count);

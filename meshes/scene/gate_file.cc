@@ -10,6 +10,22 @@
 namespace touchstone::scene {
 namespace {
 
+std::vector<std::string> names_of(const std::vector<GateKey>& keys, const char* rows = nullptr) {
+  std::vector<std::string> names;
+  for (const GateKey& key : keys) names.push_back(key.key);
+  if (rows != nullptr) names.emplace_back(rows);
+  return names;
+}
+
+std::string key_table(const std::vector<GateKey>& keys, const std::string& row) {
+  std::string text = "| key | value | default | meaning |\n|---|---|---|---|\n";
+  for (const GateKey& key : keys) {
+    text += "| `" + row + key.key + "` | " + key.value + " | " +
+            (key.default_value.empty() ? "required" : key.default_value) + " | " + key.meaning + " |\n";
+  }
+  return text;
+}
+
 class Reader : TomlReader {
  public:
   using TomlReader::TomlReader;
@@ -17,7 +33,7 @@ class Reader : TomlReader {
   GateFile gates() {
     GateFile out;
     out.name = file_.stem().string();
-    known_keys(document_, "", {"title", "run", "scene", "set", "reference", "gate"});
+    known_keys(document_, "", names_of(gate_file_keys(), "gate"));
     out.title = given_text(document_, "title");
     const std::string run = word(document_, "run", {"fast", "reference", "second_code"});
     for (const GateRun one : {GateRun::fast, GateRun::reference, GateRun::second_code}) {
@@ -47,7 +63,7 @@ class Reader : TomlReader {
     std::vector<GateWaiver> out;
     known_keys(document_, "", {"waiver"});
     for (const toml::table* table : rows("waiver")) {
-      known_keys(*table, "waiver.", {"gate", "name", "reason", "until", "removed"});
+      known_keys(*table, "waiver.", names_of(waiver_keys()));
       GateWaiver& waiver = out.emplace_back();
       waiver.place = place(table->source());
       waiver.gate = given_text(*table, "gate", "waiver.");
@@ -96,7 +112,7 @@ class Reader : TomlReader {
 
   Gate gate(const toml::table& table) {
     const std::string row = "gate.";
-    known_keys(table, row, {"name", "kind", "quantity", "limit", "unit", "reason", "red"});
+    known_keys(table, row, names_of(gate_keys()));
     Gate gate;
     gate.name = given_text(table, "name", row);
     gate.kind = word(table, "kind", {"truth", "drift"}) == "drift" ? GateKind::drift : GateKind::truth;
@@ -114,6 +130,64 @@ class Reader : TomlReader {
 };
 
 }  // namespace
+
+const std::vector<GateKey>& gate_file_keys() {
+  static const std::vector<GateKey> keys = {
+      {"title", "a text", "", "What the gates hold, for lists and reports."},
+      {"run", "\"fast\" or \"reference\" or \"second_code\"", "",
+       "What is computed anew. \"fast\": the fast model, held against the reference data named by `reference`; "
+       "\"reference\": the reference solve, from nothing; \"second_code\": CalculiX and the reference on the same "
+       "deck."},
+      {"scene", "a path", "", "The scene file, relative to the gate file."},
+      {"set", "a list of texts \"KEY=VALUE\"", "none",
+       "Values over the scene's, as for `--set`. They belong to the scene: the reference data is of them, too."},
+      {"reference", "a path", "none",
+       "Folder of the committed reference data, relative to the gate file; written by `touchstone gate --regenerate "
+       "FILE`. Never with `run = \"second_code\"`."},
+  };
+  return keys;
+}
+
+const std::vector<GateKey>& gate_keys() {
+  static const std::vector<GateKey> keys = {
+      {"name", "a text", "",
+       "Of the gate, different from the others in its file; on the command line it is FILE.NAME, FILE without "
+       "`.toml`."},
+      {"kind", "\"truth\" or \"drift\"", "",
+       "\"truth\": the absolute value plus the reference's uncertainty must stay within the limit; \"drift\": the "
+       "distance from the value last accepted with `touchstone gate --accept FILE.NAME`."},
+      {"quantity", "a text", "", "A key of `summary.json` of that run, such as \"force.nrmse\"."},
+      {"limit", "a number above 0, in `unit`", "", "The largest value allowed."},
+      {"unit", "a text", "", "Of the quantity, as in `summary.json`; \"\" for a ratio. Another unit is red."},
+      {"reason", "a text", "", "Why the limit is what it is; printed when the gate is red."},
+      {"red", "a list of texts \"KEY=VALUE\", at least one", "",
+       "A change, as for `--set`, that must turn the gate red; `touchstone gate --prove` applies it."},
+  };
+  return keys;
+}
+
+const std::vector<GateKey>& waiver_keys() {
+  static const std::vector<GateKey> keys = {
+      {"gate", "a text", "", "The gate, as FILE.NAME."},
+      {"name", "a text", "", "Who answers for it."},
+      {"reason", "a text", "", "Why the limit may be wider."},
+      {"until", "a date, 2026-12-31", "", "The last day on which it holds; from the next day on the gate is red."},
+      {"removed", "true or false", "`false`", "The waiver is for a gate that was taken away."},
+  };
+  return keys;
+}
+
+std::string gate_reference_markdown() {
+  return "# Gate reference\n\n"
+         "Every key of a gate file, `GATES/<file>.toml`, and of the file of waivers, `GATES/waivers.toml`; GATES is "
+         "`tests/gates` or\nthe folder given with `touchstone gate --gates`. What gates are: [gates.md](gates.md). A "
+         "key that is neither given nor has\na default is an error, as is one that is unknown.\n\n"
+         "## A gate file\n\nAt its top:\n\n" +
+         key_table(gate_file_keys(), "") + "\nEach gate is a `[[gate]]` row, at least one:\n\n" +
+         key_table(gate_keys(), "gate[].") +
+         "\n## Waivers\n\nThey count with `touchstone gate --base COMMIT` only. Each is a `[[waiver]]` row:\n\n" +
+         key_table(waiver_keys(), "waiver[].");
+}
 
 const char* name_of(GateKind kind) { return kind == GateKind::truth ? "truth" : "drift"; }
 

@@ -1,28 +1,19 @@
-// Gate files: limits that results of a scene must keep. TOML:
+// Gate files: limits that results of a scene must keep, and files of waivers for limits wider than those of another
+// commit. Every key: reports/gate-reference.md. In short:
 //
 //   title     = "Fast model, ball on cube"
-//   run       = "fast"                                       # fast | reference: what is computed anew
-//   scene     = "../../meshes/scenes/ball-on-cube-press.toml"   # relative to the gate file
-//   set       = ["contact.k1_n_per_m=50"]                    # values over the scene's, as for --set
-//   reference = "reference/ball-on-cube-press"               # folder of the committed reference data
+//   run       = "fast"
+//   scene     = "../../meshes/scenes/ball-on-cube-press.toml"
+//   reference = "reference/ball-on-cube-press"
 //
 //   [[gate]]
 //   name     = "force"
-//   kind     = "truth"          # truth: |value| + uncertainty <= limit; drift: |value - accepted| <= limit
-//   quantity = "force.nrmse"    # a key of summary.json
+//   kind     = "truth"
+//   quantity = "force.nrmse"
 //   limit    = 0.02
-//   unit     = ""               # of the quantity; "" for a ratio
+//   unit     = ""
 //   reason   = "why this limit"
-//   red      = ["contact.k1_n_per_m=60"]   # what must turn the gate red, as for --set
-//
-// and a file of waivers, for limits wider than those of another commit:
-//
-//   [[waiver]]
-//   gate    = "ball-on-cube-press.force"
-//   name    = "who answers for it"
-//   reason  = "why"
-//   until   = 2026-12-31        # the last day on which it holds
-//   removed = false             # true: it is for a gate that was taken away
+//   red      = ["contact.k1_n_per_m=60"]
 #pragma once
 
 #include "scene/error.h"
@@ -34,6 +25,20 @@
 #include <vector>
 
 namespace touchstone::scene {
+
+/// A key as the gate reference explains it; the reader knows no others.
+struct GateKey {
+  std::string key;            ///< within its table
+  std::string value;          ///< what may stand there
+  std::string default_value;  ///< empty: it must be given
+  std::string meaning;
+};
+[[nodiscard]] const std::vector<GateKey>& gate_file_keys();  ///< at the top of a gate file
+[[nodiscard]] const std::vector<GateKey>& gate_keys();       ///< of a [[gate]] row
+[[nodiscard]] const std::vector<GateKey>& waiver_keys();     ///< of a [[waiver]] row
+
+/// All of them as a Markdown page: reports/gate-reference.md.
+[[nodiscard]] std::string gate_reference_markdown();
 
 enum class GateKind { truth, drift };
 enum class GateRun { fast, reference, second_code };

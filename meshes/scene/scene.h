@@ -80,8 +80,8 @@ struct Tool {
   /// Mass centre, from the shape's centre or in the mesh's own coordinates; absent: the centre of a uniform solid.
   std::optional<Vec3> mass_center_m;
 
-  /// In one piece without dents: it touches a convex body in one region.
-  [[nodiscard]] bool convex() const noexcept { return shape != ToolShape::mesh; }
+  /// In one piece without dents: it touches a convex body in one region. For a mesh: TriangleMesh::convex.
+  [[nodiscard]] bool convex() const noexcept { return shape != ToolShape::mesh || (mesh && mesh->convex); }
 };
 
 /// The tool's pose at one time; between two of them position is linear and orientation slerp.

@@ -71,6 +71,8 @@ std::optional<TriangleMesh> checked_mesh(const std::string& content, const std::
   for (std::size_t i = 0; i < raw.points.size(); ++i) {
     mesh.points_m.col(static_cast<Eigen::Index>(i)) = unit_m * raw.points[i];
   }
+  const Bounds bounds = mesh.bounds();
+  mesh.convex = convex(raw, convex_tolerance_rel * (bounds.upper_m - bounds.lower_m).norm() / unit_m);
   mesh.triangles = std::move(raw.triangles);
   return mesh;
 }

@@ -17,6 +17,9 @@ namespace touchstone::scene {
 struct TriangleMesh {
   Eigen::Matrix3Xd points_m;  ///< one column per vertex
   std::vector<std::array<std::int32_t, 3>> triangles;
+  /// One piece without a dent deeper than convex_tolerance_rel of the bounding box's diagonal. Found when read from a
+  /// file; a mesh made otherwise is taken for not convex unless its maker says so.
+  bool convex = false;
 
   [[nodiscard]] double area_m2() const;
   [[nodiscard]] double volume_m3() const;
@@ -24,9 +27,16 @@ struct TriangleMesh {
   [[nodiscard]] Bounds bounds() const;
 };
 
+/// How deep a dent may be in a mesh that counts as convex, over the diagonal of its bounding box. Facets on a curved
+/// surface leave such dents where neighbouring rings differ in their number of vertices: 4e-4 on a capsule of 2000
+/// triangles, 2e-5 on one of 20,000. Single precision leaves less than 1e-6, and 7e-6 at a hundred diagonals from the
+/// origin. A contact that is deeper than the dent spans it, and is one region.
+inline constexpr double convex_tolerance_rel = 1e-3;
+
 /// Reads STL (text or binary), OBJ or PLY (text or binary), by the file's ending; multiplies coordinates by unit_m,
-/// welds duplicate vertices, drops triangles without area, turns every piece outwards. A mesh that is open, has an
-/// edge with more than two triangles, cuts itself or holds a number that is not finite is refused.
+/// welds duplicate vertices, drops triangles without area, turns every piece outwards, tells whether it is convex. A
+/// mesh that is open, has an edge with more than two triangles, cuts itself or holds a number that is not finite is
+/// refused.
 /// @param faults takes what is wrong, with the file, the line or byte, and the place in the mesh
 /// @returns nothing when there were faults
 [[nodiscard]] std::optional<TriangleMesh> read_triangle_mesh(const std::filesystem::path& file, double unit_m,

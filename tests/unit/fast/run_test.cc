@@ -140,6 +140,41 @@ TEST(Run, PublishedLeavesAResidualOffTheAxis) {
   EXPECT_LT(residual, 1.0);
 }
 
+TEST(ConvexMeshTool, TakesTheStepOfItsShape) {
+  scene::Scene scene = test::ball_on_cube();
+  const auto of_shape = run(scene);
+  const FastModel shape(scene);
+  const auto ball = scene::tessellate(*scene::tool_shape(scene.tool), 6000);
+  scene::TriangleMesh mesh{ball.points_m, ball.triangles};
+  scene.tool.shape = scene::ToolShape::mesh;
+  scene.tool.mass_center_m = Vec3::Zero();
+  scene.fast.max_regions = 10;
+  scene.tool.mesh = std::make_shared<scene::TriangleMesh>(mesh);
+  EXPECT_NE(FastState(FastModel(scene)).several, nullptr);
+
+  mesh.convex = true;
+  scene.tool.mesh = std::make_shared<scene::TriangleMesh>(mesh);
+  const FastModel model(scene);
+  EXPECT_EQ(FastState(model).several, nullptr);
+  EXPECT_NEAR(model.tool.count(), shape.tool.count(), 0.1 * shape.tool.count());
+  const auto of_mesh = run(scene);
+  ASSERT_EQ(of_mesh.instants.size(), of_shape.instants.size());
+  double largest_n = 0.0, off_n = 0.0;
+  for (std::size_t i = 0; i < of_mesh.instants.size(); ++i) {
+    const Vec3 force_n = of_shape.instants[i].force_n();
+    largest_n = std::max(largest_n, force_n.norm());
+    off_n = std::max(off_n, (of_mesh.instants[i].force_n() - force_n).norm());
+  }
+  EXPECT_GT(largest_n, 0.0);
+  EXPECT_LT(off_n, 0.03 * largest_n);
+  for (const scene::PlanLine& line : plan(scene)) {
+    if (line.part == "several regions") {
+      EXPECT_FALSE(line.modelled);
+      EXPECT_NE(line.reason.find("the tool's mesh has no dent deeper than 0.035 mm"), std::string::npos) << line.reason;
+    }
+  }
+}
+
 TEST(StatusText, NamesEveryBit) {
   EXPECT_EQ(status_text(0), "ok");
   const std::string all = status_text(0x1f);

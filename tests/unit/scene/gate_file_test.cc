@@ -6,6 +6,9 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <functional>
+#include <map>
+#include <sstream>
 
 namespace touchstone::scene {
 namespace {
@@ -75,6 +78,88 @@ TEST(GateFile, NoPartOfAGateMayBeLeftOut) {
   }
   EXPECT_THAT(refusal(head), HasSubstr("no gate"));
   EXPECT_THAT(refusal(head + gate + gate), HasSubstr("\"force\" twice"));
+}
+
+/// A line that gives a key a good value, and one that gives it a value of another type.
+struct Given {
+  const char *good, *bad;
+};
+
+/// The table says whether a key may be left out, and the reader agrees; a value of another type is refused.
+void expect_told_truly(const std::vector<GateKey>& keys, const std::map<std::string, Given>& given,
+                       const std::function<std::string(const std::string&)>& refusal_of) {
+  std::string all;
+  for (const GateKey& key : keys) {
+    ASSERT_TRUE(given.contains(key.key)) << "no value to try for the new key " << key.key;
+    all += std::string(given.at(key.key).good) + "\n";
+  }
+  EXPECT_EQ(given.size(), keys.size()) << "a key is gone";
+  EXPECT_EQ(refusal_of(all), "accepted");
+  for (const GateKey& key : keys) {
+    const Given& line = given.at(key.key);
+    const std::string good = std::string(line.good) + "\n";
+    const bool required = key.default_value.empty();
+    EXPECT_EQ(refusal_of(without(all, good)) == "accepted", !required) << key.key;
+    EXPECT_THAT(refusal_of(without(all, good) + line.bad + "\n"), HasSubstr(key.key)) << key.key;
+    EXPECT_FALSE(key.meaning.empty()) << key.key;
+  }
+}
+
+TEST(GateReference, TellsWhatTheReaderTakes) {
+  expect_told_truly(gate_file_keys(),
+                    {{"title", {"title = \"t\"", "title = 1"}},
+                     {"run", {"run = \"fast\"", "run = \"compare\""}},
+                     {"scene", {"scene = \"a.toml\"", "scene = 1"}},
+                     {"set", {"set = [\"a=1\"]", "set = \"a=1\""}},
+                     {"reference", {"reference = \"reference/a\"", "reference = true"}}},
+                    [](const std::string& top) { return refusal(top + gate); });
+  expect_told_truly(gate_keys(),
+                    {{"name", {"name = \"force\"", "name = 1"}},
+                     {"kind", {"kind = \"truth\"", "kind = \"lie\""}},
+                     {"quantity", {"quantity = \"force.nrmse\"", "quantity = 1"}},
+                     {"limit", {"limit = 0.02", "limit = 0"}},
+                     {"unit", {"unit = \"\"", "unit = 1"}},
+                     {"reason", {"reason = \"because\"", "reason = 1"}},
+                     {"red", {"red = [\"a=1\"]", "red = []"}}},
+                    [](const std::string& row) { return refusal(head + "[[gate]]\n" + row); });
+  const auto file = std::filesystem::temp_directory_path() / ("waiver-keys-" + std::to_string(::getpid()) + ".toml");
+  expect_told_truly(waiver_keys(),
+                    {{"gate", {"gate = \"a.force\"", "gate = 1"}},
+                     {"name", {"name = \"A. Person\"", "name = 1"}},
+                     {"reason", {"reason = \"new law\"", "reason = 1"}},
+                     {"until", {"until = 2026-12-31", "until = \"2026-12-31\""}},
+                     {"removed", {"removed = true", "removed = 1"}}},
+                    [&](const std::string& row) -> std::string {
+                      std::ofstream(file) << "[[waiver]]\n" << row;
+                      try {
+                        (void)load_gate_waivers(file);
+                      } catch (const InputError& error) {
+                        return error.what();
+                      }
+                      return "accepted";
+                    });
+  std::filesystem::remove(file);
+}
+
+TEST(GateReference, NamesEveryWordOfAChoice) {
+  for (const GateKey& key : gate_file_keys()) {
+    if (key.key != "run") continue;
+    for (const GateRun run : {GateRun::fast, GateRun::reference, GateRun::second_code})
+      EXPECT_THAT(key.value, HasSubstr("\"" + std::string(name_of(run)) + "\""));
+  }
+  for (const GateKey& key : gate_keys()) {
+    if (key.key != "kind") continue;
+    for (const GateKind kind : {GateKind::truth, GateKind::drift})
+      EXPECT_THAT(key.value, HasSubstr("\"" + std::string(name_of(kind)) + "\""));
+  }
+}
+
+TEST(GateReference, IsWhatTheReportsShow) {
+  std::ifstream in(std::string(TOUCHSTONE_SOURCE_DIR) + "/reports/gate-reference.md");
+  std::stringstream text;
+  text << in.rdbuf();
+  EXPECT_EQ(text.str(), gate_reference_markdown())
+      << "reports/gate-reference.md is not the tables of gate_file.cc; rewrite it with: touchstone gate --keys";
 }
 
 TEST(GateFile, WaiversNeedANameAReasonAndADate) {
