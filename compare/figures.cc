@@ -68,7 +68,7 @@ constexpr Meaning meanings[] = {
     {"reference.wall_s", "Time the reference took, all levels."},
     {"reference.cpu_s", "Processor time of that, all threads."},
     {"reference.error_asked", "Uncertainty of force and shape at which the refinement may end."},
-    {"reference.refinement", "Why the refinement ended."},
+    {"reference.why_ended", "Why the refinement ended."},
     {"reference.sensitivity.load_step_force_rel",
      "Change of the force at the deepest instant, coarsest level, with load steps half as long."},
     {"reference.sensitivity.load_step_shape_rel", "The same of the shape."},

@@ -3,6 +3,7 @@
 #include "compare/gate_limits.h"
 #include "compare/gate_report.h"
 #include "fast/command_line.h"
+#include "fast/progress_line.h"
 
 #include <fmt/format.h>
 

@@ -61,22 +61,34 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1e-4, 0.5))
         ->excludes(levels);
     command
-        ->add_option("--memory-gib", reference.memory_gib, "refine no further than fits (default 80 % of the memory)")
+        ->add_option("--memory-gib", reference.memory_gib,
+                     "no mesh that would take more, by estimate (default 80 % of the memory)")
         ->check(CLI::Range(0.1, 1e6));
-    command->add_option("--minutes", reference.minutes, "refine no further than can be done in this time")
+    command
+        ->add_option("--minutes", reference.minutes,
+                     "end a reference solve after this time, what is solved is kept (default 60; none with --level)")
         ->check(CLI::Range(0.01, 1e6));
+  };
+  const auto add_require_error = [&](CLI::App* command) {
+    command
+        ->add_option("--require-error", reference.require_error,
+                     "exit 3 unless force and shape are known to this, relative; results are written all the same")
+        ->check(CLI::Range(1e-4, 0.5));
   };
   add("plan", "what each side will model for a scene, what it leaves out and why", compare::plan);
   add_with_folder("fast", "the real-time pipeline over the scene's track in virtual time", compare::run_fast);
-  add_reference(add_with_folder("reference",
-                                "the offline solve; answers from the store, resumes where it was interrupted",
-                                compare::run_reference));
+  CLI::App* solved =
+      add_with_folder("reference", "the offline solve; answers from the store, resumes where it was interrupted",
+                      compare::run_reference);
+  add_reference(solved);
+  add_require_error(solved);
   std::filesystem::path parameters;
   CLI::App* compared = add_with_folder(
       "compare", "both sides, then force and shape errors: tables, VTK, report",
       [&](const auto& given, const auto& asked) { return compare::run_compare(given, asked, parameters); });
   compared->add_option("--parameters", parameters, "file that tune left, for the fast side alone");
   add_reference(compared);
+  add_require_error(compared);
   compare::StudyOptions study_options;
   compare::add_study_verb(app, study_options, exit_code);
   compare::ResultsOptions results_options;

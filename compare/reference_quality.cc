@@ -58,8 +58,8 @@ scene::Figures reference_figures(const reference::Result& result, const Referenc
   };
   if (result.refinement.error_asked > 0.0) {
     figures.push_back({"reference.error_asked", result.refinement.error_asked, "", ""});
-    figures.push_back({"reference.refinement", 0.0, result.refinement.why_ended, ""});
   }
+  figures.push_back({"reference.why_ended", 0.0, result.refinement.why_ended, ""});
   for (const reference::Sensitivity& one : result.sensitivities) {
     const std::string key = "reference.sensitivity." + one.part;
     figures.push_back({key + "_force_rel", one.force_rel, "", ""});

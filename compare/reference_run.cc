@@ -2,6 +2,8 @@
 
 #include "compare/reference_quality.h"
 #include "fast/command_line.h"
+#include "fast/progress_line.h"
+#include "reference/run/cost.h"
 
 #include <fmt/format.h>
 
@@ -40,21 +42,10 @@ class StopOnSignal {
   void (*old_terminate_)(int);
 };
 
-std::string time_left_text(double seconds) {
-  if (seconds < 0.0) return "";
-  if (seconds < 90.0) return fmt::format(", {:.0f} s left on it", seconds);
-  return fmt::format(", {:.0f} min left on it", seconds / 60.0);
-}
-
-std::string progress_text(const reference::Progress& p) {
-  if (p.newton == 0 && !p.note.empty()) return "reference: " + p.note;
-  const std::string mesh = p.levels > 0 ? fmt::format("{}/{}", p.level, p.levels) : std::to_string(p.level);
-  std::string text = fmt::format("reference: mesh {} ({} unknowns), load step {}/{} at {:.2f} mm", mesh, p.unknowns,
-                                 p.instant, p.instants, 1e3 * p.depth_m);
-  if (p.newton > 0) text += fmt::format(", Newton {} residual {:.1e}", p.newton, p.residual_rel);
-  text += time_left_text(p.seconds_left);
-  if (!p.note.empty()) text += " - " + p.note;
-  return text;
+std::string time_left_text(const reference::Progress& p) {
+  if (p.seconds_left < 0.0) return "";
+  if (!std::isfinite(p.seconds_left)) return ", more time left than can be told";
+  return ", about " + reference::duration_text(p.seconds_left) + " left";
 }
 
 }  // namespace
@@ -65,12 +56,28 @@ scene::Scene asked(scene::Scene scene, const ReferenceOptions& options) {
     scene.reference.error = *options.error;
     scene.reference.levels.reset();
   }
+  if (options.require_error && !scene.reference.levels) {
+    scene.reference.error = std::min(scene.reference.error, *options.require_error);
+  }
   return scene;
+}
+
+std::string progress_text(const reference::Progress& p) {
+  if (p.level == 0) return "reference: " + p.note + time_left_text(p);
+  // What matters most first: a narrow terminal cuts the rest off.
+  std::string text = fmt::format("mesh {} of {}{}", p.level, p.at_least ? "at least " : "", p.levels);
+  if (p.event)
+    return text + fmt::format(" {}: {} unknowns, instant {} of {}{}", p.note, p.unknowns, p.instant, p.instants,
+                              time_left_text(p));
+  text += fmt::format(", instant {} of {}{}", p.instant, p.instants, time_left_text(p));
+  if (!p.note.empty()) return text + ", " + p.note;
+  if (p.newton > 0) text += fmt::format(", Newton {}, residual {:.0e}", p.newton, p.residual_rel);
+  return text + fmt::format(", {} unknowns", p.unknowns);
 }
 
 reference::Result solve_with_progress(const scene::Scene& scene, const scene::Surface& surface,
                                       const ReferenceOptions& options, bool quiet) {
-  constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0;
+  constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0, default_minutes = 60.0;
   const StopOnSignal stop;
   fast::ProgressLine line(quiet);
   reference::Options solve_options;
@@ -78,10 +85,11 @@ reference::Result solve_with_progress(const scene::Scene& scene, const scene::Su
   solve_options.stop = &stop_requested;
   solve_options.rest_area_m2 = surface.vertex_area_m2;
   if (options.memory_gib) solve_options.memory_limit_bytes = *options.memory_gib * gibibyte;
-  solve_options.seconds_limit = 60.0 * options.minutes;
-  solve_options.progress = [&](const reference::Progress& p) {
-    line.show(progress_text(p), p.step_finished || !p.note.empty());
-  };
+  // Who asks for a number of meshes gets them.
+  if (options.minutes || !scene.reference.levels) {
+    solve_options.seconds_limit = 60.0 * options.minutes.value_or(default_minutes);
+  }
+  solve_options.progress = [&](const reference::Progress& p) { line.show(progress_text(p), p.event); };
   return reference::solve(scene, surface.points_m, solve_options);
 }
 
@@ -89,8 +97,11 @@ int with_reference_exits(const std::function<int()>& solve) {
   try {
     return solve();
   } catch (const reference::Interrupted& stopped) {
-    std::cerr << "\n" << stopped.what() << '\n';
+    std::cerr << stopped.what() << '\n';
     return fast::interrupted;
+  } catch (const reference::LimitReached& limit) {
+    std::cerr << limit.what() << " Limits are set with --minutes and --memory-gib.\n";
+    return fast::not_converged;
   } catch (const reference::NotConverged& failure) {
     std::cerr << failure.what() << '\n';
     return fast::not_converged;
@@ -111,24 +122,42 @@ std::string reference_text(const reference::Result& result) {
   const auto deepest = std::max_element(result.instants.begin(), result.instants.end(),
                                         [](const auto& a, const auto& b) { return a.depth_m < b.depth_m; });
   const auto at = static_cast<std::size_t>(deepest - result.instants.begin());
-  std::string text = fmt::format(
-      "Force at the deepest instant ({:.3g} mm): {:.4g} N +- {:.2g} N\nModel: {}, {} unknowns on the finest mesh\n",
-      1e3 * deepest->depth_m, deepest->force_n().norm(), result.force_uncertainty_n[at], result.model,
-      result.levels.back().unknowns);
+  const double uncertainty_n = result.force_uncertainty_n[at];
+  std::string text =
+      fmt::format("Force at the deepest instant ({:.3g} mm): {:.4g} N, {}\nModel: {}, {} unknowns on the finest mesh\n",
+                  1e3 * deepest->depth_m, deepest->force_n().norm(),
+                  std::isfinite(uncertainty_n) ? fmt::format("+- {:.2g} N", uncertainty_n) : "uncertainty unknown",
+                  result.model, result.levels.back().unknowns);
   for (std::size_t level = 0; level < result.levels.size(); ++level) {
     const reference::LevelRecord& mesh = result.levels[level];
     text +=
         fmt::format("  mesh {}: {:.3g} mm, {} unknowns, {} Newton iterations, {:.3g} s, {:.6g} N\n", level + 1,
                     1e3 * mesh.element_size_m, mesh.unknowns, mesh.newton_iterations, mesh.wall_s, mesh.force_n[at]);
   }
-  if (std::isfinite(result.force_uncertainty_rel.value_or(INFINITY)) && result.shape_uncertainty_rel) {
-    text += fmt::format("Uncertainty: {:.2g} of the force, {:.2g} of the displacement, from {} meshes\n",
-                        *result.force_uncertainty_rel, *result.shape_uncertainty_rel, result.levels.size());
-  }
-  if (result.refinement.error_asked > 0.0) {
-    text += fmt::format("Asked: {:.2g}; {}\n", result.refinement.error_asked, result.refinement.why_ended);
-  }
-  return text;
+  return text + refinement_text(result);
+}
+
+bool known_to(const reference::Result& result, double error) {
+  // Where nothing pushes or moves there is nothing to be uncertain about; an unknown uncertainty is no number.
+  const auto small = [&](const std::optional<double>& rel) { return !rel || *rel <= error; };
+  return result.levels.size() >= 3 && small(result.force_uncertainty_rel) && small(result.shape_uncertainty_rel);
+}
+
+std::string refinement_text(const reference::Result& result) {
+  const auto text_of = [](const std::optional<double>& rel) {
+    if (!rel) return std::string("none");
+    return std::isfinite(*rel) ? fmt::format("{:.2g} %", 100.0 * *rel) : std::string("unknown");
+  };
+  return fmt::format("Uncertainty of the reference: force {}, shape {}, from {} mesh{}\nRefinement ended: {}\n",
+                     text_of(result.force_uncertainty_rel), text_of(result.shape_uncertainty_rel), result.levels.size(),
+                     result.levels.size() == 1 ? "" : "es", result.refinement.why_ended);
+}
+
+int exit_of(const reference::Result& result, const ReferenceOptions& options) {
+  if (!options.require_error || known_to(result, *options.require_error)) return fast::done;
+  std::cerr << fmt::format("The reference is not known to {:.2g} %, which --require-error asks for: {}\n",
+                           100.0 * *options.require_error, result.refinement.why_ended);
+  return fast::not_converged;
 }
 
 }  // namespace touchstone::compare

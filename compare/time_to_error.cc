@@ -70,6 +70,9 @@ TimeToError time_to_error(const scene::Scene& scene, int meshes, const std::file
   const reference::Result result = reference::solve(finer, Eigen::Matrix3Xd(3, 0), options);
   watch.stop();
   std::filesystem::remove_all(store);
+  if (static_cast<int>(result.levels.size()) < meshes + finer_levels) {
+    throw scene::InputError("--time-to-error: " + result.refinement.why_ended);
+  }
 
   TimeToError times;
   const std::vector<double>& exact_n = result.levels.back().force_n;

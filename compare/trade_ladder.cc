@@ -5,7 +5,7 @@
 #include "compare/trade.h"
 #include "fast/step.h"
 #include "fast/ticks.h"
-#include "reference/run/run.h"
+#include "reference/run/cost.h"
 #include "reference/solver.h"
 #include "scene/fields.h"
 

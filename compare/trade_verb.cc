@@ -17,12 +17,15 @@ int run(const fast::VerbOptions& options, const TradeOptions& trade_options, con
   return with_reference_exits([&] {
     scene::Manifest manifest = scene::make_manifest(scene, "touchstone trade");
     const scene::Stopwatch watch;
+    std::string references;  // how each refinement ended
     const Trade found = trade(
         scene, trade_options,
         [&](const scene::Scene& contact, const scene::Surface& surface, std::optional<int> levels) {
           scene::Scene one = asked(contact, reference);
           if (levels) one.reference.levels = levels;
-          return solve_with_progress(one, surface, reference, options.quiet);
+          reference::Result result = solve_with_progress(one, surface, reference, options.quiet);
+          if (!levels) references += one.name + '\n' + refinement_text(result);
+          return result;
         },
         [&](const std::string& line) {
           if (!options.quiet) std::cerr << line << '\n';
@@ -31,7 +34,7 @@ int run(const fast::VerbOptions& options, const TradeOptions& trade_options, con
     if (!trade_options.held_out.empty()) manifest.entries.emplace_back("held out", trade_options.held_out.string());
     for (const auto& file : trade_options.parameters) manifest.entries.emplace_back("parameters", file.string());
     write_trade(folder, found, manifest);
-    std::cout << trade_text(found) << "Report: " << (folder / "report.html").string() << '\n';
+    std::cout << trade_text(found) << references << "Report: " << (folder / "report.html").string() << '\n';
     return fast::done;
   });
 }

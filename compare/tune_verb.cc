@@ -56,6 +56,9 @@ int run(const TuneOptions& options, const ReferenceOptions& reference) {
       manifest.entries.emplace_back("reference of " + data.contact.name, data.result.key);
     write_tuning(folder, tuning, manifest);
     for (const TunedModel& model : tuning.models) std::cout << model_text(tuning, model);
+    for (const TuningData& data : tuning.data) {
+      std::cout << data.contact.name << '\n' << refinement_text(data.result);
+    }
     std::cout << "Parameters: " << (folder / "parameters.toml").string()
               << "\nReport: " << (folder / "report.html").string() << '\n';
     return fast::done;

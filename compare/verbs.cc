@@ -63,7 +63,7 @@ int run_reference(const fast::VerbOptions& options, const ReferenceOptions& refe
     write_reference(folder, result, manifest);
     write_reference_surfaces(folder, surface, result);
     std::cout << reference_text(result) << "Results: " << folder.string() << '\n';
-    return fast::done;
+    return exit_of(result, reference);
   });
 }
 
@@ -86,8 +86,8 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
     manifest.entries.emplace_back("linear_solver", result.linear_solver);
     manifest.entries.emplace_back("reference_key", result.key);
     const Comparison comparison = write_comparison(folder, scene, run, result, manifest);
-    std::cout << comparison.text << "Report: " << (folder / "report.html").string() << '\n';
-    return fast::done;
+    std::cout << comparison.text << refinement_text(result) << "Report: " << (folder / "report.html").string() << '\n';
+    return exit_of(result, reference);
   });
 }
 

@@ -3,6 +3,7 @@
 #include "compare/page.h"
 #include "compare/text.h"
 #include "fast/command_line.h"
+#include "fast/progress_line.h"
 #include "reference/solver.h"
 #include "scene/error.h"
 

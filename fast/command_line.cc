@@ -5,10 +5,7 @@
 #include "scene/first_contact.h"
 #include "scene/scene_io.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 
 namespace touchstone::fast {
@@ -55,32 +52,6 @@ int run_command_line(CLI::App& app, int argc, char** argv, int& exit_code) {
     std::cerr << error.what() << '\n';
     return bad_input;
   }
-}
-
-ProgressLine::ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
-
-ProgressLine::~ProgressLine() { finish(); }
-
-void ProgressLine::show(const std::string& text, bool always) {
-  if (quiet_) return;
-  const auto now = std::chrono::steady_clock::now();
-  const auto interval = terminal_ ? std::chrono::milliseconds(50) : std::chrono::milliseconds(5000);
-  if (!always && now - last_ < interval) return;
-  last_ = now;
-  if (terminal_) {
-    // Blank out what a longer line left behind.
-    std::cerr << '\r' << text << std::string(width_ > text.size() ? width_ - text.size() : 0, ' ') << std::flush;
-    width_ = text.size();
-    open_ = true;
-  } else {
-    std::cerr << text << std::endl;
-  }
-}
-
-void ProgressLine::finish() {
-  if (open_) std::cerr << '\n';
-  open_ = false;
-  width_ = 0;
 }
 
 std::string plan_text(const std::string& title, const scene::Plan& plan) {

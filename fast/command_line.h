@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -37,24 +36,6 @@ CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& wh
 /// Parses and runs the chosen verb; turns every error into one message on stderr and an exit code.
 /// @param exit_code  the variable given to add_verb
 [[nodiscard]] int run_command_line(CLI::App& app, int argc, char** argv, int& exit_code);
-
-/// A progress line that is redrawn on a terminal and printed at most every few seconds elsewhere.
-class ProgressLine {
- public:
-  explicit ProgressLine(bool quiet);
-  ~ProgressLine();
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-  /// @param always  also where the line would be left out for coming too soon
-  void show(const std::string& text, bool always = false);
-  /// Ends a redrawn line, so that other text may follow.
-  void finish();
-
- private:
-  bool quiet_, terminal_, open_ = false;
-  std::size_t width_ = 0;
-  std::chrono::steady_clock::time_point last_;
-};
 
 /// "  yes  part   reason (cost)" lines under a title.
 [[nodiscard]] std::string plan_text(const std::string& title, const scene::Plan& plan);

@@ -1,6 +1,6 @@
 #include "fast/results.h"
 
-#include "fast/command_line.h"
+#include "fast/progress_line.h"
 #include "fast/state.h"
 
 #include <algorithm>
@@ -66,7 +66,7 @@ Run run_into_folder(const scene::Scene& scene, const std::filesystem::path& fold
   Run result = run(scene, [&](double fraction) {
     char text[64];
     std::snprintf(text, sizeof text, "fast: %3.0f %% of the track", 100.0 * fraction);
-    progress.show(text);
+    progress.show(text, fraction == 1.0);
   });
   progress.finish();
   manifest.times.push_back(watch.read("fast"));

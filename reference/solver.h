@@ -18,18 +18,21 @@
 
 namespace touchstone::reference {
 
-/// One line of progress: a Newton iteration or a finished load step.
+/// How far a solve is: a Newton iteration, a finished load step, or something worth a word.
 struct Progress {
-  int level = 0;                  ///< 1-based refinement level
-  int levels = 0;                 ///< 0: as many as the asked error takes
+  int level = 0;                  ///< 1-based mesh
+  int levels = 0;                 ///< meshes asked for, or that are needed at least
+  bool at_least = false;          ///< there may be more than `levels`: as many as the asked error takes
   int instant = 0, instants = 0;  ///< 1-based track instant being solved
   double depth_m = 0.0;
   int newton = 0;             ///< iteration within the load step
   double residual_rel = 0.0;  ///< Newton residual over its scale
   int unknowns = 0;
-  double seconds_left = 0.0;   ///< estimate for this level; negative while unknown
+  double seconds_left =
+      -1.0;  ///< estimate for this mesh, those up to `levels` and the sensitivities; negative: unknown
   bool step_finished = false;  ///< true once per finished load step, after it is on disk
-  std::string note{};          ///< "load step halved", "resumed at instant 7", "from the store"; usually empty
+  bool event = false;          ///< worth a line in a log: a mesh or a sensitivity begins, or nothing had to be solved
+  std::string note{};          ///< "load step halved", "begins", "from the store"; usually empty
 };
 
 struct Options {
@@ -38,10 +41,10 @@ struct Options {
   const std::atomic<bool>* stop = nullptr;        ///< when it becomes true: throw Interrupted, losing no finished step
   /// Area that each rest point stands for in the norm of the shape's uncertainty; empty: all the same.
   std::vector<double> rest_area_m2{};
-  /// Where the scene asks for an error and not for a number of levels, no level is begun that would exceed these by
-  /// prediction, and none but the first is gone on with after that time.
-  std::optional<double> memory_limit_bytes{};  ///< of the process; absent: 80 % of the machine's
-  double seconds_limit = std::numeric_limits<double>::infinity();
+  /// Limits of a solve, on every mesh and sensitivity: none is begun that would exceed them by prediction, and what
+  /// has been begun ends when the time is up, between two Newton iterations. What is in the store is read all the same.
+  std::optional<double> memory_limit_bytes{};                      ///< of the process; absent: 80 % of the machine's
+  double seconds_limit = std::numeric_limits<double>::infinity();  ///< of the whole call
 };
 
 /// What one mesh of the refinement sequence gave.
@@ -77,7 +80,7 @@ struct Sensitivity {
 struct Refinement {
   double error_asked = 0.0;  ///< of force and shape, relative; 0: the scene asks for a number of levels
   bool reached = false;      ///< both uncertainties are at most that
-  std::string why_ended;     ///< "there is no level 5: ... would take about 31 GiB of memory, more than 19"
+  std::string why_ended;     ///< never empty: "there is no mesh 4: it would take about 31 GiB of memory, more than ..."
 };
 
 /// Answer for one scene; `instants` is the finest level's.
@@ -97,7 +100,7 @@ struct Result {
   std::vector<double> equilibrium_rel;              ///< per instant, |contact + support| / |contact|
   std::vector<double> volume_change_rel;            ///< per instant, of the body
   std::vector<LevelRecord> levels;
-  std::vector<Sensitivity> sensitivities;  ///< empty with fewer than three levels
+  std::vector<Sensitivity> sensitivities;  ///< all, or empty: with fewer than three levels, or for want of time
   Refinement refinement;
   bool from_store = false;  ///< nothing had to be solved
 };
@@ -105,6 +108,12 @@ struct Result {
 /// A load step that could not converge even after cutting; names the instant, the contact region and
 /// place, the residual, what to try.
 class NotConverged : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A limit of Options left no mesh finished. Says which, what was finished, and how long the rest probably takes.
+class LimitReached : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
@@ -126,7 +135,7 @@ class Interrupted : public std::runtime_error {
 
 /// Solves, resumes or reads back.
 /// @param rest_points_m  points of the rest surface at which displacement is wanted, 3 x n, world frame
-/// @throws InputError, NotConverged, Interrupted, std::filesystem::filesystem_error
+/// @throws InputError, NotConverged, LimitReached, Interrupted, std::filesystem::filesystem_error
 [[nodiscard]] Result solve(const scene::Scene& scene, const Eigen::Matrix3Xd& rest_points_m, const Options& options);
 
 }  // namespace touchstone::reference

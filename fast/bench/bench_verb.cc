@@ -1,6 +1,7 @@
 #include "fast/bench/bench_verb.h"
 
 #include "fast/command_line.h"
+#include "fast/progress_line.h"
 #include "scene/results.h"
 
 #include <cstdlib>

@@ -1,5 +1,6 @@
 #include "fast/live/live_verb.h"
 
+#include "fast/progress_line.h"
 #include "fast/run.h"
 #include "scene/error.h"
 

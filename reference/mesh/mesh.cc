@@ -1,5 +1,7 @@
 #include "reference/mesh/mesh.h"
 
+#include "reference/mesh/mesh_limit.h"
+
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -15,6 +17,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <string>
 
 namespace touchstone::reference {
 namespace {
@@ -80,10 +83,12 @@ using Map = std::function<Eigen::Matrix<double, dim, 1>(const Eigen::Matrix<doub
 
 template <int dim>
 void refine(dealii::Triangulation<dim>& grid, const Grading<dim>& grading, const Map<dim>& place_m = unmapped<dim>) {
+  constexpr double children = 1 << dim;
   // A cell a hair above the wished size is small enough.
   constexpr double slack = 1.0 + 1e-6;
   for (bool changed = true; changed;) {
     changed = false;
+    double cells = grid.n_active_cells();
     for (const auto& cell : grid.active_cell_iterators()) {
       Corners<dim> corners_m;
       for (const unsigned int v : cell->vertex_indices()) corners_m.col(v) = place_m(to_eigen<dim>(cell->vertex(v)));
@@ -107,7 +112,12 @@ void refine(dealii::Triangulation<dim>& grid, const Grading<dim>& grading, const
       if (edge > slack * wished) {
         cell->set_refine_flag();
         changed = true;
+        cells += children - 1.0;
       }
+    }
+    if (cells > most_cells) {
+      throw MeshTooLarge("the mesh would have more than " + std::to_string(most_cells) +
+                         " cells; expected larger cells by reference.element_size_m");
     }
     if (changed) grid.execute_coarsening_and_refinement();
   }

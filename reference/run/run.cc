@@ -3,8 +3,10 @@
 #include "reference/contact/contact_problem.h"
 #include "reference/contact/load_path.h"
 #include "reference/contact/stuck_contact.h"
+#include "reference/mesh/mesh_limit.h"
 #include "reference/mesh/prolongation.h"
 #include "reference/mesh/sampling.h"
+#include "reference/run/cost.h"
 #include "reference/run/identity.h"
 #include "reference/run/records.h"
 #include "reference/run/sensitivity.h"
@@ -31,38 +33,45 @@ using scene::Scene;
 using Clock = std::chrono::steady_clock;
 
 constexpr int fewest_levels = 3, most_levels = 9;
-constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 double cpu_seconds_since(std::clock_t begin) { return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC; }
 
-/// How the time of a level grows with its unknowns: between assembly (1) and the factorisation in space (2).
-double work_of(double unknowns) { return std::pow(unknowns, 1.7); }
-
 double physical_memory_bytes() {
   return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
+
+/// Thrown between two Newton iterations when Options::seconds_limit is over.
+struct TimeIsUp {};
+
+std::string meshes_text(int count) { return std::to_string(count) + (count == 1 ? " mesh" : " meshes"); }
 
 /// One scene being answered. Levels and instants count from zero here, from one in everything shown.
 template <int dim>
 class Run {
  public:
-  Run(const Scene& scene, const ModelChoice& choice, const Eigen::Matrix3Xd& rest_points_m, const Options& options)
+  Run(const Scene& scene, const ModelChoice& choice, const Eigen::Matrix3Xd& rest_points_m, const Options& options,
+      Clock::time_point begin)
       : scene_(scene),
         choice_(choice),
         rest_points_m_(rest_points_m),
         options_(options),
         body_(scene::body_shape(scene.body)),
-        times_s_(scene::instants_s(scene)) {
+        times_s_(scene::instants_s(scene)),
+        begin_(begin) {
     result_.model = choice_.name(scene_.reference.kinematics);
+    for (const double time_s : times_s_) depths_m_.push_back(depth_m(time_s));
   }
 
   Result answer() {
     const std::string identity = identity_text(scene_);
     Store store(options_.store, identity, [&] {
-      show({.instants = count(), .note = "another run is solving this scene; waiting for it"});
+      show({.instants = count(), .event = true, .note = "another run is solving this scene; waiting for it"});
       check_stop();
+      if (out_of_time()) {
+        throw LimitReached("no answer yet: the time was up while waiting for another run that is solving this scene");
+      }
     });
     result_.key = Store::key(identity);
     result_.from_store = true;
@@ -70,7 +79,7 @@ class Run {
     while (add_level(store)) {
     }
     if (result_.from_store) {
-      show({.level = solved_levels(), .instant = count(), .instants = count(), .note = "from the store"});
+      show({.instants = count(), .event = true, .note = "from the store"});
     }
     return std::move(result_);
   }
@@ -96,42 +105,130 @@ class Run {
   }
 
   void show(Progress progress) const {
-    progress.levels = scene_.reference.levels.value_or(0);
+    progress.levels = std::max(known_levels(), progress.level);
+    progress.at_least = !scene_.reference.levels;
     if (options_.progress) options_.progress(progress);
   }
 
-  [[nodiscard]] bool out_of_time() const { return seconds_since(begin_) > options_.seconds_limit; }
+  [[nodiscard]] double seconds_to_go() const { return options_.seconds_limit - seconds_since(begin_); }
+  [[nodiscard]] bool out_of_time() const { return seconds_to_go() < 0.0; }
+  void check_time() const {
+    if (out_of_time()) throw TimeIsUp();
+  }
+
+  /// How many levels there will be, as far as that is known.
+  [[nodiscard]] int known_levels() const {
+    return std::max(scene_.reference.levels.value_or(fewest_levels), solved_levels());
+  }
+
+  [[nodiscard]] bool touches(int instant) const { return depths_m_[instant] > 0.0; }
+  [[nodiscard]] int deepest() const {
+    return static_cast<int>(std::max_element(depths_m_.begin(), depths_m_.end()) - depths_m_.begin());
+  }
+
+  /// Instants in contact that the store has not of a level.
+  [[nodiscard]] int missing_steps(const Store& store, int level) const {
+    int missing = 0;
+    for (int instant = 0; instant < count(); ++instant) {
+      if (touches(instant) && !std::filesystem::exists(store.step_file(level, instant))) ++missing;
+    }
+    return missing;
+  }
+
+  [[nodiscard]] Cost cost(double unknowns, int load_steps) const {
+    return expected_cost(
+        {.dim = dim, .unknowns = unknowns, .load_steps = load_steps, .friction = scene_.contact.friction.has_value()},
+        ranks::threads());
+  }
+
+  /// What the sensitivities take that the store has not.
+  [[nodiscard]] std::vector<SensitivityWork> missing_sensitivities(const Mesh<dim>& coarsest,
+                                                                   const Store& store) const {
+    const auto until = depths_m_.begin() + deepest() + 1;
+    const auto touching = std::count_if(depths_m_.begin(), until, [](double depth_m) { return depth_m > 0.0; });
+    return reference::missing_sensitivities<dim>(scene_, choice_, coarsest, static_cast<int>(touching), &store);
+  }
+
+  /// Expected time of the known levels after this one and of the sensitivities, before the run's own pace [s].
+  [[nodiscard]] double expected_after_s(int level, const Mesh<dim>& mesh, const Store& store) const {
+    double seconds = 0.0;
+    for (int next = level + 1; next < known_levels(); ++next) {
+      const int missing = missing_steps(store, next);
+      if (missing == 0) continue;
+      try {
+        seconds += cost(unknowns_of(level_mesh<dim>(scene_, choice_, next)), missing).seconds;
+      } catch (const MeshTooLarge&) {
+        return std::numeric_limits<double>::infinity();
+      }
+    }
+    if (known_levels() >= fewest_levels && !sensitivities_known_) {
+      for (const SensitivityWork& one : missing_sensitivities(level == 0 ? mesh : coarsest_, store)) {
+        seconds += expected_cost(one.work, ranks::threads()).seconds;
+      }
+    }
+    return seconds;
+  }
+
+  /// What is to be done after a load step has begun.
+  struct Ahead {
+    double step_s = 0.0;   // expected for one load step of the level
+    int steps_after = 0;   // load steps of the level after this one
+    double later_s = 0.0;  // expected after the level
+    [[nodiscard]] double after_s() const { return steps_after * step_s + later_s; }
+  };
+
+  /// @param spent_s  on the load step so far; one that takes longer than expected still takes a tenth
+  [[nodiscard]] double seconds_left(const Ahead& ahead, double spent_s) const {
+    const double step_s = pace_.factor() * ahead.step_s;
+    return std::max(0.1 * step_s, step_s - spent_s) + pace_.factor() * ahead.after_s();
+  }
 
   /// Solves one level more and takes it into the result. @returns whether another one is wanted
   bool add_level(const Store& store) {
     const int level = solved_levels();
-    auto mesh = std::make_unique<Mesh<dim>>(level_mesh<dim>(scene_, choice_, level));
-    if (std::string why = limit_before(level, *mesh, store); !why.empty()) return stop_at(std::move(why));
+    if (!scene_.reference.levels && level >= most_levels) {
+      return stop_at(not_started(level) + "no scene is refined further");
+    }
+    std::unique_ptr<Mesh<dim>> mesh;
     Level answer;
     try {
-      if (!solve_level(level, *mesh, store, answer)) return stop_at(not_started(level) + "the time was up");
+      mesh = std::make_unique<Mesh<dim>>(level_mesh<dim>(scene_, choice_, level));
+      if (const std::string why = limit_before(level, *mesh, store); !why.empty()) return end_before(level, why);
+      solve_level(level, *mesh, store, answer);
+    } catch (const TimeIsUp&) {
+      return end_before(level, time_up_text(level, *mesh, store, static_cast<int>(answer.steps.size())));
     } catch (const NotConverged& failure) {
       if (scene_.reference.levels || level < fewest_levels) throw;
       return stop_at(not_started(level) + "it did not converge: " + failure.what());
+    } catch (const MeshTooLarge& failure) {
+      return end_before(level, failure.what());
     } catch (const std::bad_alloc&) {
-      if (scene_.reference.levels || level < fewest_levels) throw;
-      return stop_at(not_started(level) + "the memory did not suffice");
+      return end_before(level, "the memory did not suffice");
     }
     take(level, answer);
     coarser_ = std::move(mesh);
     if (level == 0) coarsest_ = *coarser_;
-    if (solved_levels() >= fewest_levels) {
-      if (!sensitivities_known_) measure_sensitivities(store);
-      estimate_uncertainty();
-    } else {
+    if (solved_levels() < fewest_levels) {
       unknown_uncertainty();
+    } else {
+      if (!sensitivities_known_) {
+        if (const std::string why = measure_sensitivities(store); !why.empty()) {
+          unknown_uncertainty();
+          return stop_at("the uncertainty is unknown after " + meshes_text(solved_levels()) + ": " + why);
+        }
+      }
+      estimate_uncertainty();
     }
-    if (scene_.reference.levels) return solved_levels() < *scene_.reference.levels;
+    if (scene_.reference.levels) {
+      if (solved_levels() < *scene_.reference.levels) return true;
+      const std::string asked = meshes_text(solved_levels()) + (solved_levels() == 1 ? " was" : " were") + " asked for";
+      return stop_at(solved_levels() < fewest_levels ? asked + needs_more() : asked);
+    }
     result_.refinement.reached = small_enough(result_.force_uncertainty_rel) &&
                                  small_enough(result_.shape_uncertainty_rel) && solved_levels() >= fewest_levels;
     std::ostringstream text;
     if (result_.refinement.reached) {
-      text << "force and shape are known to " << scene_.reference.error << " after " << solved_levels() << " levels";
+      text << "force and shape are known to " << scene_.reference.error << " after " << meshes_text(solved_levels());
       return stop_at(text.str());
     }
     if (const Sensitivity* one = too_sensitive()) {
@@ -168,36 +265,69 @@ class Run {
   }
 
   [[nodiscard]] static std::string not_started(int level) {
-    return "there is no level " + std::to_string(level + 1) + ": ";
+    return "there is no mesh " + std::to_string(level + 1) + ": ";
   }
 
-  /// Why not to begin with a level, in words; empty when nothing speaks against it. The first is always solved.
-  [[nodiscard]] std::string limit_before(int level, const Mesh<dim>& mesh, const Store& store) const {
-    if (level == 0 || scene_.reference.levels) return {};
-    if (level >= most_levels) return not_started(level) + "no scene is refined further";
-    int missing = 0;
-    for (int instant = 0; instant < count(); ++instant) {
-      if (!std::filesystem::exists(store.step_file(level, instant))) ++missing;
+  [[nodiscard]] static std::string needs_more() { return "; an uncertainty needs " + std::to_string(fewest_levels); }
+
+  /// Ends without a level for a limit's sake. @throws LimitReached when there is no coarser one, either
+  bool end_before(int level, const std::string& why) {
+    if (level == 0) {
+      throw LimitReached("no answer, since mesh 1 is not finished: " + why +
+                         ". Allow more, or make the cells larger with reference.element_size_m (now " +
+                         number_text(element_size_m(scene_, choice_, 0)) + " m).");
     }
-    if (missing == 0) return {};
+    return stop_at(not_started(level) + why + (level < fewest_levels ? needs_more() : ""));
+  }
+
+  [[nodiscard]] static std::string number_text(double value) {
     std::ostringstream text;
     text.precision(3);
-    text << not_started(level);
-    const double unknowns = dim * static_cast<double>(mesh.node_count());
-    const double limit_bytes = options_.memory_limit_bytes.value_or(0.8 * physical_memory_bytes());
-    if (const double needed_bytes = expected_memory_bytes(dim, unknowns); needed_bytes > limit_bytes) {
-      text << unknowns << " unknowns would take about " << needed_bytes / gibibyte << " GiB of memory, more than "
-           << limit_bytes / gibibyte;
+    text << value;
+    return text.str();
+  }
+
+  [[nodiscard]] double memory_limit_bytes() const {
+    return options_.memory_limit_bytes.value_or(0.8 * physical_memory_bytes());
+  }
+
+  /// ", and all that is left of 3 meshes about 2.1 h", or nothing when that is no more than has been said.
+  [[nodiscard]] std::string all_meshes_text(int level, double mesh_s, double later_s) const {
+    if (level + 1 >= known_levels()) return "";
+    const double all_s = mesh_s + later_s;
+    return ", and all that is left of " + meshes_text(known_levels()) +
+           (std::isfinite(all_s) ? " about " + duration_text(all_s) : " more than can be done");
+  }
+
+  /// Why not to begin with a level, in words; empty when nothing speaks against it.
+  [[nodiscard]] std::string limit_before(int level, const Mesh<dim>& mesh, const Store& store) const {
+    const int missing = missing_steps(store, level);
+    if (missing == 0) return {};
+    const Cost needed = cost(unknowns_of(mesh), missing);
+    std::ostringstream text;
+    text << "its " << std::lround(unknowns_of(mesh)) << " unknowns would take about ";
+    if (needed.memory_bytes > memory_limit_bytes()) {
+      text << memory_text(needed.memory_bytes) << " of memory, more than " << memory_text(memory_limit_bytes());
       return text.str();
     }
-    const LevelRecord& last = result_.levels.back();
-    const double needed_s = last.wall_s * work_of(unknowns / last.unknowns) * missing / count();
-    if (const double left_s = options_.seconds_limit - seconds_since(begin_); needed_s > left_s) {
-      text << "it would take about " << needed_s / 60.0 << " min, more than the " << std::max(0.0, left_s) / 60.0
-           << " min left";
+    const double needed_s = pace_.factor() * needed.seconds;
+    if (needed_s > seconds_to_go()) {
+      text << duration_text(needed_s) << " for " << missing << (missing == 1 ? " load step" : " load steps")
+           << ", more than the " << duration_text(std::max(0.0, seconds_to_go())) << " left"
+           << all_meshes_text(level, needed_s, pace_.factor() * expected_after_s(level, mesh, store));
       return text.str();
     }
     return {};
+  }
+
+  /// That the time was up within a level, what is kept of it, and how long the rest probably takes.
+  [[nodiscard]] std::string time_up_text(int level, const Mesh<dim>& mesh, const Store& store, int finished) const {
+    const double mesh_s = pace_.factor() * cost(unknowns_of(mesh), missing_steps(store, level)).seconds;
+    std::ostringstream text;
+    text << "the time was up after " << finished << " of its " << count()
+         << " instants, which are kept; the next run goes on from there, and needs about " << duration_text(mesh_s)
+         << " for this mesh" << all_meshes_text(level, mesh_s, pace_.factor() * expected_after_s(level, mesh, store));
+    return text.str();
   }
 
   void take(int level, Level& answer) {
@@ -242,54 +372,57 @@ class Run {
         shape_uncertainty_rel(result_.instants, result_.displacement_uncertainty_m, options_.rest_area_m2);
   }
 
-  /// Reads what the store has and solves the rest, in track order. @returns false when the time was up
-  bool solve_level(int level, const Mesh<dim>& mesh, const Store& store, Level& answer) {
+  /// Reads what the store has and solves the rest, in track order. @throws TimeIsUp with the answer up to there
+  void solve_level(int level, const Mesh<dim>& mesh, const Store& store, Level& answer) {
     const SurfaceSampler<dim> sampler(mesh, rest_points_m_, choice_.mirror_x, choice_.mirror_y);
     std::optional<ContactProblem<dim>> problem;  // only when something has to be solved
     std::optional<Prolongation<dim>> prolongation;
     std::optional<Solved<dim>> before, current;
-    double solved_s = 0.0;
-    int solved = 0;
+    Ahead ahead{.step_s = cost(unknowns_of(mesh), 1).seconds};
     for (int instant = 0; instant < count(); ++instant) {
-      const double time_s = times_s_[instant];
       check_stop();
       std::optional<std::pair<Solved<dim>, Step>> found;
       if (std::optional<Record> record = store.read(level, instant)) found = from_record<dim>(std::move(*record), mesh);
       if (!found) {
-        if (level > 0 && !scene_.reference.levels && out_of_time()) return false;
-        std::string note;
-        if (instant > 0 && !problem && result_.from_store) {
-          note = "resumed on mesh " + std::to_string(level + 1) + " at instant " + std::to_string(instant + 1);
-        }
+        check_time();
         result_.from_store = false;
+        ahead.steps_after = static_cast<int>(std::count_if(depths_m_.begin() + instant + 1, depths_m_.end(),
+                                                           [](double depth_m) { return depth_m > 0.0; }));
         if (!problem) {
           problem.emplace(mesh, scene_.body.material, scene_.reference.kinematics, choice_.mirror_x, choice_.mirror_y);
           if (scene_.contact.friction) problem->set_friction(*scene_.contact.friction, scene_.fast.r_th_m);
           if (level > 0 && !scene_.contact.friction) prolongation.emplace(*coarser_, mesh);
+          ahead.later_s = expected_after_s(level, mesh, store);
+          show({.level = level + 1,
+                .instant = instant + 1,
+                .instants = count(),
+                .depth_m = depths_m_[instant],
+                .unknowns = problem->unknowns(),
+                .seconds_left = seconds_left(ahead, 0.0),
+                .event = true,
+                .note = instant > 0 ? "resumed" : "begins"});
         }
-        if (!note.empty()) show({.level = level + 1, .instant = instant + 1, .instants = count(), .note = note});
         std::optional<State<dim>> start;
         if (prolongation) start = start_state(*prolongation, store, level, instant);
-        const double left_s = solved > 0 ? solved_s / solved * (count() - instant) : -1.0;
-        found = solve_instant(*problem, level, instant, std::move(start), before, current, left_s);
+        found = solve_instant(*problem, level, instant, std::move(start), before, current, ahead);
         store.write(level, instant, to_record(found->first, found->second));
-        solved_s += found->second.wall_s;
-        if (found->first.touching) ++solved;
+        if (found->first.touching) pace_.finished(ahead.step_s, found->second.wall_s);
         show({.level = level + 1,
               .instant = instant + 1,
               .instants = count(),
-              .depth_m = depth_m(time_s),
+              .depth_m = depths_m_[instant],
               .newton = found->second.newton_iterations,
               .unknowns = found->second.unknowns,
-              .seconds_left = solved > 0 ? solved_s / solved * (count() - instant - 1) : -1.0,
+              .seconds_left = pace_.factor() * ahead.after_s(),
               .step_finished = true});
+      } else if (found->first.touching) {
+        pace_.finished(ahead.step_s, found->second.wall_s);
       }
       answer.shapes.push_back(sampler.displacement_m(found->first.state.u_m));
       answer.steps.push_back(std::move(found->second));
       before = std::move(current);
       current = std::move(found->first);
     }
-    return true;
   }
 
   /// The coarser level's solution on this level's mesh; nothing when the tool did not touch there.
@@ -311,10 +444,9 @@ class Run {
   }
 
   /// @param start  where Newton begins, or nothing to follow the track
-  /// @param left_s  estimate for this instant and the rest of the level, or negative
   std::pair<Solved<dim>, Step> solve_instant(ContactProblem<dim>& problem, int level, int instant,
                                              std::optional<State<dim>> start, const std::optional<Solved<dim>>& before,
-                                             const std::optional<Solved<dim>>& current, double left_s) {
+                                             const std::optional<Solved<dim>>& current, const Ahead& ahead) {
     const double time_s = times_s_[instant];
     const Clock::time_point begin = Clock::now();
     const std::clock_t cpu_begin = std::clock();
@@ -324,14 +456,15 @@ class Run {
     Progress progress{.level = level + 1,
                       .instant = instant + 1,
                       .instants = count(),
-                      .depth_m = depth_m(time_s),
+                      .depth_m = depths_m_[instant],
                       .unknowns = problem.unknowns()};
     const auto watch = [&](int iteration, double residual_rel) {
       progress.newton = iteration;
       progress.residual_rel = residual_rel;
-      progress.seconds_left = left_s < 0.0 ? -1.0 : std::max(0.0, left_s - seconds_since(begin));
+      progress.seconds_left = seconds_left(ahead, seconds_since(begin));
       show(progress);
       check_stop();
+      check_time();
     };
     const std::optional<RigidTool<dim>> tool = tool_at(time_s);
     bool converged = false;
@@ -375,28 +508,79 @@ class Run {
   }
 
   /// On the coarsest level at the deepest instant, from the store where they are known.
-  void measure_sensitivities(const Store& store) {
-    sensitivities_known_ = true;
-    const auto deepest = std::max_element(result_.instants.begin(), result_.instants.end(),
-                                          [](const auto& a, const auto& b) { return a.depth_m < b.depth_m; });
-    const int instant = static_cast<int>(deepest - result_.instants.begin());
-    if (result_.levels[0].force_n[instant] == 0.0) return;
+  /// @returns why they are not known, in words; empty when they are
+  std::string measure_sensitivities(const Store& store) {
+    const int instant = deepest();
+    if (result_.levels[0].force_n[instant] == 0.0) return {};
+    const std::vector<SensitivityWork> missing = missing_sensitivities(coarsest_, store);
+    if (std::string why = limit_before(missing); !why.empty()) return why;
     const auto stored = [&](int which) {
       std::optional<Record> record = which < 0 ? std::nullopt : store.read(0, which);
       return record ? from_record<dim>(std::move(*record), coarsest_) : std::nullopt;
     };
     const auto at = stored(instant), before = stored(instant - 1);
-    if (!at) return;
+    if (!at) return {};
     const std::vector<double> times_s(times_s_.begin(), times_s_.begin() + instant + 1);
-    result_.sensitivities =
-        sensitivities<dim>({scene_, choice_, coarsest_, rest_points_m_, options_.rest_area_m2, times_s, at->first,
-                            at->second.seen.force_n, before ? &before->first : nullptr},
-                           store, [&](const std::string& part, int iteration) {
-                             result_.from_store = false;
-                             check_stop();
-                             if (iteration > 0) return;
-                             show({.instants = count(), .note = "sensitivity to the " + part});
-                           });
+    const double later_s =
+        missing.empty() ? 0.0 : expected_after_s(solved_levels() - 1, *coarser_, store) - expected_s(missing, 0);
+    std::size_t now = missing.size();  // the one being measured
+    Clock::time_point began;
+    const auto watch = [&](const std::string& part, int) {
+      result_.from_store = false;
+      check_stop();
+      check_time();
+      const bool next = now == missing.size() || missing[now].part != part;
+      if (next) {
+        now = std::find_if(missing.begin(), missing.end(), [&](const auto& one) { return one.part == part; }) -
+              missing.begin();
+        began = Clock::now();
+      }
+      const Ahead ahead{.step_s = expected_s(missing, now) - expected_s(missing, now + 1),
+                        .later_s = expected_s(missing, now + 1) + later_s};
+      show({.instants = count(),
+            .seconds_left = seconds_left(ahead, seconds_since(began)),
+            .event = next,
+            .note = "sensitivity to the " + part});
+    };
+    try {
+      result_.sensitivities =
+          sensitivities<dim>({scene_, choice_, coarsest_, rest_points_m_, options_.rest_area_m2, times_s, at->first,
+                              at->second.seen.force_n, before ? &before->first : nullptr},
+                             store, watch);
+    } catch (const TimeIsUp&) {
+      return "the time was up before all sensitivities were measured, which it needs; the next run goes on from there, "
+             "and needs about " +
+             duration_text(pace_.factor() * expected_s(missing_sensitivities(coarsest_, store), 0));
+    } catch (const std::bad_alloc&) {
+      return "the memory did not suffice for the sensitivities, which it needs";
+    }
+    sensitivities_known_ = true;
+    return {};
+  }
+
+  /// Expected time of these from the one at a place on, before the run's own pace [s].
+  [[nodiscard]] static double expected_s(const std::vector<SensitivityWork>& work, std::size_t from) {
+    double seconds = 0.0;
+    for (std::size_t i = from; i < work.size(); ++i) seconds += expected_cost(work[i].work, ranks::threads()).seconds;
+    return seconds;
+  }
+
+  /// Why not to begin with the sensitivities, in words; empty when nothing speaks against it.
+  [[nodiscard]] std::string limit_before(const std::vector<SensitivityWork>& missing) const {
+    double memory_bytes = 0.0;
+    for (const SensitivityWork& one : missing) {
+      memory_bytes = std::max(memory_bytes, expected_memory_bytes(dim, one.work.unknowns));
+    }
+    const std::string needs = "the sensitivities, which it needs, would take about ";
+    if (memory_bytes > memory_limit_bytes()) {
+      return needs + memory_text(memory_bytes) + " of memory, more than " + memory_text(memory_limit_bytes());
+    }
+    const double needed_s = pace_.factor() * expected_s(missing, 0);
+    if (!missing.empty() && needed_s > seconds_to_go()) {
+      return needs + duration_text(needed_s) + ", more than the " + duration_text(std::max(0.0, seconds_to_go())) +
+             " left";
+    }
+    return {};
   }
 
   /// What the differences of the levels do not show.
@@ -433,7 +617,9 @@ class Run {
   const Options& options_;
   std::unique_ptr<const scene::Shape> body_;
   std::vector<double> times_s_;
-  Clock::time_point begin_ = Clock::now();
+  Clock::time_point begin_;
+  std::vector<double> depths_m_;  // of the tool in the body at rest, per instant
+  Pace pace_;
   Result result_;
   std::unique_ptr<Mesh<dim>> coarser_;  // of the level solved last
   Mesh<dim> coarsest_;
@@ -443,15 +629,10 @@ class Run {
 
 }  // namespace
 
-double expected_memory_bytes(int dim, double unknowns) {
-  constexpr double measured_bytes = 1.6e9, measured_unknowns = 93e3;
-  return dim == 3 ? measured_bytes * std::pow(unknowns / measured_unknowns, 1.4) : 5e3 * unknowns;
-}
-
-Result run(const Scene& scene, const ModelChoice& choice, const Eigen::Matrix3Xd& rest_points_m,
-           const Options& options) {
-  if (choice.dim == 2) return Run<2>(scene, choice, rest_points_m, options).answer();
-  return Run<3>(scene, choice, rest_points_m, options).answer();
+Result run(const Scene& scene, const ModelChoice& choice, const Eigen::Matrix3Xd& rest_points_m, const Options& options,
+           std::chrono::steady_clock::time_point begin) {
+  if (choice.dim == 2) return Run<2>(scene, choice, rest_points_m, options, begin).answer();
+  return Run<3>(scene, choice, rest_points_m, options, begin).answer();
 }
 
 }  // namespace touchstone::reference

@@ -4,6 +4,8 @@
 #include "reference/run/model_choice.h"
 #include "reference/solver.h"
 
+#include <chrono>
+
 namespace touchstone::reference {
 
 /// The work behind solve(), for a scene without faults. Level after level, instant after instant; everything finished
@@ -12,11 +14,8 @@ namespace touchstone::reference {
 /// A level starts at every instant from the coarser level's solution there, carried to its nodes, which is nearer than
 /// anything a load path on the level itself can offer; where Newton fails from it, and with friction, which remembers
 /// its path, the body follows the track from the instant before.
+/// @param begin  from when Options::seconds_limit counts
 [[nodiscard]] Result run(const scene::Scene& scene, const ModelChoice& choice, const Eigen::Matrix3Xd& rest_points_m,
-                         const Options& options);
-
-/// Memory that the solve of a mesh takes, of the whole process [bytes]: measured with CHOLMOD on graded blocks, a
-/// factor of 98 MB at 17 thousand and 1.06 GB at 93 thousand unknowns, and half as much again around it.
-[[nodiscard]] double expected_memory_bytes(int dim, double unknowns);
+                         const Options& options, std::chrono::steady_clock::time_point begin);
 
 }  // namespace touchstone::reference

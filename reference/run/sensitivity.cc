@@ -66,6 +66,15 @@ std::vector<Change> changes(const scene::Scene& scene) {
   return list;
 }
 
+/// Its name in the store.
+std::string name_of(const Change& change) { return std::string("sensitivity-") + change.part; }
+
+template <int dim>
+Mesh<dim> changed_mesh(const scene::Scene& scene, const ModelChoice& choice, const Mesh<dim>& coarsest,
+                       const Change& change) {
+  return change.other_mesh() ? level_mesh<dim>(scene, choice, 0, change.mesh) : coarsest;
+}
+
 template <int dim>
 class Repeat {
  public:
@@ -164,6 +173,23 @@ double share_at(const Sensitivity& sensitivity, int level) {
 }
 
 template <int dim>
+std::vector<SensitivityWork> missing_sensitivities(const scene::Scene& scene, const ModelChoice& choice,
+                                                   const Mesh<dim>& coarsest, int touching, const Store* store) {
+  std::vector<SensitivityWork> list;
+  for (const Change& change : changes(scene)) {
+    if (store && store->read(name_of(change))) continue;
+    // With friction the whole track up to there is followed again, without it the last load step alone.
+    const int load_steps = (scene.contact.friction ? touching : 1) * change.load_steps;
+    list.push_back({change.part,
+                    {.dim = dim,
+                     .unknowns = unknowns_of(changed_mesh(scene, choice, coarsest, change)),
+                     .load_steps = load_steps,
+                     .friction = scene.contact.friction.has_value()}});
+  }
+  return list;
+}
+
+template <int dim>
 std::vector<Sensitivity> sensitivities(const SensitivityCase<dim>& given, const Store& store,
                                        const SensitivityWatch& watch) {
   const auto sampled = [&](const Mesh<dim>& mesh, const Solved<dim>& solved) {
@@ -176,10 +202,9 @@ std::vector<Sensitivity> sensitivities(const SensitivityCase<dim>& given, const 
   const Repeat<dim> repeat(given, watch);
   std::vector<Sensitivity> list;
   for (const Change& change : changes(given.scene)) {
-    const Mesh<dim> mesh =
-        change.other_mesh() ? level_mesh<dim>(given.scene, given.choice, 0, change.mesh) : given.mesh;
+    const Mesh<dim> mesh = changed_mesh(given.scene, given.choice, given.mesh, change);
     std::optional<std::pair<Solved<dim>, Step>> found;
-    const std::string name = std::string("sensitivity-") + change.part;
+    const std::string name = name_of(change);
     if (std::optional<Record> record = store.read(name)) found = from_record<dim>(std::move(*record), mesh);
     if (!found) {
       found = repeat.solve(change, mesh);
@@ -197,6 +222,10 @@ std::vector<Sensitivity> sensitivities(const SensitivityCase<dim>& given, const 
   return list;
 }
 
+template std::vector<SensitivityWork> missing_sensitivities(const scene::Scene&, const ModelChoice&, const Mesh<2>&,
+                                                            int, const Store*);
+template std::vector<SensitivityWork> missing_sensitivities(const scene::Scene&, const ModelChoice&, const Mesh<3>&,
+                                                            int, const Store*);
 template std::vector<Sensitivity> sensitivities(const SensitivityCase<2>&, const Store&, const SensitivityWatch&);
 template std::vector<Sensitivity> sensitivities(const SensitivityCase<3>&, const Store&, const SensitivityWatch&);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "reference/contact/load_path.h"
+#include "reference/run/cost.h"
 #include "reference/run/model_choice.h"
 #include "reference/run/store.h"
 #include "reference/solver.h"
@@ -29,12 +30,26 @@ struct SensitivityCase {
 /// What the bands hold of a sensitivity on a level, 0 the coarsest, as a multiple of it.
 [[nodiscard]] double share_at(const Sensitivity& sensitivity, int level);
 
+/// One of the sensitivities before it is measured.
+struct SensitivityWork {
+  std::string part;
+  MeshWork work;
+};
+
+/// What measuring those takes that the store has not.
+/// @param touching  instants in contact up to the one looked at
+/// @param store  nullptr: as if it were empty
+template <int dim>
+[[nodiscard]] std::vector<SensitivityWork> missing_sensitivities(const scene::Scene& scene, const ModelChoice& choice,
+                                                                 const Mesh<dim>& coarsest, int touching,
+                                                                 const Store* store);
+
 using SensitivityWatch = std::function<void(const std::string& part, int iteration)>;
 
-/// One after another: the load step halved, with friction a quarter as long, the active set's contact parameter and the numerical bulk modulus of the
-/// tangent ten times as large, the grid of a mesh tool's distance half as wide, cells at inclusions half as large, and
-/// cells far from the contact half as large. Parts that the scene has not are left out, and the last one is measured
-/// everywhere. Solved once per scene: the store keeps them.
+/// One after another: the load step halved, with friction a quarter as long, the active set's contact parameter and
+/// the numerical bulk modulus of the tangent ten times as large, the grid of a mesh tool's distance half as wide, cells
+/// at inclusions half as large, and cells far from the contact half as large. Parts that the scene has not are left
+/// out, and the last one is measured everywhere. Solved once per scene: the store keeps them.
 /// @param watch  called in every Newton iteration, which are none when all is in the store; may throw to stop
 /// @throws NotConverged
 template <int dim>

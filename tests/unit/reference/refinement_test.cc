@@ -1,6 +1,7 @@
 // Refinement towards an error: where it ends, what it says, what it finds again, and where its levels start from.
 #include "reference/contact/contact_problem.h"
 #include "reference/contact/load_path.h"
+#include "reference/run/cost.h"
 #include "reference/run/model_choice.h"
 #include "reference/run/run.h"
 #include "reference/run/sensitivity.h"
@@ -9,14 +10,22 @@
 
 #include "scene/surface.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <unistd.h>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <filesystem>
+#include <functional>
 #include <set>
+#include <thread>
 
 namespace touchstone::reference {
 namespace {
+
+using testing::HasSubstr;
 
 /// A ball pressed on a ball: axisymmetric.
 scene::Scene ball_on_ball() {
@@ -49,6 +58,7 @@ class RefinementTest : public testing::Test {
     options.rest_area_m2 = surface_.vertex_area_m2;
     options.progress = [&](const Progress& progress) {
       if (progress.step_finished) solved_.insert(progress.level);
+      if (watch_) watch_(progress);
     };
     return solve(scene_, surface_.points_m, options);
   }
@@ -61,6 +71,29 @@ class RefinementTest : public testing::Test {
   scene::Scene scene_;
   scene::Surface surface_;
   std::set<int> solved_;
+  std::function<void(const Progress&)> watch_;
+
+  /// A limit that the estimates fit into, and a watch that lets it pass where `when` first holds.
+  Options over_at(const std::function<bool(const Progress&)>& when) {
+    Options options;
+    options.seconds_limit = 4.0;
+    watch_ = [when, begin = std::chrono::steady_clock::now(), done = false](const Progress& progress) mutable {
+      if (done || !when(progress)) return;
+      done = true;
+      std::this_thread::sleep_until(begin + std::chrono::milliseconds(4100));
+    };
+    return options;
+  }
+  /// What a solve that ends without an answer says.
+  std::string limit_reached(const Options& options) {
+    try {
+      (void)run(options);
+    } catch (const LimitReached& limit) {
+      return limit.what();
+    }
+    ADD_FAILURE() << "there is an answer";
+    return "";
+  }
 };
 
 TEST_F(RefinementTest, EndsWhenForceAndShapeAreKnown) {
@@ -104,18 +137,134 @@ TEST_F(RefinementTest, SaysThatTheMemoryEndedIt) {
   EXPECT_FALSE(result.refinement.reached);
   EXPECT_NE(result.refinement.why_ended.find("GiB of memory"), std::string::npos) << result.refinement.why_ended;
   EXPECT_LE(result.levels.back().unknowns, 6000);
-  const std::string next = "no level " + std::to_string(result.levels.size() + 1) + ":";
+  const std::string next = "no mesh " + std::to_string(result.levels.size() + 1) + ":";
   EXPECT_NE(result.refinement.why_ended.find(next), std::string::npos) << result.refinement.why_ended;
 }
 
-TEST_F(RefinementTest, SaysThatTheTimeEndedIt) {
-  Options options;
-  options.seconds_limit = 0.0;
+TEST_F(RefinementTest, NoMeshIsBegunThatCannotBeFinished) {
+  Options time;
+  time.seconds_limit = 0.001;
+  const std::string why = limit_reached(time);
+  EXPECT_THAT(why, HasSubstr("mesh 1 is not finished: its "));
+  EXPECT_THAT(why, HasSubstr(" for 5 load steps, more than the 0.0 s left, and all that is left of 3 meshes about "));
+  EXPECT_THAT(why, HasSubstr("reference.element_size_m"));
+  Options memory;
+  memory.memory_limit_bytes = 1e6;
+  EXPECT_THAT(limit_reached(memory), HasSubstr(" GiB of memory, more than 0.00093 GiB"));
+  // Who asks for a number of meshes is limited, too.
+  scene_.reference.levels = 2;
+  EXPECT_THAT(limit_reached(memory), HasSubstr(" GiB of memory"));
+  EXPECT_TRUE(solved_.empty());
+  scene_.body.shape = scene::BodyShape::revolution;
+  scene_.body.profile = {{{0.0, 0.0}, {0.03, 0.0}, {0.03, 0.06}, {0.0, 0.06}}, {}};
+  scene_.reference.element_size_m = 1e-8;
+  EXPECT_THAT(limit_reached({}), HasSubstr("more than 300000 cells"));
+}
+
+/// Neither what is solved of the first mesh is lost nor the time to solve it again.
+TEST_F(RefinementTest, TheTimeIsUpWithinTheFirstMesh) {
+  const Options options = over_at([](const Progress& p) { return p.step_finished && p.instant == 3; });
+  const std::string why = limit_reached(options);
+  EXPECT_THAT(why, HasSubstr("the time was up after 3 of its 6 instants, which are kept; the next run goes on from "
+                             "there, and needs about "));
+  EXPECT_THAT(why, HasSubstr(" for this mesh, and all that is left of 3 meshes about "));
+  std::set<int> instants;
+  watch_ = [&](const Progress& p) {
+    if (p.step_finished && p.level == 1) instants.insert(p.instant);
+  };
+  const Result resumed = run();
+  EXPECT_EQ(instants, (std::set<int>{4, 5, 6}));
+  std::filesystem::remove_all(root_);
+  EXPECT_EQ(run().levels[0].force_n, resumed.levels[0].force_n);
+}
+
+/// The last finished mesh is the answer, without an uncertainty, and the unfinished one is gone on with.
+TEST_F(RefinementTest, TheTimeIsUpBetweenTwoNewtonIterations) {
+  const Options options = over_at([](const Progress& p) { return p.level == 2 && p.instant == 4 && p.newton == 1; });
   const Result result = run(options);
   EXPECT_EQ(result.levels.size(), 1u);
   EXPECT_FALSE(result.refinement.reached);
-  EXPECT_NE(result.refinement.why_ended.find("min left"), std::string::npos) << result.refinement.why_ended;
-  EXPECT_TRUE(std::isinf(*result.force_uncertainty_rel));
+  EXPECT_FALSE(std::isfinite(*result.force_uncertainty_rel));
+  EXPECT_FALSE(std::isfinite(*result.shape_uncertainty_rel));
+  const std::string& why = result.refinement.why_ended;
+  EXPECT_TRUE(why.starts_with("there is no mesh 2: the time was up after 3 of its 6 instants, which are kept")) << why;
+  EXPECT_TRUE(why.ends_with("; an uncertainty needs 3")) << why;
+  int first = 0;
+  watch_ = [&](const Progress& p) {
+    if (p.step_finished && first == 0) first = 10 * p.level + p.instant;
+  };
+  EXPECT_EQ(run().levels.size(), 3u);
+  EXPECT_EQ(first, 24);
+}
+
+TEST_F(RefinementTest, TheTimeIsUpWithinTheSensitivities) {
+  scene_.reference.error = 0.05;
+  const Options options = over_at([](const Progress& p) { return p.note == "sensitivity to the far_field"; });
+  const Result result = run(options);
+  EXPECT_EQ(result.levels.size(), 3u);
+  EXPECT_TRUE(result.sensitivities.empty());
+  EXPECT_FALSE(std::isfinite(*result.force_uncertainty_rel));
+  EXPECT_FALSE(result.refinement.reached);
+  const std::string& why = result.refinement.why_ended;
+  EXPECT_TRUE(why.starts_with("the uncertainty is unknown after 3 meshes: the time was up before all sensitivities"))
+      << why;
+  std::set<std::string> measured;
+  watch_ = [&](const Progress& p) {
+    if (p.event) measured.insert(p.note);
+  };
+  const Result again = run();
+  EXPECT_EQ(measured, (std::set<std::string>{"sensitivity to the far_field"})) << "the others are kept";
+  EXPECT_TRUE(again.refinement.reached) << again.refinement.why_ended;
+  EXPECT_TRUE(std::isfinite(*again.force_uncertainty_rel));
+}
+
+TEST_F(RefinementTest, NoSensitivityIsBegunThatCannotBeFinished) {
+  // The finest cells of the three meshes have fewer unknowns than the far field's halved ones would have here.
+  scene_.reference.element_size_m = 0.012;
+  scene_.reference.levels = 3;
+  const ModelChoice choice = choose_model(scene_);
+  double finest = 0.0, far_field = 0.0;
+  for (int level = 0; level < 3; ++level) finest = std::max(finest, unknowns_of(level_mesh<2>(scene_, choice, level)));
+  far_field = unknowns_of(level_mesh<2>(scene_, choice, 0, {.far_field = 0.5}));
+  ASSERT_GT(far_field, finest);
+  Options options;
+  options.memory_limit_bytes = expected_memory_bytes(2, 0.5 * (finest + far_field));
+  const Result result = run(options);
+  EXPECT_EQ(result.levels.size(), 3u);
+  EXPECT_FALSE(std::isfinite(*result.force_uncertainty_rel));
+  EXPECT_THAT(result.refinement.why_ended, HasSubstr("the sensitivities, which it needs, would take about "));
+  EXPECT_THAT(result.refinement.why_ended, HasSubstr(" GiB of memory"));
+}
+
+TEST_F(RefinementTest, ANumberOfMeshesIsAReason) {
+  for (const auto& [levels, why] :
+       {std::pair(1, "1 mesh was asked for; an uncertainty needs 3"),
+        std::pair(2, "2 meshes were asked for; an uncertainty needs 3"), std::pair(3, "3 meshes were asked for")}) {
+    scene_.reference.levels = levels;
+    EXPECT_EQ(run().refinement.why_ended, why);
+  }
+}
+
+/// Of the whole work that is known: it shrinks, it does not end before the work does, and it says so when more may
+/// come.
+TEST_F(RefinementTest, TheTimeLeftIsThatOfAllMeshes) {
+  std::vector<std::pair<int, double>> left;  // of what mesh, in seconds
+  watch_ = [&](const Progress& p) {
+    EXPECT_EQ(p.levels, 3);
+    EXPECT_TRUE(p.at_least);
+    EXPECT_GT(p.seconds_left, 0.0) << p.level << ' ' << p.instant << ' ' << p.note;
+    if (p.step_finished) left.emplace_back(p.level, p.seconds_left);
+  };
+  scene_.reference.error = 0.05;
+  const auto begin = std::chrono::steady_clock::now();
+  const Result result = run();
+  ASSERT_EQ(result.levels.size(), 3u);
+  const double all_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  // In the middle of the work it is known within a factor of four, on a busy machine as well.
+  const auto middle = std::find_if(left.begin(), left.end(), [](const auto& one) { return one.first == 2; });
+  EXPECT_GT(middle->second, 0.1 * all_s);
+  EXPECT_LT(middle->second, 3.0 * all_s);
+  EXPECT_LT(left.back().second, middle->second);
 }
 
 /// Without friction the answer does not depend on where Newton starts: a level followed along its own load path ends

@@ -226,8 +226,12 @@ TEST_F(SolverTest, PlanNamesSymmetryAndWhatIsLeftOut) {
   EXPECT_TRUE(find("axial symmetry")->modelled);
   ASSERT_TRUE(find("friction"));
   EXPECT_FALSE(find("friction")->modelled);
-  ASSERT_TRUE(find("level 2"));
-  EXPECT_NE(find("level 2")->cost.find("unknowns"), std::string::npos);
+  ASSERT_TRUE(find("mesh 2"));
+  EXPECT_NE(find("mesh 2")->cost.find("unknowns"), std::string::npos);
+  ASSERT_TRUE(find("all meshes"));
+  EXPECT_NE(find("all meshes")->reason.find("7 load steps in contact"), std::string::npos)
+      << find("all meshes")->reason;
+  EXPECT_NE(find("all meshes")->cost.find(" s"), std::string::npos);
 }
 
 }  // namespace
