@@ -77,7 +77,8 @@ void add_level_lines(const Scene& scene, const ModelChoice& choice, int levels, 
   }
   std::ostringstream how;
   how << load_steps << " load steps in contact on each mesh" << (uncertainty ? ", and the sensitivities" : "")
-      << "; time within a factor of two on 2 idle cores of an AMD EPYC at 2.6 GHz";
+      << "; time of " << ranks::threads() << " thread" << (ranks::threads() == 1 ? "" : "s")
+      << " on an idle AMD EPYC at 2.6 GHz, within a factor of two";
   plan.push_back(
       {"all meshes", true, how.str(), "about " + memory_text(all.memory_bytes) + " and " + duration_text(all.seconds)});
 }

@@ -53,7 +53,7 @@ std::string duration_text(double seconds) {
   std::ostringstream text;
   text << std::fixed;
   if (seconds < 99.5) {
-    text << std::setprecision(0) << seconds << " s";
+    text << std::setprecision(seconds < 9.95 ? 1 : 0) << seconds << " s";
   } else if (seconds < 99.5 * 60.0) {
     text << std::setprecision(seconds < 600.0 ? 1 : 0) << seconds / 60.0 << " min";
   } else {

@@ -56,7 +56,7 @@ TEST(Cost, PaceComesFromWhatIsFinished) {
 }
 
 TEST(Cost, TimesAndMemoryAreSaidInUnitsThatFit) {
-  EXPECT_EQ(duration_text(0.2), "0 s");
+  EXPECT_EQ(duration_text(0.24), "0.2 s");
   EXPECT_EQ(duration_text(75.4), "75 s");
   EXPECT_EQ(duration_text(150.0), "2.5 min");
   EXPECT_EQ(duration_text(3000.0), "50 min");

@@ -146,7 +146,7 @@ TEST_F(RefinementTest, NoMeshIsBegunThatCannotBeFinished) {
   time.seconds_limit = 0.001;
   const std::string why = limit_reached(time);
   EXPECT_THAT(why, HasSubstr("mesh 1 is not finished: its "));
-  EXPECT_THAT(why, HasSubstr(" for 5 load steps, more than the 0 s left, and all that is left of 3 meshes about "));
+  EXPECT_THAT(why, HasSubstr(" for 5 load steps, more than the 0.0 s left, and all that is left of 3 meshes about "));
   EXPECT_THAT(why, HasSubstr("reference.element_size_m"));
   Options memory;
   memory.memory_limit_bytes = 1e6;
