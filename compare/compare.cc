@@ -1,10 +1,9 @@
 #include "compare/compare.h"
 
+#include "compare/comparison_drawings.h"
 #include "compare/figures.h"
-#include "compare/picture.h"
 #include "compare/report.h"
 #include "compare/svg_plot.h"
-#include "compare/text.h"
 #include "compare/verdict.h"
 #include "compare/vtk_out.h"
 
@@ -43,18 +42,22 @@ std::vector<scene::Column> curve_columns(const fast::Run& run, const reference::
 }
 
 Comparison write_comparison(const std::filesystem::path& folder, const scene::Scene& scene, const fast::Run& run,
-                            const reference::Result& result, const scene::Manifest& manifest) {
+                            const reference::Result& result, const scene::Manifest& manifest, const Call& call) {
   const Errors errors = compute_errors(scene, run, result);
   const Plans plans{fast::plan(scene), reference::plan(scene)};
-  Comparison comparison{make_figures(errors, run, result), ""};
-  for (const std::string& paragraph : verdict(scene, run, result, errors))
-    comparison.text += wrapped(paragraph) + "\n\n";
+  const Verdict told = verdict(scene, run, result, errors, call);
+  const ComparisonDrawings drawings = comparison_drawings(scene, run, result, errors);
+  Comparison comparison{make_figures(errors, run, result), told.text()};
   scene::write_csv(folder / "curve.csv", curve_columns(run, result, errors));
   write_surfaces(folder, run, result, errors);
-  scene::write_file(folder / "shape.svg", as_file(half_cut_svg(scene, run, result, errors.deepest)));
+  scene::write_file(folder / "shape.svg", as_file(drawings.bodies_in_a_row));
+  for (const NextStep& step : told.next) {
+    if (!step.file_name.empty()) scene::write_file(folder / step.file_name, step.file_text);
+  }
   scene::write_summary(folder / "summary.json", comparison.figures);
   scene::write_manifest(folder / "manifest.json", manifest);
-  write_report(folder / "report.html", {scene, run, result, errors, comparison.figures, plans, manifest});
+  write_report(folder / "report.html",
+               {scene, run, result, errors, comparison.figures, told, drawings, plans, manifest});
   return comparison;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "compare/errors.h"
+#include "compare/next_steps.h"
 #include "scene/plan.h"
 #include "scene/results.h"
 
@@ -24,12 +25,13 @@ struct Plans {
 /// What is left to say on the terminal once the folder is written.
 struct Comparison {
   scene::Figures figures;  ///< what summary.json holds
-  std::string text;        ///< the verdict, paragraphs wrapped for a terminal
+  std::string text;        ///< the verdict, wrapped for a terminal
 };
 
 /// Compares and writes the whole folder, which must exist.
+/// @param call  for the commands to type next; without a scene file there are none
 /// @throws std::logic_error when the sides do not belong together, std::filesystem::filesystem_error
 Comparison write_comparison(const std::filesystem::path& folder, const scene::Scene& scene, const fast::Run& run,
-                            const reference::Result& result, const scene::Manifest& manifest);
+                            const reference::Result& result, const scene::Manifest& manifest, const Call& call = {});
 
 }  // namespace touchstone::compare

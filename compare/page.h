@@ -1,11 +1,12 @@
 // What every page of results is made of: one self-contained XHTML file that may fetch nothing but pictures
-// that stand beside it.
+// that stand beside it. Plots show their values where a pointer or a finger is.
 #pragma once
 
 #include "scene/plan.h"
 #include "scene/results.h"
 
 #include <string>
+#include <vector>
 
 namespace touchstone::compare {
 
@@ -27,7 +28,22 @@ namespace touchstone::compare {
 
 [[nodiscard]] std::string plan_table(const scene::Plan& plan);
 
+/// A part of a page under its heading.
+struct Section {
+  std::string title, body;
+  bool folded = false;  ///< the reader opens it
+};
+
+/// Links to all parts, one line.
+[[nodiscard]] std::string contents(const std::vector<Section>& sections);
+[[nodiscard]] std::string in_order(const std::vector<Section>& sections);
+
 /// @param beside  what else the folder holds, a sentence
+[[nodiscard]] Section origin(const scene::Manifest& manifest, const std::string& beside);
+/// Every value in force, folded.
+[[nodiscard]] Section resolved_scene(const scene::Manifest& manifest);
+
+/// Both of them.
 [[nodiscard]] std::string manifest_section(const scene::Manifest& manifest, const std::string& beside);
 
 /// The whole file around a body.

@@ -23,6 +23,7 @@ struct Rgb {
 // A half-cut view, from the top: title, drawing, colour bar.
 constexpr double view_top_px = 36, view_px = 350, bar_top_px = view_top_px + view_px + 10;
 constexpr double view_height_px = bar_top_px + 52;
+constexpr int row_px = 380;  ///< width of each of three
 
 Rgb colour_of(ColourMap map, double share) {
   const std::vector<std::array<int, 3>>& table = colour_table(map);
@@ -134,26 +135,33 @@ std::string label(double x, double y, const std::string& anchor, const std::stri
                      anchor, extra, escape_xml(text));
 }
 
-/// Horizontal colour bar in millimetres.
-/// @param clipped  values above the scale occur and take its last colour
-std::string colour_bar(ColourMap map, double full_scale_m, bool clipped, const std::string& what, double left_px,
-                       double top_px, double width_px) {
+/// What colours stand for.
+struct ColourScale {
+  ColourMap map;
+  double full_m;  ///< of the last colour
+  std::string what;
+  bool clipped = false;  ///< values above the scale occur and take its last colour
+};
+
+/// Horizontal, in millimetres.
+std::string colour_bar(const ColourScale& scale, double left_px, double top_px, double width_px) {
   constexpr int strips = 48;
   std::string out;
   for (int i = 0; i < strips; ++i) {
     out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"11\" fill=\"{}\"/>\n",
                        left_px + width_px * i / strips, top_px, width_px / strips + 0.5,
-                       hex(colour_of(map, (i + 0.5) / strips), 1.0));
+                       hex(colour_of(scale.map, (i + 0.5) / strips), 1.0));
   }
-  const double full_mm = 1e3 * full_scale_m;
+  const double full_mm = 1e3 * scale.full_m;
   for (const double tick : nice_ticks(0.0, full_mm, 5)) {
     const double x = left_px + width_px * tick / full_mm;
     out += fmt::format("<line x1=\"{0:.1f}\" y1=\"{1:.1f}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" stroke=\"currentColor\"/>\n",
                        x, top_px + 11, top_px + 15);
     out += label(x, top_px + 27, "middle", number_text(tick));
   }
-  return out + label(left_px + 0.5 * width_px, top_px + 44, "middle",
-                     fmt::format("{} [mm]{}", what, clipped ? "; the last colour also stands for more" : ""));
+  return out +
+         label(left_px + 0.5 * width_px, top_px + 44, "middle",
+               fmt::format("{} [mm]{}", scale.what, scale.clipped ? "; the last colour also stands for more" : ""));
 }
 
 double largest(const Eigen::VectorXd& values) {
@@ -186,19 +194,19 @@ struct HalfCut {
     }
   }
 
-  /// One view under its title.
-  [[nodiscard]] std::string panel(const std::string& title, const Eigen::Matrix3Xd& displacement_m,
-                                  const Eigen::VectorXd& shade_by_m, double full_m, ColourMap map, double left_px,
-                                  double width_px) const {
-    const Camera camera(seen_m, left_px + 14, view_top_px, width_px - 28, view_px);
-    std::string out = label(left_px + 0.5 * width_px, 20, "middle", title, " font-size=\"14\" font-weight=\"600\"");
+  /// One view under its title, its colour bar below.
+  [[nodiscard]] std::string svg(const std::string& title, const Eigen::Matrix3Xd& displacement_m,
+                                const Eigen::VectorXd& shade_by_m, const ColourScale& scale, int width_px) const {
+    const Camera camera(seen_m, 14, view_top_px, width_px - 28, view_px);
+    std::string out = svg_opening(title, width_px, static_cast<int>(view_height_px));
+    out += label(0.5 * width_px, 20, "middle", title, " font-size=\"14\" font-weight=\"600\"");
     // A viewport of its own keeps a body gone wild out of its neighbours.
     out += fmt::format(
         "<svg x=\"{0:.0f}\" y=\"{1:.0f}\" width=\"{2:.0f}\" height=\"{3:.0f}\" viewBox=\"{0:.0f} {1:.0f} {2:.0f} "
         "{3:.0f}\" "
         "overflow=\"hidden\">\n",
-        left_px, view_top_px - 6, width_px, view_px + 12);
-    out += half_body(surface, displacement_m, y_m, shade_by_m, full_m, map, camera);
+        0.0, view_top_px - 6, static_cast<double>(width_px), view_px + 12);
+    out += half_body(surface, displacement_m, y_m, shade_by_m, scale.full_m, scale.map, camera);
     if (!inclusions_m.empty()) {
       out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.4\" stroke-dasharray=\"6 3\"/>\n",
                          camera.path(inclusions_m), colour(Look::inclusion));
@@ -209,7 +217,7 @@ struct HalfCut {
           "stroke-width=\"1.4\"/>\n",
           camera.path(tool_m));
     }
-    return out + "</svg>\n";
+    return out + "</svg>\n" + colour_bar(scale, 40, bar_top_px, width_px - 80) + "</svg>\n";
   }
 };
 
@@ -246,9 +254,8 @@ double tool_shown_below_m(const scene::Surface& surface) {
   return upper_m.z() + 0.5 * (upper_m - lower_m).maxCoeff();
 }
 
-std::string half_cut_svg(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
-                         std::size_t instant) {
-  constexpr double panel_px = 380;
+std::vector<std::string> half_cut_svgs(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
+                                       std::size_t instant) {
   const Eigen::Matrix3Xd& fast_m = run.instants[instant].displacement_m;
   const Eigen::Matrix3Xd& reference_m = result.instants[instant].displacement_m;
   const Eigen::VectorXd fast_size_m = fast_m.colwise().norm();
@@ -256,32 +263,26 @@ std::string half_cut_svg(const scene::Scene& scene, const fast::Run& run, const 
   const Eigen::VectorXd error_m = (fast_m - reference_m).colwise().norm();
   // The reference sets the scale: a fast model gone wild must not wash out the truth.
   const double full_m = largest(reference_size_m) > 0.0 ? largest(reference_size_m) : largest(fast_size_m);
-  const double full_error_m = largest(error_m);
   const bool clipped = largest(fast_size_m) > 1.001 * full_m;
-
   const HalfCut cut(scene, run.surface, result.instants[instant].tool);
-  std::string out = svg_opening("Both deformed bodies, cut in half, and the error between them",
-                                static_cast<int>(3 * panel_px), static_cast<int>(view_height_px));
-  out += cut.panel("Reference", reference_m, reference_size_m, full_m, ColourMap::displacement, 0.0, panel_px);
-  out += cut.panel("Fast model", fast_m, fast_size_m, full_m, ColourMap::displacement, panel_px, panel_px);
-  out += cut.panel("Error, on the reference's shape", reference_m, error_m, full_error_m, ColourMap::error,
-                   2 * panel_px, panel_px);
-  out += colour_bar(ColourMap::displacement, full_m, clipped, "displacement", 0.5 * panel_px, bar_top_px, panel_px);
-  out += colour_bar(ColourMap::error, full_error_m, false, "distance between the two sides' points", 2 * panel_px + 40,
-                    bar_top_px, panel_px - 80);
-  return out + "</svg>\n";
+  constexpr const char* between = "distance between the two sides' points";
+  return {
+      cut.svg("Reference", reference_m, reference_size_m, {ColourMap::displacement, full_m, "displacement"}, row_px),
+      cut.svg("Fast model", fast_m, fast_size_m, {ColourMap::displacement, full_m, "displacement", clipped}, row_px),
+      cut.svg("Error, on the reference's shape", reference_m, error_m, {ColourMap::error, largest(error_m), between},
+              row_px)};
+}
+
+std::string half_cuts_in_a_row(const std::vector<std::string>& half_cuts) {
+  return in_rows("Both deformed bodies, cut in half, and the error between them", half_cuts,
+                 static_cast<int>(half_cuts.size()), row_px, static_cast<int>(view_height_px));
 }
 
 std::string half_cut_svg(const scene::Scene& scene, const scene::Surface& surface, const scene::InstantRecord& record,
                          const std::string& title) {
-  constexpr double width_px = 560;
   const Eigen::VectorXd size_m = record.displacement_m.colwise().norm();
-  std::string out = svg_opening(title, static_cast<int>(width_px), static_cast<int>(view_height_px));
-  out += HalfCut(scene, surface, record.tool)
-             .panel(title, record.displacement_m, size_m, largest(size_m), ColourMap::displacement, 0.0, width_px);
-  out += colour_bar(ColourMap::displacement, largest(size_m), false, "displacement", 0.2 * width_px, bar_top_px,
-                    0.6 * width_px);
-  return out + "</svg>\n";
+  return HalfCut(scene, surface, record.tool)
+      .svg(title, record.displacement_m, size_m, {ColourMap::displacement, largest(size_m), "displacement"}, 560);
 }
 
 Plot section_plot(const scene::Scene& scene, const scene::Surface& surface, const scene::Pose& pose,

@@ -18,12 +18,15 @@ enum class ColourMap { displacement, error };
 /// pale.
 [[nodiscard]] const std::vector<std::array<int, 3>>& colour_table(ColourMap map);
 
-/// Three half-cut bodies side by side: the reference and the fast model coloured by how far each point moved, on
-/// one scale, and the reference's shape coloured by how far the fast model's points are from there. The body is cut
-/// at the tool's centre, so that the tool does not hide the dimple; the tool's own cut is drawn as an outline.
+/// Three half-cut bodies: the reference and the fast model coloured by how far each point moved, on one scale, and the
+/// reference's shape coloured by how far the fast model's points are from there. The body is cut at the tool's centre,
+/// so that the tool does not hide the dimple; the tool's own cut is drawn as an outline.
 /// @param instant  index of the track instant
-[[nodiscard]] std::string half_cut_svg(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
-                                       std::size_t instant);
+[[nodiscard]] std::vector<std::string> half_cut_svgs(const scene::Scene& scene, const fast::Run& run,
+                                                     const reference::Result& result, std::size_t instant);
+
+/// The three side by side.
+[[nodiscard]] std::string half_cuts_in_a_row(const std::vector<std::string>& half_cuts);
 
 /// One deformed body alone, half-cut likewise and coloured by how far each point moved.
 [[nodiscard]] std::string half_cut_svg(const scene::Scene& scene, const scene::Surface& surface,

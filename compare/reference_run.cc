@@ -59,6 +59,13 @@ std::string progress_text(const reference::Progress& p) {
 
 }  // namespace
 
+std::string options_text(const ReferenceOptions& options) {
+  std::string text;
+  if (options.levels) text += fmt::format(" --level {}", *options.levels);
+  if (options.error) text += fmt::format(" --error {}", *options.error);
+  return text;
+}
+
 scene::Scene asked(scene::Scene scene, const ReferenceOptions& options) {
   if (options.levels) scene.reference.levels = options.levels;
   if (options.error) {

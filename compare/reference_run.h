@@ -20,6 +20,9 @@ struct ReferenceOptions {
   double minutes = 60.0;
 };
 
+/// What of it was said, as it is typed, " --level 3"; without the limits of memory and time, which may be another's.
+[[nodiscard]] std::string options_text(const ReferenceOptions& options);
+
 /// The scene with the levels or the error that the command line asks for.
 [[nodiscard]] scene::Scene asked(scene::Scene scene, const ReferenceOptions& options);
 

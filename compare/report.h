@@ -2,6 +2,8 @@
 #pragma once
 
 #include "compare/compare.h"
+#include "compare/comparison_drawings.h"
+#include "compare/verdict.h"
 
 #include <filesystem>
 
@@ -14,6 +16,8 @@ struct ReportContent {
   const reference::Result& result;
   const Errors& errors;
   const scene::Figures& figures;
+  const Verdict& verdict;
+  const ComparisonDrawings& drawings;
   const Plans& plans;
   const scene::Manifest& manifest;
 };

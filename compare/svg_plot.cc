@@ -12,7 +12,17 @@
 namespace touchstone::compare {
 namespace {
 
-constexpr int margin_left = 64, margin_right = 16, margin_top = 40, margin_bottom = 46;
+constexpr int margin_left_min = 64, margin_right = 16, margin_top = 40, margin_bottom = 46;
+constexpr double tick_gap = 7.0, y_title_px = 20.0;
+
+/// No font to ask: what a letter of a 12 px sans serif needs on average.
+constexpr double letter_px = 6.6;
+
+/// Characters of a UTF-8 text; the bytes that continue one take no place.
+double text_width_px(std::string_view text) {
+  return letter_px *
+         static_cast<double>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
 constexpr int legend_row = 18;
 
 /// Values to pixels along one axis.
@@ -130,7 +140,7 @@ std::string axes(const Plot& plot, const Axis& x, const Axis& y) {
   }
   for (const double tick : y.ticks()) {
     out += grid_line(x.from_px(), y.px(tick), x.to_px(), y.px(tick), 0.13);
-    out += text_at(x.from_px() - 7, y.px(tick) + 4, "end", number_text(tick));
+    out += text_at(x.from_px() - tick_gap, y.px(tick) + 4, "end", number_text(tick));
   }
   if (!y.log() && !plot.same_scale && y.low() < 0.0 && y.high() > 0.0) {
     out += grid_line(x.from_px(), y.px(0.0), x.to_px(), y.px(0.0), 0.45);
@@ -206,6 +216,16 @@ std::string curve_markers(const Curve& curve, const Plot& plot, const Axis& x, c
   return out;
 }
 
+bool can_show(double value, bool log) { return std::isfinite(value) && (!log || value > 0.0); }
+
+/// Something unknown everywhere is not drawn and has no name in the legend.
+bool any_point(const Plot& plot, const std::vector<double>& x, const std::vector<double>& y) {
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (can_show(x[i], plot.x_log) && can_show(y[i], plot.y_log)) return true;
+  }
+  return false;
+}
+
 struct LegendEntry {
   std::string name, swatch;  ///< swatch: SVG drawn 26 wide about (0, 0)
   double width_px = 0.0;
@@ -214,16 +234,16 @@ struct LegendEntry {
 std::vector<LegendEntry> legend_entries(const Plot& plot) {
   std::vector<LegendEntry> entries;
   const auto add = [&](const std::string& name, std::string swatch) {
-    // No font to ask: 6.6 px a letter is what a 12 px sans serif needs on average.
-    if (!name.empty())
-      entries.push_back({name, std::move(swatch), 33.0 + 18.0 + 6.6 * static_cast<double>(name.size())});
+    if (!name.empty()) entries.push_back({name, std::move(swatch), 33.0 + 18.0 + text_width_px(name)});
   };
   for (const Curve& curve : plot.curves) {
+    if (!any_point(plot, curve.x, curve.y)) continue;
     std::string swatch = fmt::format("<line x1=\"0\" y1=\"0\" x2=\"26\" y2=\"0\" {}/>", stroke(curve));
     if (curve.markers) swatch += marker(curve, 13.0, 0.0, "");
     add(curve.name, std::move(swatch));
   }
   for (const Band& band : plot.bands) {
+    if (!any_point(plot, band.x, band.high)) continue;
     add(band.name, fmt::format("<rect x=\"0\" y=\"-5\" width=\"26\" height=\"10\" fill=\"{}\" fill-opacity=\"0.3\"/>",
                                colour(band.look)));
   }
@@ -265,7 +285,7 @@ std::string point_names(const Plot& plot, const Axis& x, const Axis& y) {
       return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
     }
   };
-  constexpr double letter_px = 6.0, height_px = 13.0, gap_px = 6.0;
+  constexpr double height_px = 13.0, gap_px = 6.0;
   std::vector<Box> taken;
   for (const Curve& curve : plot.curves) {
     for (std::size_t i = 0; curve.markers && i < curve.x.size(); ++i) {
@@ -277,7 +297,7 @@ std::string point_names(const Plot& plot, const Axis& x, const Axis& y) {
   std::string out;
   for (const PointName& one : plot.names) {
     if (!x.can_show(one.x) || !y.can_show(one.y)) continue;
-    const double px = x.px(one.x), py = y.px(one.y), width_px = letter_px * static_cast<double>(one.name.size());
+    const double px = x.px(one.x), py = y.px(one.y), width_px = 0.91 * text_width_px(one.name);
     std::optional<Box> place;
     for (int ring = 0; ring < 6 && !place; ++ring) {
       const double away_px = ring * height_px;
@@ -316,6 +336,49 @@ void give_same_scale(std::pair<double, double>& x, std::pair<double, double>& y,
   widen(y, height_px);
 }
 
+/// Both axes where they are drawn, and the legend above them.
+struct Frame {
+  Axis x, y;
+  Legend names;
+};
+
+/// Nothing without a point to draw.
+std::optional<Frame> frame_of(const Plot& plot, int width_px, int height_px) {
+  Extent x_extent, y_extent;
+  const auto include = [&](const std::vector<double>& x, const std::vector<double>& y) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (!can_show(x[i], plot.x_log) || !can_show(y[i], plot.y_log)) continue;
+      x_extent.include(x[i]);
+      y_extent.include(y[i]);
+    }
+  };
+  for (const Curve& curve : plot.curves) include(curve.x, curve.y);
+  for (const Band& band : plot.bands) {
+    include(band.x, band.high);
+    // The lower edge of a band may come close to zero: on a logarithmic axis it would take over the range.
+    if (!plot.y_log) include(band.x, band.low);
+  }
+  if (x_extent.empty() || y_extent.empty()) return std::nullopt;
+  const double right_px = width_px - margin_right, bottom_px = height_px - margin_bottom;
+  // The tick labels fix the left margin, the margin how many rows the legend takes and the rows which ticks there are.
+  double left_px = margin_left_min;
+  for (int round = 0;; ++round) {
+    std::pair<double, double> x_range = plot.x_range.value_or(x_extent.padded(plot.x_log));
+    std::pair<double, double> y_range = plot.y_range.value_or(y_extent.padded(plot.y_log));
+    Legend names = legend(plot, left_px, right_px, margin_top + 2);
+    const double top_px = margin_top + legend_row * names.rows;
+    if (plot.same_scale) give_same_scale(x_range, y_range, right_px - left_px, bottom_px - top_px);
+    const Axis x(x_range.first, x_range.second, plot.x_log, left_px, right_px);
+    const Axis y(y_range.first, y_range.second, plot.y_log, bottom_px, top_px);
+    double needed_px = margin_left_min;
+    for (const double tick : y.ticks()) {
+      needed_px = std::max(needed_px, y_title_px + tick_gap + text_width_px(number_text(tick)));
+    }
+    if (needed_px <= left_px || round == 2) return Frame{x, y, std::move(names)};
+    left_px = std::ceil(needed_px);
+  }
+}
+
 }  // namespace
 
 std::string colour(Look look) {
@@ -347,7 +410,23 @@ std::string svg_opening(const std::string& title, int width_px, int height_px) {
       width_px, height_px, escape_xml(title));
 }
 
-std::pair<double, double> x_axis_px(int width_px) { return {margin_left, width_px - margin_right}; }
+std::pair<double, double> x_axis_px(const Plot& plot, int width_px, int height_px) {
+  const std::optional<Frame> frame = frame_of(plot, width_px, height_px);
+  return frame ? std::pair(frame->x.from_px(), frame->x.to_px())
+               : std::pair<double, double>(margin_left_min, width_px - margin_right);
+}
+
+BandSeen band_seen(const Plot& plot, const Band& band, int width_px, int height_px) {
+  const std::optional<Frame> frame = frame_of(plot, width_px, height_px);
+  if (!frame || !any_point(plot, band.x, band.high)) return BandSeen::nowhere;
+  constexpr double line_px = 4.0;  // with its rim, or nobody sees it
+  for (std::size_t i = 0; i < band.x.size(); ++i) {
+    if (!frame->x.can_show(band.x[i]) || !frame->y.can_show(band.high[i]) || !std::isfinite(band.low[i])) continue;
+    const double low = frame->y.log() ? std::max(band.low[i], frame->y.low()) : band.low[i];
+    if (frame->y.px(low) - frame->y.px(band.high[i]) > line_px) return BandSeen::area;
+  }
+  return BandSeen::narrower_than_the_line;
+}
 
 std::vector<double> nice_ticks(double low, double high, int wanted) {
   const double raw = (high - low) / wanted;
@@ -365,33 +444,12 @@ std::vector<double> nice_ticks(double low, double high, int wanted) {
 std::string to_svg(const Plot& plot, int width_px, int height_px) {
   std::string out = svg_opening(plot.title, width_px, height_px);
   out += text_at(0.5 * width_px, 20, "middle", plot.title, " font-size=\"14\" font-weight=\"600\"");
-
-  Extent x_extent, y_extent;
-  const auto can_show = [](double value, bool log) { return std::isfinite(value) && (!log || value > 0.0); };
-  const auto include = [&](const std::vector<double>& x, const std::vector<double>& y) {
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      if (!can_show(x[i], plot.x_log) || !can_show(y[i], plot.y_log)) continue;
-      x_extent.include(x[i]);
-      y_extent.include(y[i]);
-    }
-  };
-  for (const Curve& curve : plot.curves) include(curve.x, curve.y);
-  for (const Band& band : plot.bands) {
-    include(band.x, band.high);
-    // The lower edge of a band may come close to zero: on a logarithmic axis it would take over the range.
-    if (!plot.y_log) include(band.x, band.low);
-  }
-  if (x_extent.empty() || y_extent.empty()) {
+  const std::optional<Frame> frame = frame_of(plot, width_px, height_px);
+  if (!frame) {
     return out + text_at(0.5 * width_px, 0.5 * height_px, "middle", "nothing to show") + "</svg>\n";
   }
-  std::pair<double, double> x_range = plot.x_range.value_or(x_extent.padded(plot.x_log));
-  std::pair<double, double> y_range = plot.y_range.value_or(y_extent.padded(plot.y_log));
-  const Legend names = legend(plot, margin_left, width_px - margin_right, margin_top + 2);
-  const int top_px = margin_top + legend_row * names.rows;
-  const double right_px = x_axis_px(width_px).second, bottom_px = height_px - margin_bottom;
-  if (plot.same_scale) give_same_scale(x_range, y_range, right_px - margin_left, bottom_px - top_px);
-  const Axis x(x_range.first, x_range.second, plot.x_log, margin_left, right_px);
-  const Axis y(y_range.first, y_range.second, plot.y_log, bottom_px, top_px);
+  const auto& [x, y, names] = *frame;
+  const double left_px = x.from_px(), right_px = x.to_px(), top_px = y.to_px(), bottom_px = y.from_px();
 
   out += axes(plot, x, y);
   out += names.svg;
@@ -401,7 +459,7 @@ std::string to_svg(const Plot& plot, int width_px, int height_px) {
       "<svg x=\"{0:.1f}\" y=\"{1:.1f}\" width=\"{2:.1f}\" height=\"{3:.1f}\" viewBox=\"{0:.1f} {1:.1f} {2:.1f} "
       "{3:.1f}\" "
       "overflow=\"hidden\">\n",
-      margin_left - edge, top_px - edge, right_px - margin_left + 2 * edge, bottom_px - top_px + 2 * edge);
+      left_px - edge, top_px - edge, right_px - left_px + 2 * edge, bottom_px - top_px + 2 * edge);
   for (const Span& span : plot.spans) out += span_area(span, x, y);
   for (const Band& band : plot.bands) out += band_area(band, x, y);
   for (const Curve& curve : plot.curves) out += curve_line(curve, x, y);

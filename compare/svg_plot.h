@@ -15,7 +15,7 @@ enum class Look { reference, fast, plain, outline, inclusion, first, second, thi
 
 /// One curve; a point that is not finite, or not positive on a logarithmic axis, interrupts it.
 struct Curve {
-  std::string name;  ///< in the legend; empty: not listed
+  std::string name;  ///< in the legend where a point is drawn; empty: not listed
   Look look = Look::plain;
   std::vector<double> x, y;
   bool markers = true;
@@ -60,7 +60,7 @@ struct Plot {
 [[nodiscard]] std::string to_svg(const Plot& plot, int width_px = 560, int height_px = 360);
 
 /// Where the x axis of such an element begins and ends [px].
-[[nodiscard]] std::pair<double, double> x_axis_px(int width_px);
+[[nodiscard]] std::pair<double, double> x_axis_px(const Plot& plot, int width_px, int height_px);
 
 /// Begins an <svg> element: its size, font and title; "</svg>" ends it.
 [[nodiscard]] std::string svg_opening(const std::string& title, int width_px, int height_px);
@@ -68,6 +68,10 @@ struct Plot {
 /// Several <svg> elements of one size as one, `columns` to a row.
 [[nodiscard]] std::string in_rows(const std::string& title, const std::vector<std::string>& svgs, int columns,
                                   int width_px, int height_px);
+
+/// What a reader sees of a band: none, one narrower than the line within it, or an area.
+enum class BandSeen { nowhere, narrower_than_the_line, area };
+[[nodiscard]] BandSeen band_seen(const Plot& plot, const Band& band, int width_px = 560, int height_px = 360);
 
 /// The same <svg> element as a file: dark on white, whatever the page around it.
 [[nodiscard]] std::string as_file(const std::string& svg);

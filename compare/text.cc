@@ -10,12 +10,13 @@
 namespace touchstone::compare {
 namespace {
 
-/// Keeps a number and its unit on one line.
-
 const std::string minus = "−";
 
 /// A quantity in SI units smaller than this is what rounding leaves of zero.
 constexpr double rounding = 1e-15;
+
+/// A ratio smaller than this is round-off or the tolerance of a solver.
+constexpr double least_ratio = 1e-6;
 
 struct Scale {
   double factor;  ///< of the scaled unit in the given one
@@ -78,6 +79,8 @@ std::string number_text(double value, int digits) {
 
 std::string percent_text(double ratio) {
   if (!std::isfinite(ratio)) return "not finite";
+  if (ratio != 0.0 && std::abs(ratio) < least_ratio)
+    return fmt::format("below {:.4f}{}%", 100.0 * least_ratio, no_break);
   return fmt::format("{}{}%", number_text(100.0 * ratio), no_break);
 }
 

@@ -13,7 +13,7 @@ inline constexpr std::string_view no_break = "\u00a0";
 /// Three significant digits: "0.34", "170", "21 600", "3 × 10⁸"; "not finite" for NaN and infinity.
 [[nodiscard]] std::string number_text(double value, int digits = 3);
 
-/// A ratio as a percentage, "99.6 %".
+/// A ratio as a percentage, "99.6 %"; "below 0.0001 %" where it is smaller than anything here is known to.
 [[nodiscard]] std::string percent_text(double ratio);
 
 /// A value in its unit, scaled to what is read easily: (0.005, "m") gives "5 mm". Known to scale: m, m2, s, us,

@@ -98,8 +98,7 @@ void keep_instants(fast::Run& run, const std::vector<std::size_t>& instants);
                           const std::function<void(const std::string&)>& say = {});
 
 /// Keys of summary.json: of a comparison under training. and held_out., the worst of the contacts, with
-/// training.<contact>. and held_out.<contact>. for each, with force.nrmse_against_ceiling and
-/// shape.rel_l2_against_ceiling (see ceilings.h) where there are ceilings; the parameters and what is known of them.
+/// training.<contact>. and held_out.<contact>. for each; the parameters and what is known of them.
 /// All of the first model; of every model again behind its name.
 [[nodiscard]] scene::Figures tuning_figures(const Tuning& tuning);
 

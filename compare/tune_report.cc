@@ -1,6 +1,5 @@
 #include "compare/tune_report.h"
 
-#include "compare/ceilings.h"
 #include "compare/page.h"
 #include "compare/svg_plot.h"
 #include "compare/text.h"
@@ -349,34 +348,12 @@ std::string regime_section(const Tuning& tuning, const TunedModel& model) {
          "\n";
 }
 
-std::string ceilings_section(const Tuning& tuning, const TunedModel& model) {
-  std::string out =
-      tag("h3", "Against what can be expected") + "\n" +
-      tag("p",
-          fmt::format(
-              "A prototype tuned on one contact came within {} of the peak force there with the Duffing law and "
-              "{} with the area-aware law, and was {} to {} and {} to {} off on other contacts. Its shape was {} "
-              "to {} off, and exact displacements of the anchor points would have left {} to {}.",
-              percent_text(expected_force(scene::ContactLaw::duffing, false).high),
-              percent_text(expected_force(scene::ContactLaw::area_aware, false).high),
-              number_text(100.0 * expected_force(scene::ContactLaw::duffing, true).low),
-              percent_text(expected_force(scene::ContactLaw::duffing, true).high),
-              number_text(100.0 * expected_force(scene::ContactLaw::area_aware, true).low),
-              percent_text(expected_force(scene::ContactLaw::area_aware, true).high),
-              number_text(100.0 * expected_shape.low), percent_text(expected_shape.high),
-              number_text(100.0 * expected_exact_anchors.low), percent_text(expected_exact_anchors.high)),
-          "class=\"dim\"") +
-      "\n<ul>\n";
-  for (const TuningOutcome& outcome : model.outcomes) {
-    out += tag("li", ceiling_sentence(tuning, model, outcome)) + "\n";
-  }
-  return out + "</ul>\n";
-}
-
 std::string model_section(const Tuning& tuning, const TunedModel& model) {
   std::string out = tag("h2", "The " + model.name() + " model") + "\n";
-  for (const std::string& sentence : model.limits) out += tag("p", sentence) + "\n";
-  out += ceilings_section(tuning, model);
+  // The first model's stand at the top of the page.
+  if (&model != &tuning.models.front()) {
+    for (const std::string& sentence : model.limits) out += tag("p", sentence) + "\n";
+  }
   for (const StageFit& stage : model.stages) out += stage_section(stage);
   out += tag("h3", "Fit and held-out forces") + "\n<div class=\"plots\">\n";
   out += figure(to_svg(residual_plot(tuning, model)), "A pattern here is the law's form, not noise.");

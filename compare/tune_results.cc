@@ -1,7 +1,6 @@
 // What a tuning leaves in its folder, but for the page.
 #include "compare/tune.h"
 
-#include "compare/ceilings.h"
 #include "compare/figures.h"
 #include "compare/tune_report.h"
 #include "scene/fields.h"
@@ -94,13 +93,6 @@ scene::Figures model_figures(const Tuning& tuning, const TunedModel& model) {
       contacts.push_back(contact_figures(tuning, outcome));
       const std::string prefix = group + slug(data.contact.name) + ".";
       add(each, prefix, contacts.back());
-      if (!has_ceiling(data.contact.scene)) continue;
-      const auto place = [&](const char* key, const Measure& error, const Expected& expected) {
-        const std::string found(against(error, expected));
-        if (!found.empty()) each.push_back({prefix + key, 0.0, found, ""});
-      };
-      place("force.nrmse_against_ceiling", outcome.errors.force_nrmse, expected_force(model.law, held_out));
-      place("shape.rel_l2_against_ceiling", outcome.errors.shape_rel_l2, expected_shape);
     }
     if (contacts.empty()) continue;
     add(out, group, worst_of(contacts));

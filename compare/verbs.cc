@@ -74,6 +74,7 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
   const scene::Scene scene = parameters.empty() ? given : scene::with_parameters(given, parameters);
   const std::filesystem::path folder = options.folder(scene, "compare");
   scene::prepare_result_folder(folder);
+  const Call call{options.scene_file, options.overrides, options_text(reference), parameters, folder};
   return with_reference_exits([&] {
     scene::Manifest manifest = scene::make_manifest(scene, "touchstone compare");
     const scene::Stopwatch fast_watch;
@@ -85,7 +86,8 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
     manifest.times.push_back(reference_watch.read("reference"));
     manifest.entries.emplace_back("linear_solver", result.linear_solver);
     manifest.entries.emplace_back("reference_key", result.key);
-    const Comparison comparison = write_comparison(folder, scene, run, result, manifest);
+    manifest.entries.emplace_back("command_line", command_text(call, ""));
+    const Comparison comparison = write_comparison(folder, scene, run, result, manifest, call);
     std::cout << comparison.text << "Report: " << (folder / "report.html").string() << '\n';
     return fast::done;
   });

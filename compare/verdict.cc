@@ -1,6 +1,8 @@
 #include "compare/verdict.h"
 
+#include "compare/comparison_drawings.h"
 #include "compare/text.h"
+#include "fast/state.h"
 
 #include <fmt/format.h>
 
@@ -24,11 +26,13 @@ constexpr double large_penetration_share = 0.1;
 
 std::string newtons(double force_n) { return quantity_text(force_n, "N"); }
 
-/// "169.6 N ± 0.2 N": the value to the digit its uncertainty leaves.
+/// "169.6 N ± 0.2 N": the value to the digit its uncertainty leaves, four digits at most.
 std::string with_band(double force_n, double band_n) {
   if (!std::isfinite(band_n)) return newtons(force_n) + " (uncertainty unknown)";
-  const int decimals = band_n > 0.0 ? std::clamp(-static_cast<int>(std::floor(std::log10(band_n))), 0, 6) : 3;
-  return fmt::format("{:.{}f}{}N ± {:.{}f}{}N", force_n, decimals, no_break, band_n, decimals, no_break);
+  const auto exponent = [](double value) { return static_cast<int>(std::floor(std::log10(value))); };
+  const int most = force_n > 0.0 ? std::max(0, 3 - exponent(force_n)) : 3;
+  const int decimals = band_n > 0.0 ? std::clamp(-exponent(band_n), 0, most) : most;
+  return fmt::format("{:.{}f}{}N ± {}{}N", force_n, decimals, no_break, number_text(band_n, 1), no_break);
 }
 
 /// "78 % too low", "2.5 times too high".
@@ -38,35 +42,41 @@ std::string how_wrong(double ratio) {
   return percent_text(off) + (ratio < 1.0 ? " too low" : " too high");
 }
 
-std::string force_paragraph(const Errors& errors) {
+std::string force_sentence(const Errors& errors) {
   const InstantErrors& deepest = errors.instants[errors.deepest];
   const std::string where = fmt::format("at the deepest instant ({} deep)", quantity_text(deepest.depth_m, "m"));
   const std::string numbers = fmt::format("{} against the reference's {}", newtons(deepest.force_fast_n),
                                           with_band(deepest.force_reference_n, deepest.force_uncertainty_n));
-  std::string text;
   if (std::isfinite(deepest.force_uncertainty_n) && deepest.force_error_n <= deepest.force_uncertainty_n) {
-    text = fmt::format("The fast model's force {} is not distinguishable from the reference's: {}.", where, numbers);
-  } else if (!std::isfinite(deepest.force_fast_n)) {
-    text = fmt::format("The fast model's force {} is not a finite number.", where);
-  } else if (deepest.force_reference_n > 0.0) {
-    text = fmt::format("The fast model's force {} is {}: {}.", where,
-                       how_wrong(deepest.force_fast_n / deepest.force_reference_n), numbers);
-    // Same size, other direction.
-    if (std::abs(deepest.force_fast_n - deepest.force_reference_n) < 0.5 * deepest.force_error_n) {
-      text += fmt::format(" Mostly its direction is wrong: the two force vectors are {} apart.",
-                          newtons(deepest.force_error_n));
-    }
-  } else {
-    text = fmt::format("{}: {}.", where, numbers);
+    return fmt::format("The fast model's force {} is not distinguishable from the reference's: {}.", where, numbers);
   }
-  if (errors.force_nrmse.value) {
-    text += fmt::format(" Over the whole track the error is {} of the peak force (root mean square)",
-                        percent_text(*errors.force_nrmse.value));
-    if (errors.force_rel_deep.value) {
-      text += fmt::format(", and {} of the force itself where the depth exceeds {} of its largest",
-                          percent_text(*errors.force_rel_deep.value), percent_text(deep_share));
-    }
-    text += errors.force_nrmse.distinguishable() ? "." : "; both are not distinguishable from none.";
+  if (!std::isfinite(deepest.force_fast_n)) {
+    return fmt::format("The fast model's force {} is not a finite number.", where);
+  }
+  if (!(deepest.force_reference_n > 0.0)) {
+    return fmt::format("The reference feels no force {}; the fast model's is {}.", where,
+                       newtons(deepest.force_fast_n));
+  }
+  return fmt::format("The fast model's force {} is {}: {}.", where,
+                     how_wrong(deepest.force_fast_n / deepest.force_reference_n), numbers);
+}
+
+/// The force over the whole track, and its direction.
+std::string force_paragraph(const Errors& errors) {
+  if (!errors.force_nrmse.value) return "";
+  std::string text = fmt::format("Force. Over the whole track the error is {} of the peak force (root mean square)",
+                                 percent_text(*errors.force_nrmse.value));
+  if (errors.force_rel_deep.value) {
+    text += fmt::format(". It is {} of the force itself where the depth exceeds {} of its largest",
+                        percent_text(*errors.force_rel_deep.value), percent_text(deep_share));
+  }
+  text += errors.force_nrmse.distinguishable() ? "." : ". Neither can be told from none.";
+  const InstantErrors& deepest = errors.instants[errors.deepest];
+  // Same size, other direction.
+  if (deepest.force_error_n > deepest.force_uncertainty_n && deepest.force_reference_n > 0.0 &&
+      std::abs(deepest.force_fast_n - deepest.force_reference_n) < 0.5 * deepest.force_error_n) {
+    text += fmt::format(" At the deepest instant mostly the direction is wrong: the two force vectors are {} apart.",
+                        newtons(deepest.force_error_n));
   }
   return text;
 }
@@ -83,24 +93,20 @@ std::string reason_paragraph(const scene::Scene& scene, const Errors& errors) {
   const bool too_high = hertz_n && law_n > mismatch * *hertz_n && deepest.force_fast_n > deepest.force_reference_n;
   if (too_low || too_high) {
     text = fmt::format(
-        "Reason: the scene's contact constants do not describe its material. The fast model's law "
-        "F\u00a0=\u00a0k1\u00a0D\u00a0+\u00a0k3\u00a0D³ with k1 = {} N/m and k3 = {} N/m³ gives {} at D = {}; Hertz's "
-        "formula with the scene's Young's modulus ({} MPa), "
-        "Poisson's ratio ({}) and ball gives about {}. Nothing ties k1 and k3 to the modulus: they are inputs that "
-        "must be tuned.",
+        "Reason: the contact constants do not describe the material. Nothing ties k1 and k3 to Young's modulus: they "
+        "are inputs that must be tuned. F\u00a0=\u00a0k1\u00a0D\u00a0+\u00a0k3\u00a0D³ with k1 = {} N/m and k3 = {} "
+        "N/m³ gives "
+        "{} at D = {}. Hertz's formula with E = {} MPa and ν = {} gives about {}.",
         number_text(scene.contact.k1_n_per_m), number_text(scene.contact.k3_n_per_m3), newtons(law_n),
         quantity_text(d, "m"), number_text(1e-6 * scene.body.material.youngs_modulus_pa),
         number_text(scene.body.material.poissons_ratio), newtons(*hertz_n));
     if (scene.contact.k1_n_per_m == table1_k1_n_per_m && scene.contact.k3_n_per_m3 == table1_k3_n_per_m3) {
-      text +=
-          " These are the paper's Table I for rubber, read in millimetres and newtons; the paper tuned them to no "
-          "measurement.";
+      text += " These constants are the paper's Table I for rubber, read in millimetres and newtons.";
     }
     if (deepest.force_fast_n < 0.95 * law_n) {
-      text += fmt::format(
-          " (Its force is {}, less than the law's at D, because it applies the law to a mean depth of the contact "
-          "region.)",
-          newtons(deepest.force_fast_n));
+      text +=
+          fmt::format(" The model's {} are less than the law's, because it takes a mean depth of the contact region.",
+                      newtons(deepest.force_fast_n));
     }
   }
   // A constant factor could be scaled away; a factor that runs with the depth cannot.
@@ -119,33 +125,105 @@ std::string reason_paragraph(const scene::Scene& scene, const Errors& errors) {
   }
   if (most > 1.3 * least) {
     text += fmt::format(
-        "{} the fast model gives {} of the reference's force at {} and {} at {}, so no "
-        "single factor would put it right.",
-        text.empty() ? "The law's form matters:" : " The law's form matters too:", percent_text(least),
-        quantity_text(at_least_m, "m"), percent_text(most), quantity_text(at_most_m, "m"));
+        "{} the fast model gives {} of the reference's force at {} and {} at {}. No single factor would put it right.",
+        text.empty() ? "Reason: the law's form. At different depths the factor differs:"
+                     : " The law's form matters too:",
+        percent_text(least), quantity_text(at_least_m, "m"), percent_text(most), quantity_text(at_most_m, "m"));
+  } else if (text.empty() && least < most * (1.0 + 1e-12) && std::isfinite(least) && std::abs(most - 1.0) > 0.05) {
+    text = fmt::format(
+        "Reason: the contact constants are not tuned to this contact. The fast model gives {} to {} of the reference's "
+        "force at every depth, so another constant would put it right.",
+        percent_text(least), percent_text(most));
   }
   return text;
 }
 
-std::string shape_paragraph(const scene::Scene& scene, const fast::Run& run, const Errors& errors) {
+/// What the fast model says of its own steps.
+std::vector<std::string> status_paragraphs(const scene::Scene& scene, const fast::Run& run) {
+  std::vector<std::string> out;
+  const auto add = [&](fast::StepStatus bit, std::string text) {
+    if ((run.status & static_cast<std::uint32_t>(bit)) != 0) out.push_back("Status. " + std::move(text));
+  };
+  add(fast::StepStatus::not_finite,
+      "Some poses of the tool were not finite numbers; the fast model held its last good answer there.");
+  add(fast::StepStatus::depth_limited,
+      "The tool goes deeper than half of the body's thickness. The fast model held its depth there.");
+  add(fast::StepStatus::law_saturated, "The contact law is past its peak. The fast model held its force there.");
+  add(fast::StepStatus::regions_full,
+      fmt::format("There are more contact regions than fast.max_regions = {}. The smallest were left out.",
+                  scene.fast.max_regions));
+  add(fast::StepStatus::anchors_limited,
+      fmt::format(
+          "The beams are too soft for this force (fast.s_c_m2 = {} m²). An anchor point would have moved farther "
+          "than the tool presses, and was held back there.",
+          number_text(scene.fast.s_c_m2)));
+  return out;
+}
+
+std::string friction_paragraph(const Errors& errors) {
+  if (!errors.friction || !errors.force_friction_nrmse.value) return "";
+  std::string text = fmt::format("Friction. The error is {} of the reference's peak friction (root mean square)",
+                                 percent_text(*errors.force_friction_nrmse.value));
+  if (errors.force_friction_work_rel.value) {
+    const double work = *errors.force_friction_work_rel.value;
+    text += fmt::format(", and the work against it is {} too {}", percent_text(std::abs(work)),
+                        work < 0.0 ? "low" : "high");
+  }
+  const auto begins = [](const std::string& side, const std::optional<double>& path_m) {
+    return side + (path_m ? " slides from " + quantity_text(*path_m, "m") + " of its path on" : " never slides");
+  };
+  return text + ". " + begins("The fast model", errors.slip_onset_fast_m) + ", " +
+         begins("the reference", errors.slip_onset_reference_m) + ".";
+}
+
+std::string shape_sentence(const Errors& errors) {
   if (!errors.shape_rel_l2.value)
     return "The reference's body does not move, so a relative shape error has no meaning.";
-  std::string text;
+  const double error = *errors.shape_rel_l2.value;
   if (!errors.shape_rel_l2.distinguishable()) {
-    text = fmt::format(
+    return fmt::format(
         "The deformed shapes are not distinguishable: they differ by {} of the displacement, the reference itself is "
         "good to {}.",
-        percent_text(*errors.shape_rel_l2.value), percent_text(*errors.shape_rel_l2.uncertainty));
-  } else {
-    text = fmt::format(
-        "The fast model's shape is off by {} of the displacement (root mean square over the whole surface and the "
-        "whole track; the reference {}).",
-        percent_text(*errors.shape_rel_l2.value),
-        errors.shape_rel_l2.uncertainty ? "is good to " + percent_text(*errors.shape_rel_l2.uncertainty)
-                                        : "does not know its own uncertainty");
+        percent_text(error), percent_text(*errors.shape_rel_l2.uncertainty));
+  }
+  const std::string known = errors.shape_rel_l2.uncertainty ? " ± " + percent_text(*errors.shape_rel_l2.uncertainty)
+                                                            : std::string(" (uncertainty unknown)");
+  if (error > 1.0) {
+    return fmt::format(
+        "The fast model's shape is off by {}{} of the displacement. That is worse than no deformation: a surface that "
+        "never moves is 100{}% off.",
+        percent_text(error), known, no_break);
+  }
+  return fmt::format(
+      "The fast model's shape is off by {}{} of the displacement; a surface that never moves is 100{}% off.",
+      percent_text(error), known, no_break);
+}
+
+/// How far the fast model's surface goes along with the reference's: sum A u_f.u_r / sum A u_r.u_r. 1 where it goes as
+/// far in the mean, 0 where it stays.
+double moved_share(const fast::Run& run, const reference::Result& result) {
+  double along = 0.0, scale = 0.0;
+  for (std::size_t t = 0; t < run.instants.size(); ++t) {
+    const Eigen::Matrix3Xd &f = run.instants[t].displacement_m, &r = result.instants[t].displacement_m;
+    for (Eigen::Index i = 0; i < r.cols(); ++i) {
+      const double area_m2 = run.surface.vertex_area_m2[static_cast<std::size_t>(i)];
+      along += area_m2 * f.col(i).dot(r.col(i));
+      scale += area_m2 * r.col(i).squaredNorm();
+    }
+  }
+  return along / scale;
+}
+
+std::string shape_paragraph(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
+                            const Errors& errors) {
+  if (!errors.shape_rel_l2.value) return "";
+  std::string text = "Shape.";
+  const double share = moved_share(run, result);
+  if (errors.shape_rel_l2.distinguishable() && std::isfinite(share) && (share < 0.8 || share > 1.25)) {
+    text += fmt::format(" In the mean the surface moves {} times as far as the reference's.", number_text(share, 2));
   }
   if (errors.shape_inside_r_rel_l2.value && errors.shape_outside_r_rel_l2.value) {
-    text += fmt::format(" Nearer than {} to the contact it is {}, beyond that {}.",
+    text += fmt::format(" Nearer than {} to the contact the error is {}, beyond that {}.",
                         quantity_text(scene.fast.r_R_m, "m"), percent_text(*errors.shape_inside_r_rel_l2.value),
                         percent_text(*errors.shape_outside_r_rel_l2.value));
     if (errors.shape_error_outside_share && *errors.shape_error_outside_share > 0.5) {
@@ -167,7 +245,7 @@ std::string shape_paragraph(const scene::Scene& scene, const fast::Run& run, con
         " The fast model's surface does not follow the tool: it is left inside it by up to {} of the depth.",
         percent_text(*errors.penetration_fast_rel));
   }
-  return text;
+  return text == "Shape." ? "" : text;
 }
 
 std::string cost_paragraph(const fast::Run& run, const reference::Result& result) {
@@ -175,8 +253,8 @@ std::string cost_paragraph(const fast::Run& run, const reference::Result& result
       std::accumulate(result.levels.begin(), result.levels.end(), 0.0,
                       [](double sum, const reference::LevelRecord& level) { return sum + level.wall_s; });
   return fmt::format(
-      "What that costs: one step of the fast model takes {} (median; 99.9 % of the steps below {}); the reference took "
-      "{} for {} instants on {} mesh{}.",
+      "Cost. One step of the fast model takes {} (median; 99.9 % of the steps below {}). The reference took {} for {} "
+      "instants on {} mesh{}.",
       quantity_text(run.step.p50_us, "us"), quantity_text(run.step.p999_us, "us"), quantity_text(wall_s, "s"),
       result.instants.size(), result.levels.size(), result.levels.size() == 1 ? "" : "es");
 }
@@ -195,22 +273,61 @@ std::optional<double> hertz_force_n(const scene::Scene& scene, double depth_m) {
   return 4.0 / 3.0 * body.material.contact_modulus_pa() * std::sqrt(1.0 / curvature_per_m) * std::pow(depth_m, 1.5);
 }
 
-std::vector<std::string> verdict(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
-                                 const Errors& errors) {
-  if (errors.force_peak_reference_n == 0.0) {
-    std::string text = errors.depth_max_m == 0.0
-                           ? "The tool never touches the body on this track, so there is no force or shape to compare."
-                           : "The reference never feels a force on this track, so relative errors have no meaning.";
-    if (errors.force_peak_fast_n > 0.0) {
-      text += fmt::format(" Yet the fast model reports a force of up to {}.", newtons(errors.force_peak_fast_n));
-    }
-    return {text, cost_paragraph(run, result)};
+std::string reference_sentence(const reference::Result& result, const Errors& errors) {
+  const std::optional<double> force = force_known_to(errors);
+  const auto& shape = errors.shape_rel_l2.uncertainty;
+  std::string text = force && shape ? fmt::format("The reference knows its force to {} and its shape to {}.",
+                                                  percent_text(*force), percent_text(*shape))
+                     : errors.force_peak_reference_n == 0.0
+                         ? std::string()
+                         : "The reference's uncertainty is unknown. " + why_uncertainty_unknown(result);
+  if (!result.refinement.why_ended.empty()) {
+    text += fmt::format("{}Refinement ended: {}.", text.empty() ? "" : " ", result.refinement.why_ended);
   }
-  std::vector<std::string> paragraphs{force_paragraph(errors)};
-  if (std::string reason = reason_paragraph(scene, errors); !reason.empty()) paragraphs.push_back(std::move(reason));
-  paragraphs.push_back(shape_paragraph(scene, run, errors));
-  paragraphs.push_back(cost_paragraph(run, result));
-  return paragraphs;
+  return text;
+}
+
+Verdict verdict(const scene::Scene& scene, const fast::Run& run, const reference::Result& result, const Errors& errors,
+                const Call& call) {
+  Verdict out;
+  const auto add = [&](std::string paragraph) {
+    if (!paragraph.empty()) out.reasons.push_back(std::move(paragraph));
+  };
+  if (errors.force_peak_reference_n == 0.0) {
+    out.force = errors.depth_max_m == 0.0
+                    ? "The tool never touches the body on this track, so there is no force or shape to compare."
+                    : "The reference never feels a force on this track, so relative errors have no meaning.";
+    if (errors.force_peak_fast_n > 0.0) {
+      out.force += fmt::format(" Yet the fast model reports a force of up to {}.", newtons(errors.force_peak_fast_n));
+    }
+    add(cost_paragraph(run, result));
+  } else {
+    out.force = force_sentence(errors);
+    out.shape = shape_sentence(errors);
+    for (std::string& paragraph : status_paragraphs(scene, run)) add(std::move(paragraph));
+    add(reason_paragraph(scene, errors));
+    add(force_paragraph(errors));
+    add(friction_paragraph(errors));
+    add(shape_paragraph(scene, run, result, errors));
+    const std::string known = reference_sentence(result, errors);
+    add(known.empty() ? known : "Reference. " + known);
+    add(cost_paragraph(run, result));
+  }
+  out.next = next_steps(scene, run, result, errors, call);
+  return out;
+}
+
+std::string Verdict::text() const {
+  constexpr std::size_t columns = 80;
+  std::string out = wrapped(force, columns) + "\n\n";
+  if (!shape.empty()) out += wrapped(shape, columns) + "\n\n";
+  for (const std::string& paragraph : reasons) out += wrapped(paragraph, columns) + "\n\n";
+  for (const NextStep& step : next) {
+    out += wrapped("Next: " + step.why, columns) + "\n";
+    if (!step.command.empty()) out += "  " + step.command + "\n";
+    out += "\n";
+  }
+  return out;
 }
 
 }  // namespace touchstone::compare

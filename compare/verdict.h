@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compare/errors.h"
+#include "compare/next_steps.h"
 
 #include <optional>
 #include <string>
@@ -14,9 +15,20 @@ namespace touchstone::compare {
 /// order of magnitude for the scene's material, not a reference.
 [[nodiscard]] std::optional<double> hertz_force_n(const scene::Scene& scene, double depth_m);
 
-/// Paragraphs for a reader who knows neither model, the most important first: force, why, shape, cost. An error
-/// within the reference's uncertainty is called not distinguishable.
-[[nodiscard]] std::vector<std::string> verdict(const scene::Scene& scene, const fast::Run& run,
-                                               const reference::Result& result, const Errors& errors);
+struct Verdict {
+  std::string force, shape;          ///< with numbers, for who reads no further
+  std::vector<std::string> reasons;  ///< paragraphs: what limits each side, the most important first
+  std::vector<NextStep> next;
+
+  /// For a terminal: wrapped, commands on lines of their own.
+  [[nodiscard]] std::string text() const;
+};
+
+/// For a reader who knows neither model. An error within the reference's uncertainty is called not distinguishable.
+[[nodiscard]] Verdict verdict(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
+                              const Errors& errors, const Call& call);
+
+/// How well the reference knows its own force and shape, a sentence; why, where it does not.
+[[nodiscard]] std::string reference_sentence(const reference::Result& result, const Errors& errors);
 
 }  // namespace touchstone::compare

@@ -54,6 +54,23 @@ std::string encoded(const std::vector<std::array<std::int32_t, 3>>& triangles) {
   return base64(std::as_bytes(std::span(triangles)));
 }
 
+Plot force_over_time(const Errors& errors) {
+  Plot plot;
+  plot.title = "Force over time";
+  plot.x_label = "time [s]";
+  plot.y_label = "force on the tool [N]";
+  plot.x_range = {errors.instants.front().time_s, errors.instants.back().time_s};
+  plot.cursor = errors.instants[errors.deepest].time_s;
+  Curve reference{"reference", Look::reference, {}, {}}, fast{"fast model", Look::fast, {}, {}};
+  for (const InstantErrors& e : errors.instants) {
+    for (Curve* curve : {&reference, &fast}) curve->x.push_back(e.time_s);
+    reference.y.push_back(e.force_reference_n);
+    fast.y.push_back(e.force_fast_n);
+  }
+  plot.curves = {std::move(reference), std::move(fast)};
+  return plot;
+}
+
 Json data_of(const scene::Scene& scene, const fast::Run& run, const reference::Result& result, const Errors& errors,
              const std::vector<std::size_t>& chosen) {
   Json data;
@@ -66,7 +83,7 @@ Json data_of(const scene::Scene& scene, const fast::Run& run, const reference::R
   }
   data["meanings"] = {{"displacement", "displacement"}, {"error", "distance between the two sides' points"}};
   data["deepest"] = std::find(chosen.begin(), chosen.end(), errors.deepest) - chosen.begin();
-  const auto [left_px, right_px] = x_axis_px(chart_width_px);
+  const auto [left_px, right_px] = x_axis_px(force_over_time(errors), chart_width_px, chart_height_px);
   data["chart"] = {{"width_px", chart_width_px},
                    {"left_px", left_px},
                    {"right_px", right_px},
@@ -97,23 +114,6 @@ std::string script_text(const Json& data) {
     out += c == '<' || c == '>' || c == '&' ? fmt::format("\\u{:04x}", static_cast<int>(c)) : std::string(1, c);
   }
   return out;
-}
-
-std::string chart(const Errors& errors) {
-  Plot plot;
-  plot.title = "Force over time";
-  plot.x_label = "time [s]";
-  plot.y_label = "force on the tool [N]";
-  plot.x_range = {errors.instants.front().time_s, errors.instants.back().time_s};
-  plot.cursor = errors.instants[errors.deepest].time_s;
-  Curve reference{"reference", Look::reference, {}, {}}, fast{"fast model", Look::fast, {}, {}};
-  for (const InstantErrors& e : errors.instants) {
-    for (Curve* curve : {&reference, &fast}) curve->x.push_back(e.time_s);
-    reference.y.push_back(e.force_reference_n);
-    fast.y.push_back(e.force_fast_n);
-  }
-  plot.curves = {std::move(reference), std::move(fast)};
-  return to_svg(plot, chart_width_px, chart_height_px);
 }
 
 constexpr const char* stage = R"(<div class="stage" data-part="stage"><div data-part="canvas" class="canvas"></div>
@@ -167,7 +167,8 @@ std::string viewer_section(const scene::Scene& scene, const fast::Run& run, cons
              "shows the deepest instant.",
              "id=\"viewer-still\" class=\"dim\"") +
          "\n<div id=\"viewer\" class=\"viewer\" hidden=\"hidden\">\n" + stage +
-         "<div data-part=\"chart\" class=\"chart\">" + chart(errors) + "</div>\n";
+         "<div data-part=\"chart\" class=\"chart\">" +
+         to_svg(force_over_time(errors), chart_width_px, chart_height_px) + "</div>\n";
   if (chosen.size() < count) {
     out += tag("p", fmt::format("{} of {} instants; all are in surface.pvd.", chosen.size(), count), "class=\"dim\"");
   }

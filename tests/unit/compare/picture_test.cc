@@ -11,10 +11,13 @@
 namespace touchstone::compare {
 namespace {
 
+std::string half_cuts(const testing::Sides& sides, std::size_t instant) {
+  return half_cuts_in_a_row(half_cut_svgs(sides.scene, sides.run, sides.result, instant));
+}
+
 TEST(Picture, IsWellFormedAndSmallAtTheDefaultSize) {
   const testing::Sides sides = testing::pressed(3);
-  for (const std::string& svg : {half_cut_svg(sides.scene, sides.run, sides.result, 2),
-                                 section_svg(sides.scene, sides.run, sides.result, 2, false),
+  for (const std::string& svg : {half_cuts(sides, 2), section_svg(sides.scene, sides.run, sides.result, 2, false),
                                  section_svg(sides.scene, sides.run, sides.result, 2, true)}) {
     EXPECT_TRUE(testing::is_well_formed(svg));
     EXPECT_FALSE(testing::shows_not_a_number(svg));
@@ -24,7 +27,7 @@ TEST(Picture, IsWellFormedAndSmallAtTheDefaultSize) {
 
 TEST(Picture, ShowsBothSidesAndTheErrorOnOneBodyEach) {
   const testing::Sides sides = testing::pressed(3, 600);
-  const std::string svg = half_cut_svg(sides.scene, sides.run, sides.result, 2);
+  const std::string svg = half_cuts(sides, 2);
   for (const char* title : {">Reference<", ">Fast model<", ">Error, on the reference's shape<"}) {
     EXPECT_NE(svg.find(title), std::string::npos) << title;
   }
@@ -36,7 +39,7 @@ TEST(Picture, ShowsBothSidesAndTheErrorOnOneBodyEach) {
 TEST(Picture, AndItsScaleSurviveAFastModelGoneWild) {
   testing::Sides sides = testing::pressed(3, 600);
   sides.run.instants[2].displacement_m *= 0.5;
-  const std::string before = half_cut_svg(sides.scene, sides.run, sides.result, 2);
+  const std::string before = half_cuts(sides, 2);
   EXPECT_EQ(before.find("last colour also stands for more"), std::string::npos);
   sides.run.instants[2].displacement_m *= 50.0;
   // Broken places on the cut and off it.
@@ -44,7 +47,7 @@ TEST(Picture, AndItsScaleSurviveAFastModelGoneWild) {
   sides.run.surface.points_m.row(1).cwiseAbs().minCoeff(&on_cut);
   sides.run.instants[2].displacement_m(0, on_cut) = std::numeric_limits<double>::quiet_NaN();
   sides.run.instants[2].displacement_m(0, 7) = std::numeric_limits<double>::quiet_NaN();
-  const std::string svg = half_cut_svg(sides.scene, sides.run, sides.result, 2);
+  const std::string svg = half_cuts(sides, 2);
   EXPECT_TRUE(testing::is_well_formed(svg));
   EXPECT_FALSE(testing::shows_not_a_number(svg));
   EXPECT_NE(svg.find("last colour also stands for more"), std::string::npos);
@@ -56,7 +59,7 @@ TEST(Picture, AndItsScaleSurviveAFastModelGoneWild) {
 
 TEST(Picture, OfABodyAtRest) {
   const testing::Sides sides = testing::pressed(3, 600);
-  const std::string svg = half_cut_svg(sides.scene, sides.run, sides.result, 0);
+  const std::string svg = half_cuts(sides, 0);
   EXPECT_TRUE(testing::is_well_formed(svg));
   EXPECT_FALSE(testing::shows_not_a_number(svg));
   EXPECT_FALSE(std::regex_search(svg, std::regex("fill=\"#(?![0-9a-f]{6}\")"))) << "not a colour";

@@ -150,6 +150,41 @@ TEST(SvgPlot, AsAFileIsDarkOnWhiteEverywhere) {
   EXPECT_EQ(svg.find("#ffffff"), std::string::npos);
 }
 
+TEST(SvgPlot, NamesNothingInTheLegendThatIsNotDrawn) {
+  Plot plot = line({0, 1, 2}, {0, 10, 40});
+  const double infinite = std::numeric_limits<double>::infinity();
+  plot.bands.push_back({"band", Look::reference, {0, 1, 2}, {0, 0, 0}, {nan_value, infinite, nan_value}});
+  plot.curves.push_back({"unknown", Look::fast, {0, 1, 2}, {nan_value, nan_value, infinite}});
+  const std::string svg = to_svg(plot);
+  EXPECT_EQ(count(svg, ">band<"), 0u);
+  EXPECT_EQ(count(svg, ">unknown<"), 0u);
+  EXPECT_EQ(count(svg, ">one<"), 1u);
+  EXPECT_EQ(band_seen(plot, plot.bands[0]), BandSeen::nowhere);
+  plot.bands[0].high[1] = 11.0;
+  plot.bands[0].low[1] = 9.0;
+  EXPECT_EQ(count(to_svg(plot), ">band<"), 1u);
+  EXPECT_EQ(band_seen(plot, plot.bands[0]), BandSeen::area);
+  plot.bands[0].high[1] = 9.01;
+  EXPECT_EQ(band_seen(plot, plot.bands[0]), BandSeen::narrower_than_the_line);
+}
+
+TEST(SvgPlot, KeepsTheAxisTitleClearOfTheTickLabels) {
+  for (const auto& [low, high] : {std::pair(0.0, 1.0), std::pair(1.2e5, 1.3e5), std::pair(1.234e-5, 1.235e-5)}) {
+    const Plot plot = line({0, 1}, {low, high});
+    const std::string svg = to_svg(plot);
+    // Tick labels end 7 px left of the axis; a letter takes 6.6 px; the title reaches to 20 px.
+    static const std::regex label("<text x=\"([0-9.]+)\" y=\"[0-9.]+\" text-anchor=\"end\"[^>]*>([^<]*)<");
+    int labels = 0;
+    for (std::sregex_iterator it(svg.begin(), svg.end(), label), end; it != end; ++it, ++labels) {
+      const std::string text = (*it)[2];
+      const auto letters = std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
+      EXPECT_GE(std::stod((*it)[1]) - 6.6 * static_cast<double>(letters), 20.0) << text;
+    }
+    EXPECT_GE(labels, 2);
+    EXPECT_NEAR(x_axis_px(plot, 560, 360).first, circles(svg)[0].first, 0.1);
+  }
+}
+
 TEST(SvgPlot, PutsSeveralInRows) {
   const std::string one = to_svg(line({0, 1}, {0, 1}), 300, 200);
   const std::string svg = in_rows("a & b", {one, one, one, one}, 3, 300, 200);

@@ -1,5 +1,8 @@
 #include "synthetic.h"
 
+#include "compare/figures.h"
+#include "compare/report.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -136,7 +139,17 @@ Sides pressed(int instants, int triangles) {
                     "title = \"A ball pressed on a rubber cube (paper, Fig. 13)\"\n\n[body]\nshape = \"box\"\n",
                     {{"version", "0.1.0"}, {"compiler", "GNU 12.2.0"}, {"date", "2026-01-01T00:00:00Z"}},
                     {{"fast", 1.2, 1.1}, {"reference", 317.0, 560.0}}};
+  sides.call = {"meshes/scenes/ball-on-cube-press.toml", {}, " --level 3", {}, "out/ball-on-cube-press-compare"};
   return sides;
+}
+
+std::string report_of(const Sides& sides) {
+  const Errors errors = compute_errors(sides.scene, sides.run, sides.result);
+  const scene::Figures figures = make_figures(errors, sides.run, sides.result);
+  const Verdict told = verdict(sides.scene, sides.run, sides.result, errors, sides.call);
+  const ComparisonDrawings drawings = comparison_drawings(sides.scene, sides.run, sides.result, errors);
+  return report_html(
+      {sides.scene, sides.run, sides.result, errors, figures, told, drawings, sides.plans, sides.manifest});
 }
 
 Sides small() {

@@ -16,12 +16,16 @@ struct Sides {
   reference::Result result;
   Plans plans;
   scene::Manifest manifest;
+  Call call = {};
 };
 [[nodiscard]] Sides pressed(int instants = 23, int triangles = 3952);
 
 /// Two instants at depths 1 and 10 mm, four rest points of a tetrahedron with vertex areas 1, 2, 3, 4 m^2, no
 /// displacement, no force, no uncertainty: a case to be filled by hand.
 [[nodiscard]] Sides small();
+
+/// The page of a comparison.
+[[nodiscard]] std::string report_of(const Sides& sides);
 
 /// One region with this force on the tool, at this instant.
 void set_force(scene::InstantRecord& record, const scene::Vec3& force_n);

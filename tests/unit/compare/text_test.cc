@@ -43,6 +43,13 @@ TEST(Text, QuantitiesAreScaledToAHandyUnit) {
   EXPECT_EQ(quantity_text(std::nullopt, "m", "none"), "none");
 }
 
+TEST(Text, RoundOffIsNotGivenAsANumber) {
+  EXPECT_EQ(percent_text(9.7e-19), "below 0.0001" + gap + "%");
+  EXPECT_EQ(percent_text(-3e-11), "below 0.0001" + gap + "%");
+  EXPECT_EQ(percent_text(1.4e-6), "1.4 × 10⁻⁴" + gap + "%");
+  EXPECT_EQ(percent_text(0.0), "0" + gap + "%");
+}
+
 TEST(Text, IsWrappedAtSpacesByCharacters) {
   EXPECT_EQ(wrapped("one two three", 7), "one two\nthree");
   EXPECT_EQ(wrapped("ééé ééé ééé", 7), "ééé ééé\nééé");

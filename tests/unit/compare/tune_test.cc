@@ -1,7 +1,7 @@
 // Tuning against references that the fast model itself made: the constants come back, and what cannot be known is said.
 #include "compare/tune.h"
 
-#include "compare/ceilings.h"
+#include "compare/text.h"
 #include "fast/replay.h"
 #include "scene/files.h"
 #include "scene/scene_io.h"
@@ -248,61 +248,6 @@ TEST(Tune, HeldOutFiguresAreTheWorstContactsAndNoneOfTraining) {
   EXPECT_GT(nrmse(1), nrmse(0));
 }
 
-TEST(Ceilings, AreMissedOnlyBeyondTheUncertainty) {
-  const Expected expected{0.1, 0.3};
-  EXPECT_EQ(against({0.05, 0.01}, expected), "below");
-  EXPECT_EQ(against({0.05, 0.06}, expected), "within");
-  EXPECT_EQ(against({0.2, std::nullopt}, expected), "within");
-  EXPECT_EQ(against({0.35, 0.01}, expected), "above");
-  EXPECT_EQ(against({0.35, 0.06}, expected), "within");
-  EXPECT_EQ(against({std::numeric_limits<double>::quiet_NaN(), 0.01}, expected), "above");
-  EXPECT_EQ(against({}, expected), "");
-}
-
-TEST(Ceilings, HeldOutContactsOfTheDuffingLawAreExpectedWorseThanTraining) {
-  for (const scene::ContactLaw law : {scene::ContactLaw::duffing, scene::ContactLaw::area_aware}) {
-    EXPECT_LT(expected_force(law, false).high, expected_force(law, true).low);
-  }
-  EXPECT_LT(expected_force(scene::ContactLaw::area_aware, true).high,
-            expected_force(scene::ContactLaw::duffing, true).low);
-  EXPECT_LT(expected_exact_anchors.high, expected_shape.low);
-}
-
-TEST(Ceilings, AnErrorBelowThemIsAskedForAnExplanation) {
-  scene::TuningStudy asked = study({free("contact.k1_n_per_m", 1e1, 1e5)});
-  const double k1_n_per_m = 900.0;
-  Tuning tuning = tune(asked, made_with({{"contact.k1_n_per_m", k1_n_per_m}}));
-  TunedModel& model = tuning.models.at(0);
-  // Its own answer is nearer than any real body's.
-  const std::string found = ceiling_sentence(tuning, model, model.outcomes.at(1));
-  EXPECT_THAT(found, HasSubstr("deeper (held out): force "));
-  EXPECT_THAT(found, HasSubstr("below the 10 to 35"));
-  EXPECT_THAT(found, HasSubstr("A force and a shape error lower than the ceiling need an explanation."));
-  EXPECT_THAT(found, ::testing::Not(HasSubstr("Without the local factor")));
-  EXPECT_THAT(ceiling_sentence(tuning, model, model.outcomes.at(0)), HasSubstr("Without the local factor the shape"));
-  std::map<std::string, std::string> texts;
-  for (const scene::Figure& figure : tuning_figures(tuning)) texts[figure.key] = figure.text;
-  EXPECT_EQ(texts.at("held_out.deeper.force.nrmse_against_ceiling"), "below");
-  EXPECT_EQ(texts.at("training.pole.shape.rel_l2_against_ceiling"), "below");
-
-  Errors& errors = model.outcomes.at(1).errors;
-  errors.force_nrmse = {0.2, 0.01};
-  errors.shape_rel_l2 = {0.9, 0.01};
-  const std::string expected = ceiling_sentence(tuning, model, model.outcomes.at(1));
-  EXPECT_THAT(expected, HasSubstr("within the 10 to 35"));
-  EXPECT_THAT(expected, HasSubstr("above the 65 to 80"));
-  EXPECT_THAT(expected, ::testing::Not(HasSubstr("explanation")));
-  errors.shape_rel_l2 = {0.5, 0.01};
-  EXPECT_THAT(ceiling_sentence(tuning, model, model.outcomes.at(1)),
-              ::testing::AllOf(HasSubstr("A shape error lower"), ::testing::Not(HasSubstr("even below"))));
-
-  tuning.data.at(1).contact.scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
-  EXPECT_THAT(ceiling_sentence(tuning, model, model.outcomes.at(1)), HasSubstr("nothing to compare with"));
-  for (const scene::Figure& figure : tuning_figures(tuning)) {
-    EXPECT_NE(figure.key, "held_out.deeper.force.nrmse_against_ceiling");
-  }
-}
-
 TEST(Tune, RefusesAContactWithoutAnInstantThatCounts) {
   scene::TuningStudy asked = study({free("contact.k1_n_per_m", 1e1, 1e5)});
   asked.held_out[0].depth_m = {0.1, 1.0};
@@ -338,10 +283,15 @@ TEST(Tune, LeavesAFolderWhoseParametersASceneTakesOver) {
   EXPECT_TRUE(testing::is_well_formed(html));
   EXPECT_FALSE(testing::shows_not_a_number(html));
   EXPECT_LT(html.find("On held-out contacts"), html.find("On training contacts"));
-  for (const char* text_there : {"Made &amp; tuned", "Profile of fast.s_c_m2", "Regime map", "Correlation",
-                                 "What limits", "Against what can be expected", "pole (training): force"}) {
+  for (const char* text_there :
+       {"Made &amp; tuned", "Profile of fast.s_c_m2", "Regime map", "Correlation", "What limits"}) {
     EXPECT_THAT(html, HasSubstr(text_there));
   }
+  // Nobody's material is judged by what another model once reached, and what limits the first model stands there once.
+  EXPECT_THAT(html, ::testing::Not(HasSubstr("prototype")));
+  const std::string limit = escape_xml(tuning.models.front().limits.front());
+  EXPECT_NE(html.find(limit), std::string::npos);
+  EXPECT_EQ(html.find(limit), html.rfind(limit));
 }
 
 }  // namespace
