@@ -2,6 +2,7 @@
 
 #include "compare/comparison_drawings.h"
 #include "compare/figures.h"
+#include "compare/plot_files.h"
 #include "compare/report.h"
 #include "compare/svg_plot.h"
 #include "compare/verdict.h"
@@ -42,7 +43,8 @@ std::vector<scene::Column> curve_columns(const fast::Run& run, const reference::
 }
 
 Comparison write_comparison(const std::filesystem::path& folder, const scene::Scene& scene, const fast::Run& run,
-                            const reference::Result& result, const scene::Manifest& manifest, const Call& call) {
+                            const reference::Result& result, const scene::Manifest& manifest, const Call& call,
+                            bool plots) {
   const Errors errors = compute_errors(scene, run, result);
   const Plans plans{fast::plan(scene), reference::plan(scene)};
   const Verdict told = verdict(scene, run, result, errors, call);
@@ -52,6 +54,7 @@ Comparison write_comparison(const std::filesystem::path& folder, const scene::Sc
   write_surfaces(folder, run, result, errors);
   write_tool(folder, scene.tool, result.instants);
   scene::write_file(folder / "shape.svg", as_file(drawings.bodies_in_a_row));
+  if (plots) write_plots(folder / "plots", drawings.all());
   for (const NextStep& step : told.next) {
     if (!step.file_name.empty()) scene::write_file(folder / step.file_name, step.file_text);
   }

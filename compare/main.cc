@@ -83,10 +83,12 @@ int main(int argc, char** argv) {
   add_reference(solved);
   add_require_error(solved);
   std::filesystem::path parameters;
+  bool plots = false;
   CLI::App* compared = add_with_folder(
       "compare", "both sides, then force and shape errors: tables, VTK, report",
-      [&](const auto& given, const auto& asked) { return compare::run_compare(given, asked, parameters); });
+      [&](const auto& given, const auto& asked) { return compare::run_compare(given, asked, parameters, plots); });
   compared->add_option("--parameters", parameters, "file that tune left, for the fast side alone");
+  compared->add_flag("--plots", plots, "every plot of the report also as SVG and PDF, in the folder's plots/");
   add_reference(compared);
   add_require_error(compared);
   compare::StudyOptions study_options;

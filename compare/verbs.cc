@@ -2,6 +2,7 @@
 
 #include "compare/compare.h"
 #include "compare/fast_report.h"
+#include "compare/plot_files.h"
 #include "compare/reference_run.h"
 #include "compare/vtk_out.h"
 #include "fast/results.h"
@@ -70,7 +71,7 @@ int run_reference(const fast::VerbOptions& options, const ReferenceOptions& refe
 }
 
 int run_compare(const fast::VerbOptions& options, const ReferenceOptions& reference,
-                const std::filesystem::path& parameters) {
+                const std::filesystem::path& parameters, bool plots) {
   const scene::Scene given = asked(options.load(), reference);
   refuse(reference::unsupported(given));
   const scene::Scene scene = parameters.empty() ? given : scene::with_parameters(given, parameters);
@@ -89,7 +90,11 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
     manifest.entries.emplace_back("linear_solver", result.linear_solver);
     manifest.entries.emplace_back("reference_key", result.key);
     manifest.entries.emplace_back("command_line", command_text(call, ""));
-    const Comparison comparison = write_comparison(folder, scene, run, result, manifest, call);
+    const Comparison comparison = write_comparison(folder, scene, run, result, manifest, call, plots);
+    if (plots) {
+      std::cout << "Plots: " << (folder / "plots").string() << " (SVG"
+                << (has_pdf() ? " and PDF" : "; PDF needs a build with librsvg, Debian's librsvg2-dev") << ")\n";
+    }
     std::cout << comparison.text << refinement_text(result) << "Report: " << (folder / "report.html").string() << '\n';
     return exit_of(result, reference);
   });

@@ -13,7 +13,8 @@ int plan(const fast::VerbOptions& options, const ReferenceOptions& reference);
 int run_fast(const fast::VerbOptions& options, const ReferenceOptions& reference);
 int run_reference(const fast::VerbOptions& options, const ReferenceOptions& reference);
 /// @param parameters  file that `tune` leaves, or empty; for the fast side alone, the reference keeps the scene's own
+/// @param plots  also every plot of the report as files
 int run_compare(const fast::VerbOptions& options, const ReferenceOptions& reference,
-                const std::filesystem::path& parameters);
+                const std::filesystem::path& parameters, bool plots = false);
 
 }  // namespace touchstone::compare

@@ -167,7 +167,8 @@ std::string viewer_section(const scene::Scene& scene, const fast::Run& run, cons
              "shows the deepest instant.",
              "id=\"viewer-still\" class=\"dim\"") +
          "\n<div id=\"viewer\" class=\"viewer\" hidden=\"hidden\">\n" + stage +
-         "<div data-part=\"chart\" class=\"chart\">" + to_svg(force_over_time(errors), chart_width_px, chart_height_px) + "</div>\n";
+         "<div data-part=\"chart\" class=\"chart\">" +
+         to_svg(force_over_time(errors), chart_width_px, chart_height_px) + "</div>\n";
   if (chosen.size() < count) {
     out += tag("p", fmt::format("{} of {} instants; all are in surface.pvd.", chosen.size(), count), "class=\"dim\"");
   }

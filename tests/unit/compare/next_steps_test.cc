@@ -89,8 +89,7 @@ TEST(NextSteps, AskForThreeMeshesWhereTheUncertaintyIsUnknown) {
   sides.call.reference = " --level 1";
   sides.result.levels.resize(1);
   sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
-  EXPECT_EQ(find(steps_of(sides), "enough meshes").command,
-            "touchstone compare meshes/scenes/ball-on-cube-press.toml");
+  EXPECT_EQ(find(steps_of(sides), "enough meshes").command, "touchstone compare meshes/scenes/ball-on-cube-press.toml");
 }
 
 TEST(NextSteps, NameTheStudyThatTrainsOnTheScene) {

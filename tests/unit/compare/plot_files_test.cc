@@ -1,0 +1,59 @@
+#include "compare/plot_files.h"
+
+#include "compare/compare.h"
+#include "scene/files.h"
+#include "synthetic.h"
+#include "temporary_folder.h"
+#include "xml.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace touchstone::compare {
+namespace {
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(PlotFiles, EveryPlotOfTheReportIsSavedWhenAsked) {
+  const testing::Sides sides = testing::pressed(4, 200);
+  const testing::TemporaryFolder folder;
+  (void)write_comparison(folder.path(), sides.scene, sides.run, sides.result, sides.manifest, {});
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "plots"));
+  (void)write_comparison(folder.path(), sides.scene, sides.run, sides.result, sides.manifest, {}, true);
+  std::set<std::string> svg, pdf;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "plots")) {
+    const std::string text = scene::read_file(entry.path()).value();
+    if (entry.path().extension() == ".svg") {
+      svg.insert(entry.path().stem());
+      EXPECT_TRUE(testing::is_well_formed(text)) << entry.path();
+      EXPECT_TRUE(has(text, "fill=\"#ffffff\"")) << entry.path();
+    } else {
+      pdf.insert(entry.path().stem());
+      EXPECT_TRUE(text.starts_with("%PDF-")) << entry.path();
+    }
+  }
+  EXPECT_EQ(svg,
+            (std::set<std::string>{"bodies", "force-error", "force-logarithmic", "force-over-depth", "force-over-time",
+                                   "section", "section-contact", "shape-error", "shape-largest-error"}));
+  EXPECT_EQ(pdf, has_pdf() ? svg : std::set<std::string>{});
+}
+
+TEST(PlotFiles, PdfIsVectorsWithEmbeddedFontsInTheDrawingsSize) {
+  if (!has_pdf()) GTEST_SKIP() << "built without librsvg";
+  Plot plot;
+  plot.title = "Force";
+  plot.curves.push_back({"one", Look::reference, {0, 1, 2}, {0, 1, 4}});
+  const std::string pdf = pdf_of(as_file(to_svg(plot, 560, 360)));
+  EXPECT_TRUE(has(pdf, "/MediaBox [ 0 0 420 270 ]")) << pdf.substr(0, 2000);
+  EXPECT_TRUE(has(pdf, "/FontFile"));
+  EXPECT_FALSE(has(pdf, "/Subtype /Image"));
+}
+
+TEST(PlotFiles, WhatIsNoDrawingIsRefused) {
+  if (!has_pdf()) GTEST_SKIP() << "built without librsvg";
+  EXPECT_THROW((void)pdf_of("no drawing"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace touchstone::compare
