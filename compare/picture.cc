@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 
@@ -213,6 +214,41 @@ struct HalfCut {
   }
 };
 
+/// A body's section is one outline. On a reference's mesh it has gaps where a face meets two halves of another along a
+/// curved edge.
+constexpr double gap_share = 5e-3;
+
+std::vector<std::vector<EdgePoint>> cut_of(const DeformedBody& body, double y_m) {
+  return cut_at_y(body.surface, y_m, gap_share);
+}
+
+Outlines moved_m(const DeformedBody& body, const std::vector<std::vector<EdgePoint>>& cut) {
+  Outlines outlines_m;
+  for (const auto& outline : cut) {
+    outlines_m.emplace_back();
+    for (const EdgePoint& p : outline) {
+      outlines_m.back().push_back(p.of(body.surface.points_m) + p.of(body.displacement_m));
+    }
+  }
+  return outlines_m;
+}
+
+/// Small marks at those points of the cut that are wanted.
+void add_points(Plot& plot, const DeformedBody& body, double y_m, const std::function<bool(const EdgePoint&)>& wanted) {
+  Curve curve{"", body.look, {}, {}};
+  curve.points_only = true;
+  for (const auto& outline : cut_of(body, y_m)) {
+    for (const EdgePoint& p : outline) {
+      if (!wanted(p)) continue;
+      const Vec3 at_mm = 1e3 * (p.of(body.surface.points_m) + p.of(body.displacement_m));
+      if (!curve.x.empty() && std::hypot(curve.x.back() - at_mm.x(), curve.y.back() - at_mm.z()) < 1e-3) continue;
+      curve.x.push_back(at_mm.x());
+      curve.y.push_back(at_mm.z());
+    }
+  }
+  plot.curves.push_back(std::move(curve));
+}
+
 void add_outlines(Plot& plot, const std::string& name, Look look, const Outlines& outlines_m, bool filled = false) {
   if (outlines_m.empty()) return;
   Curve curve{name, look, {}, {}, false, filled};
@@ -287,23 +323,16 @@ std::string half_cut_svg(const scene::Scene& scene, const scene::Surface& surfac
 Plot section_plot(const scene::Scene& scene, const scene::Surface& surface, const scene::Pose& pose,
                   const std::vector<DeformedBody>& bodies) {
   const double y_m = cut_y_m(surface, pose);
-  const auto cut = cut_at_y(surface, y_m);
-  const auto moved_m = [&](const Eigen::Matrix3Xd& displacement_m) {
-    Outlines outlines_m;
-    for (const auto& outline : cut) {
-      outlines_m.emplace_back();
-      for (const EdgePoint& p : outline) outlines_m.back().push_back(p.of(surface.points_m) + p.of(displacement_m));
-    }
-    return outlines_m;
-  };
+  const Eigen::Matrix3Xd still_m = Eigen::Matrix3Xd::Zero(3, surface.points_m.cols());
+  const auto outlines_of = [&](const DeformedBody& body) { return moved_m(body, cut_of(body, y_m)); };
   Plot plot;
   plot.x_label = "x [mm]";
   plot.y_label = "z [mm]";
   plot.same_scale = true;
-  add_outlines(plot, "rest", Look::outline, moved_m(Eigen::Matrix3Xd::Zero(3, surface.points_m.cols())));
+  add_outlines(plot, "rest", Look::outline, outlines_of({"", Look::outline, surface, still_m}));
   add_outlines(plot, "inclusion, at rest", Look::inclusion, inclusion_outlines_m(scene.body, y_m));
   add_outlines(plot, "tool", Look::plain, tool_outlines_m(scene.tool, pose, y_m), true);
-  for (const DeformedBody& body : bodies) add_outlines(plot, body.name, body.look, moved_m(body.displacement_m));
+  for (const DeformedBody& body : bodies) add_outlines(plot, body.name, body.look, outlines_of(body));
   return plot;
 }
 
@@ -336,11 +365,19 @@ void show_contact(Plot& plot, const Window& window) {
 std::string section_svg(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
                         std::size_t instant, bool around_contact) {
   const scene::Pose& pose = result.instants[instant].tool;
-  Plot plot = section_plot(scene, run.surface, pose,
-                           {{"reference", Look::reference, result.instants[instant].displacement_m},
-                            {"fast model", Look::fast, run.instants[instant].displacement_m}});
+  const reference::BoundarySurface& own = result.deepest_surface;
+  const DeformedBody reference{"reference", Look::reference, own.rest, own.displacement_m};
+  const DeformedBody fast{"fast model", Look::fast, run.surface, run.instants[instant].displacement_m};
+  Plot plot = section_plot(scene, run.surface, pose, {reference, fast});
   if (around_contact) {
     plot.title = "Around the contact";
+    const double y_m = cut_y_m(run.surface, pose);
+    const auto is_node = [&](const EdgePoint& p) {
+      const bool at_a = p.share < 0.5;
+      return (at_a ? p.share : 1.0 - p.share) < 1e-3 && own.is_node[static_cast<std::size_t>(at_a ? p.a : p.b)];
+    };
+    add_points(plot, reference, y_m, is_node);
+    add_points(plot, fast, y_m, [](const EdgePoint&) { return true; });
     show_contact(plot, contact_window(scene, run.surface, result.instants[instant]));
   } else {
     plot.title = "The whole section";

@@ -35,11 +35,13 @@ enum class ColourMap { displacement, error };
 struct DeformedBody {
   std::string name;
   Look look;
-  const Eigen::Matrix3Xd& displacement_m;
+  const scene::Surface& surface;
+  const Eigen::Matrix3Xd& displacement_m;  ///< at the points of that surface
 };
 
 /// Section at the tool's centre, y constant, true scale, in millimetres: rest outline, inclusions, tool, bodies. Title
 /// and ranges are left to the caller.
+/// @param surface  gives the plane and the rest outline
 [[nodiscard]] Plot section_plot(const scene::Scene& scene, const scene::Surface& surface, const scene::Pose& pose,
                                 const std::vector<DeformedBody>& bodies);
 
@@ -55,7 +57,10 @@ struct Window {
 /// Sets the ranges of a section.
 void show_contact(Plot& plot, const Window& window);
 
-/// Section at the tool's centre, y constant, true scale, in millimetres: rest outline, both deformed outlines, tool.
+/// Section at the tool's centre, y constant, true scale, in millimetres: rest outline, both deformed outlines, tool;
+/// the reference on its own mesh. Around the contact with the reference's nodes in the plane as dots, and the places
+/// where the plane cuts an edge of the fast model's triangles as squares.
+/// @param instant  the deepest
 [[nodiscard]] std::string section_svg(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
                                       std::size_t instant, bool around_contact);
 

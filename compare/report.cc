@@ -184,9 +184,11 @@ std::string shape_section(const ReportContent& c) {
   out += "<div class=\"plots\">\n";
   out += figure(section_svg(c.scene, c.run, c.result, errors.deepest, false),
                 "Where the cut plane of the rest body has gone; true scale.");
-  out += figure(section_svg(c.scene, c.run, c.result, errors.deepest, true),
-                "A surface should lie on the tool where they touch, and nowhere inside it; between its points it is "
-                "drawn straight.");
+  out +=
+      figure(section_svg(c.scene, c.run, c.result, errors.deepest, true),
+             "A surface should lie on the tool where they touch, and nowhere inside it. The reference is drawn on its "
+             "own mesh, dots are its nodes in this plane; the fast model is straight between its own points, the "
+             "squares.");
   out +=
       figure(to_svg(error_plot(
                  errors, "Shape error over depth", "error / displacement, RMS [%]",

@@ -84,7 +84,10 @@ std::vector<EdgePoint> triangle_behind_y(const scene::Surface& surface, std::siz
   return polygon;
 }
 
-std::vector<std::vector<EdgePoint>> cut_at_y(const scene::Surface& surface, double y_m) {
+std::vector<std::vector<EdgePoint>> cut_at_y(const scene::Surface& surface, double y_m, double gap_share) {
+  if (surface.triangles.empty()) return {};
+  const double same_place_m =
+      gap_share * (surface.points_m.rowwise().maxCoeff() - surface.points_m.rowwise().minCoeff()).norm();
   std::vector<Segment> segments;
   for (const auto& corners : surface.triangles) {
     Segment segment;
@@ -99,8 +102,6 @@ std::vector<std::vector<EdgePoint>> cut_at_y(const scene::Surface& surface, doub
   }
 
   // Chain by nearest end: patches do not share vertices, so the same place has several indices.
-  const double same_place_m =
-      1e-6 * (surface.points_m.rowwise().maxCoeff() - surface.points_m.rowwise().minCoeff()).norm();
   std::vector<std::vector<EdgePoint>> outlines;
   for (Segment& first : segments) {
     if (first.used) continue;
@@ -129,7 +130,10 @@ std::vector<std::vector<EdgePoint>> cut_at_y(const scene::Surface& surface, doub
     if ((outline.front().of(surface.points_m) - outline.back().of(surface.points_m)).norm() <= same_place_m) {
       outline.pop_back();
     }
-    outlines.push_back(std::move(outline));
+    // Where many triangles meet a hair off the plane some are left over, all in one place.
+    const scene::Vec3 first_m = outline.front().of(surface.points_m);
+    const auto is_there = [&](const EdgePoint& p) { return (p.of(surface.points_m) - first_m).norm() <= same_place_m; };
+    if (!std::all_of(outline.begin(), outline.end(), is_there)) outlines.push_back(std::move(outline));
   }
   return outlines;
 }

@@ -169,6 +169,7 @@ std::string band_area(const Band& band, const Axis& x, const Axis& y) {
 }
 
 std::string curve_line(const Curve& curve, const Axis& x, const Axis& y) {
+  if (curve.points_only) return "";
   std::string path;
   bool pen_down = false;
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -185,11 +186,12 @@ std::string curve_line(const Curve& curve, const Axis& x, const Axis& y) {
 
 /// Round for the reference and square for the fast model, so that grey print tells them apart.
 std::string marker(const Curve& curve, double x_px, double y_px, const std::string& title_element) {
+  const double half_px = curve.points_only ? 1.8 : 3.0;
   if (curve.look == Look::fast) {
-    return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"6\" height=\"6\" fill=\"{}\">{}</rect>", x_px - 3,
-                       y_px - 3, colour_of(curve), title_element);
+    return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:g}\" height=\"{:g}\" fill=\"{}\">{}</rect>",
+                       x_px - half_px, y_px - half_px, 2 * half_px, 2 * half_px, colour_of(curve), title_element);
   }
-  return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\">{}</circle>", x_px, y_px,
+  return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:g}\" fill=\"{}\">{}</circle>", x_px, y_px, half_px,
                      colour_of(curve), title_element);
 }
 

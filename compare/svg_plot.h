@@ -21,6 +21,7 @@ struct Curve {
   bool markers = true;
   bool filled = false;       ///< the area within, holes left out
   std::string own_colour{};  ///< "#rrggbb" in place of the look's, where one side has many curves
+  bool points_only = false;  ///< small markers and no line
 };
 
 /// Area between two curves over x.

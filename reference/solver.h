@@ -2,6 +2,7 @@
 // uncertainty on every number. This header is free of deal.II; see the .cc files for the method.
 #pragma once
 
+#include "reference/mesh/boundary_surface.h"
 #include "scene/error.h"
 #include "scene/plan.h"
 #include "scene/record.h"
@@ -99,7 +100,8 @@ struct Result {
   std::vector<LevelRecord> levels;
   std::vector<Sensitivity> sensitivities;  ///< empty with fewer than three levels
   Refinement refinement;
-  bool from_store = false;  ///< nothing had to be solved
+  BoundarySurface deepest_surface;  ///< of the finest mesh, at the first of the deepest instants
+  bool from_store = false;          ///< nothing had to be solved
 };
 
 /// A load step that could not converge even after cutting; names the instant, the contact region and

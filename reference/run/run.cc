@@ -3,6 +3,7 @@
 #include "reference/contact/contact_problem.h"
 #include "reference/contact/load_path.h"
 #include "reference/contact/stuck_contact.h"
+#include "reference/mesh/boundary_surface.h"
 #include "reference/mesh/prolongation.h"
 #include "reference/mesh/sampling.h"
 #include "reference/run/identity.h"
@@ -80,6 +81,7 @@ class Run {
   struct Level {
     std::vector<Step> steps;
     std::vector<Eigen::Matrix3Xd> shapes;
+    BoundarySurface deepest_surface;
   };
 
   [[nodiscard]] int count() const { return static_cast<int>(times_s_.size()); }
@@ -87,6 +89,12 @@ class Run {
 
   [[nodiscard]] double depth_m(double time_s) const {
     return scene::rest_depth_m(*body_, scene_.tool, scene::pose_at(scene_.track, time_s));
+  }
+
+  /// The first of several.
+  [[nodiscard]] int deepest_instant() const {
+    const auto less_deep = [&](double a_s, double b_s) { return depth_m(a_s) < depth_m(b_s); };
+    return static_cast<int>(std::max_element(times_s_.begin(), times_s_.end(), less_deep) - times_s_.begin());
   }
 
   void check_stop() const {
@@ -214,6 +222,7 @@ class Run {
     }
     result_.levels.push_back(std::move(record));
     fill_records(scene_, times_s_, answer.steps, answer.shapes, result_);
+    result_.deepest_surface = std::move(answer.deepest_surface);
     shapes_.push_back(std::move(answer.shapes));
   }
 
@@ -250,6 +259,7 @@ class Run {
     std::optional<Solved<dim>> before, current;
     double solved_s = 0.0;
     int solved = 0;
+    const int deepest = deepest_instant();
     for (int instant = 0; instant < count(); ++instant) {
       const double time_s = times_s_[instant];
       check_stop();
@@ -285,6 +295,10 @@ class Run {
               .step_finished = true});
       }
       answer.shapes.push_back(sampler.displacement_m(found->first.state.u_m));
+      if (instant == deepest) {
+        answer.deepest_surface =
+            boundary_surface<dim>(mesh, found->first.state.u_m, choice_.mirror_x, choice_.mirror_y);
+      }
       answer.steps.push_back(std::move(found->second));
       before = std::move(current);
       current = std::move(found->first);

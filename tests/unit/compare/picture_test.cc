@@ -54,6 +54,53 @@ TEST(Picture, AndItsScaleSurviveAFastModelGoneWild) {
   EXPECT_FALSE(testing::shows_not_a_number(section_svg(sides.scene, sides.run, sides.result, 2, false)));
 }
 
+/// The path of a curve in a section, by its colour.
+std::string path_of(const std::string& svg, Look look) {
+  std::smatch found;
+  const std::regex path("<path d=\"([^\"]*)\" fill=\"none\" stroke=\"" + colour(look) + "\"");
+  return std::regex_search(svg, found, path) ? found[1].str() : "";
+}
+
+std::ptrdiff_t count(const std::string& text, const std::string& what) {
+  const std::regex pattern(what);
+  return std::distance(std::sregex_iterator(text.begin(), text.end(), pattern), std::sregex_iterator());
+}
+
+TEST(Picture, SectionDrawsTheReferenceOnItsOwnMesh) {
+  testing::Sides sides = testing::pressed(3, 600);
+  const auto section = [&](bool around_contact) {
+    return section_svg(sides.scene, sides.run, sides.result, 2, around_contact);
+  };
+  const std::string whole = section(false), near = section(true);
+  const std::string reference = path_of(whole, Look::reference), fast = path_of(whole, Look::fast);
+  ASSERT_FALSE(reference.empty());
+  ASSERT_FALSE(fast.empty());
+  // Nineteen thousand triangles of its own against six hundred.
+  EXPECT_GT(count(reference, "L"), 4 * count(fast, "L"));
+
+  // Nodes as dots, and the fast model's own points as squares, where they can be told apart.
+  const auto dots = [](const std::string& svg) {
+    return count(svg, "<circle [^>]*r=\"1.8\" fill=\"" + colour(Look::reference));
+  };
+  const auto squares = [](const std::string& svg) {
+    return count(svg, "<rect [^>]*width=\"3.6\"[^>]*fill=\"" + colour(Look::fast));
+  };
+  EXPECT_EQ(dots(whole), 0);
+  EXPECT_EQ(squares(whole), 0);
+  EXPECT_GT(dots(near), 20);
+  EXPECT_GT(squares(near), 3);
+  EXPECT_LT(squares(near), dots(near));
+
+  // What is known of the reference at the fast model's points does not matter, its own surface does.
+  sides.result.instants[2].displacement_m *= 1.5;
+  EXPECT_EQ(section(false), whole);
+  sides.result.deepest_surface.displacement_m *= 1.5;
+  EXPECT_NE(path_of(section(false), Look::reference), reference);
+  EXPECT_EQ(count(path_of(section(false), Look::fast), "L"), count(fast, "L"));
+  sides.result.deepest_surface.is_node.assign(sides.result.deepest_surface.is_node.size(), false);
+  EXPECT_EQ(dots(section(true)), 0);
+}
+
 TEST(Picture, OfABodyAtRest) {
   const testing::Sides sides = testing::pressed(3, 600);
   const std::string svg = half_cut_svg(sides.scene, sides.run, sides.result, 0);

@@ -1,5 +1,8 @@
 #include "compare/section.h"
 
+#include "reference/mesh/boundary_surface.h"
+#include "reference/mesh/round_mesh.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -95,6 +98,51 @@ TEST(Section, OfABoxIsOneClosedRectangle) {
 TEST(Section, MissesABodyElsewhere) {
   const scene::Surface surface = scene::tessellate(scene::Box(Vec3(0.0, 0.0, 1.5), Vec3(1.0, 2.0, 3.0)), 400);
   EXPECT_TRUE(cut_at_y(surface, 1.5).empty());
+}
+
+/// Where a plane cuts a reference's mesh of a body, graded so that some nodes hang.
+template <int dim>
+std::vector<std::vector<EdgePoint>> cut_of_mesh(const reference::Mesh<dim>& mesh, bool mirrored, double y_m,
+                                                scene::Surface& rest) {
+  const Eigen::Matrix<double, dim, Eigen::Dynamic> still_m =
+      Eigen::Matrix<double, dim, Eigen::Dynamic>::Zero(dim, mesh.node_count());
+  rest = reference::boundary_surface<dim>(mesh, still_m, mirrored, mirrored).rest;
+  return cut_at_y(rest, y_m, 5e-3);
+}
+
+TEST(Section, OfAReferencesMeshIsOneClosedOutline) {
+  scene::Body body;
+  body.shape = scene::BodyShape::ellipsoid;
+  body.semi_axes_m = {0.040, 0.040, 0.025};
+  body.support_height_m = 0.005;
+  for (const bool mirrored : {false, true}) {
+    reference::RoundSpec spec = reference::round_spec(body);
+    spec.symmetric_x = spec.symmetric_y = mirrored;
+    reference::Grading<3> grading;
+    grading.largest_m = 0.012;
+    grading.discs.push_back({{0.0, 0.0, 0.05}, {0.0, 0.0, 1.0}, 0.002, 0.003});
+    const reference::Mesh<3> mesh = reference::round_mesh<3>(spec, grading);
+    ASSERT_FALSE(mesh.hanging.empty());
+    for (const double y_m : {-1e-8, 0.0031, -0.0172}) {
+      scene::Surface rest;
+      const auto outlines = cut_of_mesh(mesh, mirrored, y_m, rest);
+      ASSERT_EQ(outlines.size(), 1u) << mirrored << ' ' << y_m;
+      // The same cut of the true surface.
+      const scene::Surface fine = scene::tessellate(*scene::body_shape(body), 60'000);
+      const double true_m = perimeter_m(fine, cut_at_y(fine, y_m).at(0));
+      EXPECT_NEAR(perimeter_m(rest, outlines[0]), true_m, 2e-3 * true_m) << mirrored << ' ' << y_m;
+    }
+  }
+  // Turned from the meridian, whose ends lie on the axis.
+  reference::Grading<2> grading;
+  grading.largest_m = 0.006;
+  grading.discs.push_back({{0.0, 0.05}, {0.0, 1.0}, 0.002, 0.001});
+  scene::Surface rest;
+  const auto outlines = cut_of_mesh(reference::round_mesh<2>(reference::round_spec(body), grading), false, -8e-9, rest);
+  ASSERT_EQ(outlines.size(), 1u);
+  const scene::Surface fine = scene::tessellate(*scene::body_shape(body), 60'000);
+  const double true_m = perimeter_m(fine, cut_at_y(fine, -8e-9).at(0));
+  EXPECT_NEAR(perimeter_m(rest, outlines[0]), true_m, 2e-3 * true_m);
 }
 
 TEST(Section, ClippedTrianglesCoverWhatLiesBehind) {

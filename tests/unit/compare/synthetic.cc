@@ -58,6 +58,16 @@ Sides pressed(int instants, int triangles) {
   const double radius_m = sides.scene.tool.radius_m;
   sides.run.surface = surface;
   const Eigen::Index points = surface.points_m.cols();
+  // On the ball within the contact, 1/r outside, nothing at the support; the sides bulge.
+  const auto reference_m = [&](const Vec3& p, double d) {
+    const double height = p.z() / 0.06, r = std::hypot(p.x(), p.y());
+    const double far = Vec3(p.x(), p.y(), p.z() - 0.06).norm(), a = std::sqrt(radius_m * d);
+    const double under_m = far < 1e-9 || (p.z() > 0.0599 && r < 0.71 * a)
+                               ? d - (radius_m - std::sqrt(radius_m * radius_m - r * r))
+                               : 0.62 * d * 0.71 * a / std::max(far, 0.71 * a);
+    return Vec3(0.05 * d * p.x() / 0.03 * height * (1 - height) * 4,
+                0.05 * d * p.y() / 0.03 * height * (1 - height) * 4, -under_m * std::min(1.0, 1.4 * height));
+  };
   complete(sides.result, static_cast<std::size_t>(instants), points);
   const std::vector<double> level_factor = {0.982, 1.006, 1.0};
   for (std::size_t level = 0; level < 3; ++level) {
@@ -84,18 +94,10 @@ Sides pressed(int instants, int triangles) {
       set_force(fast, Vec3(0.0, 0.0, fast_n));
       set_force(reference, Vec3(0.0, 0.0, reference_n));
       reference.support_force_n = Vec3(0.0, 0.0, reference_n);
-      const double a = std::sqrt(radius_m * d);
       for (Eigen::Index i = 0; i < points; ++i) {
         const Vec3 p = surface.points_m.col(i);
         const double height = p.z() / 0.06, r = std::hypot(p.x(), p.y());
-        const double far = Vec3(p.x(), p.y(), p.z() - 0.06).norm();
-        // On the ball within the contact, 1/r outside, nothing at the support; the sides bulge.
-        const double under_m = far < 1e-9 || (p.z() > 0.0599 && r < 0.71 * a)
-                                   ? d - (radius_m - std::sqrt(radius_m * radius_m - r * r))
-                                   : 0.62 * d * 0.71 * a / std::max(far, 0.71 * a);
-        reference.displacement_m.col(i) =
-            Vec3(0.05 * d * p.x() / 0.03 * height * (1 - height) * 4,
-                 0.05 * d * p.y() / 0.03 * height * (1 - height) * 4, -under_m * std::min(1.0, 1.4 * height));
+        reference.displacement_m.col(i) = reference_m(p, d);
         fast.displacement_m.col(i) =
             Vec3(0.0, 0.0, -(p.z() > 0.0599 ? d * std::max(0.0, 1.0 - r / 0.015) : 0.0) - 0.02 * d * height);
       }
@@ -114,6 +116,13 @@ Sides pressed(int instants, int triangles) {
     sides.run.instants.push_back(std::move(fast));
     sides.run.normals.push_back(surface.normals);
     sides.result.instants.push_back(std::move(reference));
+  }
+  reference::BoundarySurface& own = sides.result.deepest_surface;
+  own.rest = scene::tessellate(*body, 19'200);
+  own.displacement_m.resize(3, own.rest.points_m.cols());
+  own.is_node.assign(static_cast<std::size_t>(own.rest.points_m.cols()), true);
+  for (Eigen::Index i = 0; i < own.rest.points_m.cols(); ++i) {
+    own.displacement_m.col(i) = reference_m(own.rest.points_m.col(i), sides.result.instants.back().depth_m);
   }
   sides.run.step = {11.2, 14.9, 21.7, 63.0};
   sides.run.force = {6.1, 8.4, 12.0, 30.0};

@@ -89,6 +89,23 @@ void SolverTest::expect_resumed_bit_for_bit() {
   expect_identical(whole, resumed);
 }
 
+/// Its own surface at the deepest instant is the solution that the rest points see, solved now or before.
+TEST_F(SolverTest, GivesItsOwnSurfaceAtTheDeepestInstant) {
+  const Result solved = run("own-surface");
+  const auto deepest = std::max_element(solved.instants.begin(), solved.instants.end(),
+                                        [](const auto& a, const auto& b) { return a.depth_m < b.depth_m; });
+  const BoundarySurface& own = solved.deepest_surface;
+  ASSERT_GT(own.rest.points_m.cols(), 1000);
+  ASSERT_GT(own.displacement_m.colwise().norm().maxCoeff(), 0.5 * deepest->depth_m);
+  points_m_ = own.rest.points_m;
+  const Result again = run("own-surface");
+  ASSERT_TRUE(again.from_store);
+  const auto& seen_m = again.instants[static_cast<std::size_t>(deepest - solved.instants.begin())].displacement_m;
+  EXPECT_LT((seen_m - own.displacement_m).colwise().norm().maxCoeff(), 1e-6 * deepest->depth_m);
+  EXPECT_EQ(again.deepest_surface.displacement_m, own.displacement_m);
+  EXPECT_EQ(again.deepest_surface.rest.points_m, own.rest.points_m);
+}
+
 TEST_F(SolverTest, InterruptedRunResumesBitForBit) { expect_resumed_bit_for_bit(); }
 
 TEST_F(SolverTest, InterruptedFrictionResumesBitForBit) {
