@@ -222,8 +222,9 @@ struct HalfCut {
   }
 };
 
-/// A reference's faces meet up to the gaps between a face and two halves of another along curved edges.
-constexpr double gap_share = 1e-4;
+/// A body's section is one outline. On a reference's mesh it has gaps where a face meets two halves of another along a
+/// curved edge.
+constexpr double gap_share = 5e-3;
 
 std::vector<std::vector<EdgePoint>> cut_of(const DeformedBody& body, double y_m) {
   return cut_at_y(body.surface, y_m, gap_share);

@@ -88,9 +88,6 @@ std::vector<std::vector<EdgePoint>> cut_at_y(const scene::Surface& surface, doub
   if (surface.triangles.empty()) return {};
   const double same_place_m =
       gap_share * (surface.points_m.rowwise().maxCoeff() - surface.points_m.rowwise().minCoeff()).norm();
-  const auto length_m = [&](const Segment& segment) {
-    return (segment.ends[0].of(surface.points_m) - segment.ends[1].of(surface.points_m)).norm();
-  };
   std::vector<Segment> segments;
   for (const auto& corners : surface.triangles) {
     Segment segment;
@@ -101,8 +98,7 @@ std::vector<std::vector<EdgePoint>> cut_at_y(const scene::Surface& surface, doub
         segment.ends[found++] = crossing(surface, from, to, y_m);
       }
     }
-    // Where many triangles meet a hair off the plane nothing but the place matters.
-    if (found == 2 && length_m(segment) > 0.01 * same_place_m) segments.push_back(segment);
+    if (found == 2) segments.push_back(segment);
   }
 
   // Chain by nearest end: patches do not share vertices, so the same place has several indices.
@@ -134,7 +130,10 @@ std::vector<std::vector<EdgePoint>> cut_at_y(const scene::Surface& surface, doub
     if ((outline.front().of(surface.points_m) - outline.back().of(surface.points_m)).norm() <= same_place_m) {
       outline.pop_back();
     }
-    outlines.push_back(std::move(outline));
+    // Where many triangles meet a hair off the plane some are left over, all in one place.
+    const scene::Vec3 first_m = outline.front().of(surface.points_m);
+    const auto is_there = [&](const EdgePoint& p) { return (p.of(surface.points_m) - first_m).norm() <= same_place_m; };
+    if (!std::all_of(outline.begin(), outline.end(), is_there)) outlines.push_back(std::move(outline));
   }
   return outlines;
 }

@@ -122,7 +122,7 @@ Sides pressed(int instants, int triangles) {
     sides.result.instants.push_back(std::move(reference));
   }
   reference::BoundarySurface& own = sides.result.deepest_surface;
-  own.rest = scene::tessellate(*body, 20'000);
+  own.rest = scene::tessellate(*body, 19'200);
   own.displacement_m.resize(3, own.rest.points_m.cols());
   own.is_node.assign(static_cast<std::size_t>(own.rest.points_m.cols()), true);
   for (Eigen::Index i = 0; i < own.rest.points_m.cols(); ++i) {
