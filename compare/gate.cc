@@ -2,6 +2,7 @@
 
 #include "compare/figures.h"
 #include "compare/stored_reference.h"
+#include "scene/nearest_name.h"
 #include "scene/scene_io.h"
 
 #include <fmt/format.h>
@@ -93,9 +94,7 @@ GateRecord judged(const GateFolder& folder, const scene::GateFile& file, const s
   return judge(file.name, gate, answer.figures, accepted_of(folder, file.name + "." + gate.name), scene_hash);
 }
 
-std::string hash_of(const scene::GateFile& file) {
-  return scene::scene_hash(scene_of(file));
-}
+std::string hash_of(const scene::GateFile& file) { return scene::scene_hash(scene_of(file)); }
 
 bool is_drift(const GateFolder& folder, const std::string& name) {
   for (const scene::GateFile& file : folder.files) {
@@ -235,8 +234,10 @@ void require_known(const GateFolder& folder, const GateNames& names) {
   }
   for (const std::string& name : names) {
     if (!all.contains(name)) {
+      // A file in place of a name: what it is, when it is no gate file.
+      if (std::filesystem::is_regular_file(name)) (void)scene::load_gate_file(name);
       throw scene::InputError("gate: no gate has the name \"" + name + "\"; expected FILE or FILE.GATE with FILE of " +
-                              known);
+                              known + scene::did_you_mean(name, {all.begin(), all.end()}));
     }
   }
 }

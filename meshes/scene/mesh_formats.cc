@@ -1,6 +1,7 @@
 #include "scene/mesh_formats.h"
 
 #include "scene/error.h"
+#include "scene/nearest_name.h"
 #include "scene/triangle_mesh.h"
 
 #include <algorithm>
@@ -177,7 +178,7 @@ RawMesh read_obj(const std::string& bytes, const std::string& name) {
 RawMesh read_mesh_file(const std::filesystem::path& file) {
   const std::string name = file.string();
   std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file)) fail(name, "cannot be read");
+  if (!in || std::filesystem::is_directory(file)) fail(name, "cannot be read" + did_you_mean_file(file));
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
