@@ -106,7 +106,8 @@ int export_deck(const fast::VerbOptions& options, const ExportOptions& export_op
 CLI::App* add_export_verb(CLI::App& app, fast::VerbOptions& options, ExportOptions& export_options,
                           const ReferenceOptions& reference, int& exit_code) {
   CLI::App* verb = fast::add_verb(
-      app, "export", "the scene as an input deck for CalculiX, an independent finite element code", options,
+      app, "export", "the scene as an input deck for CalculiX, an independent finite element code",
+      "meshes/scenes/ball-on-cube-press.toml --mesh 2 --run", options,
       [&options, &export_options, &reference] { return export_deck(options, export_options, reference); }, exit_code);
   verb->add_option("--mesh", export_options.mesh, "of the reference's meshes, 1 the coarsest")
       ->check(CLI::Range(1, 6))

@@ -9,7 +9,9 @@
 #include "compare/verify_verb.h"
 #include "compare/view_verb.h"
 #include "fast/command_line.h"
+#include "fast/completion.h"
 #include "fast/live/live_verb.h"
+#include "fast/new_verb.h"
 #include "reference/contact/contact_shares.h"
 #include "reference/linear/ranks.h"
 #include "scene/fields.h"
@@ -38,12 +40,14 @@ int main(int argc, char** argv) {
   compare::ReferenceOptions reference;
   compare::VerifyOptions verify_options;
   int exit_code = fast::done;
-  const auto add = [&](const char* name, const char* what, auto verb) {
+  fast::NewOptions new_options;
+  fast::add_new_verb(app, new_options, exit_code);
+  const auto add = [&](const char* name, const char* what, const char* example, auto verb) {
     return fast::add_verb(
-        app, name, what, options, [&, verb] { return verb(options, reference); }, exit_code);
+        app, name, what, example, options, [&, verb] { return verb(options, reference); }, exit_code);
   };
-  const auto add_with_folder = [&](const char* name, const char* what, auto verb) {
-    CLI::App* command = add(name, what, verb);
+  const auto add_with_folder = [&](const char* name, const char* what, const char* example, auto verb) {
+    CLI::App* command = add(name, what, example, verb);
     command->add_option("--out", options.out, std::string("result folder (default out/<scene>-") + name + ")");
     return command;
   };
@@ -75,17 +79,20 @@ int main(int argc, char** argv) {
                      "exit 3 unless force and shape are known to this, relative; results are written all the same")
         ->check(CLI::Range(1e-4, 0.5));
   };
-  add("plan", "what each side will model for a scene, what it leaves out and why", compare::plan);
-  add_with_folder("fast", "the real-time pipeline over the scene's track in virtual time", compare::run_fast);
+  add("plan", "what each side will model for a scene, what it leaves out and why",
+      "meshes/scenes/ball-on-cube-press.toml --set fast.formulation=published", compare::plan);
+  add_with_folder("fast", "the real-time pipeline over the scene's track in virtual time",
+                  "meshes/scenes/ball-on-cube-press.toml --out out/press", compare::run_fast);
   CLI::App* solved =
       add_with_folder("reference", "the offline solve; answers from the store, resumes where it was interrupted",
-                      compare::run_reference);
+                      "meshes/scenes/hertz-sphere.toml --error 0.005", compare::run_reference);
   add_reference(solved);
   add_require_error(solved);
   std::filesystem::path parameters;
   bool plots = false;
   CLI::App* compared = add_with_folder(
       "compare", "both sides, then force and shape errors: tables, VTK, report",
+      "meshes/scenes/ball-on-cube-press.toml --set tool.radius_m=0.008 --error 0.02",
       [&](const auto& given, const auto& asked) { return compare::run_compare(given, asked, parameters, plots); });
   compared->add_option("--parameters", parameters, "file that tune left, for the fast side alone");
   compared->add_flag("--plots", plots, "every plot of the report also as SVG and PDF, in the folder's plots/");
@@ -111,5 +118,20 @@ int main(int argc, char** argv) {
   compare::add_verify_verb(app, verify_options, exit_code);
   compare::GateOptions gate_options;
   compare::add_gate_verb(app, gate_options, exit_code);
+  std::string shell;
+  fast::add_completion_verb(app, shell, exit_code);
+  fast::group_verbs(app, {{"First", {"new", "plan", "compare"}},
+                          {"One scene", {"fast", "live", "reference", "trade", "export"}},
+                          {"Results", {"view", "report"}},
+                          {"Many scenes", {"study", "tune"}},
+                          {"Checks", {"gate", "verify"}}});
+  app.footer(
+      "First steps:\n"
+      "  touchstone new block.toml --body box 60x60x40mm --youngs-modulus 3MPa --poissons-ratio 0.45 \\\n"
+      "    --tool sphere 10mm --depth 3mm\n"
+      "  touchstone compare block.toml\n"
+      "touchstone VERB --help: its options and an example. Exit status: 0 done, 1 the answer is no, 2 bad input, 3 "
+      "not\n"
+      "converged.");
   return fast::run_command_line(app, argc, argv, exit_code);
 }

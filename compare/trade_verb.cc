@@ -44,13 +44,13 @@ int run(const fast::VerbOptions& options, const TradeOptions& trade_options, con
 CLI::App* add_trade_verb(CLI::App& app, fast::VerbOptions& options, TradeOptions& trade, ReferenceOptions& reference,
                          int& exit_code) {
   CLI::App* verb = fast::add_verb(
-      app, "trade", "the speed/accuracy ladder: every model and level on one plot", options,
+      app, "trade", "the speed/accuracy ladder: every model and level on one plot",
+      "meshes/scenes/ball-on-cube-press.toml --quick --out out/trade", options,
       [&] { return run(options, trade, reference); }, exit_code);
   verb->add_option("--parameters", trade.parameters, "file that tune left, its values a row more; may be repeated")
       ->allow_extra_args(false);
   verb->add_option("--held-out", trade.held_out, "tuning study whose held-out contacts judge, the worst of them");
   verb->add_flag("--quick", trade.quick, "few steps and small sizes");
-  verb->footer("Example:\n  " + app.get_name() + " trade meshes/scenes/ball-on-cube-press.toml --out out/trade");
   return verb;
 }
 

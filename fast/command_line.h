@@ -27,13 +27,21 @@ struct VerbOptions {
   [[nodiscard]] scene::Scene load() const;
 };
 
-/// Adds a verb with its options and an example for --help.
+/// Adds a verb with its options.
+/// @param example  for --help: what follows the verb
 /// @param action  runs when the verb is chosen; its result is the exit code
 /// @param exit_code  receives it
-CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what, VerbOptions& options,
-                   std::function<int()> action, int& exit_code);
+CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& example,
+                   VerbOptions& options, std::function<int()> action, int& exit_code);
 
-/// Parses and runs the chosen verb; turns every error into one message on stderr and an exit code.
+/// The verbs of --help under headings, in this order; the rest under "More".
+void group_verbs(CLI::App& app, const std::vector<std::pair<std::string, std::vector<std::string>>>& groups);
+
+/// What a misspelt verb or option is to be told, with the nearest known one; empty when the fault is another.
+[[nodiscard]] std::string misspelt(const CLI::App& app);
+
+/// Parses and runs the chosen verb; turns every error into one message on stderr and an exit code. Without any argument
+/// it prints the help.
 /// @param exit_code  the variable given to add_verb
 [[nodiscard]] int run_command_line(CLI::App& app, int argc, char** argv, int& exit_code);
 

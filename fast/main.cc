@@ -1,7 +1,9 @@
 // touchstone-fast: the real-time side alone, for the machine with the device. Links neither deal.II, VTK nor MPI.
 #include "fast/bench/bench_verb.h"
 #include "fast/command_line.h"
+#include "fast/completion.h"
 #include "fast/live/live_verb.h"
+#include "fast/new_verb.h"
 #include "fast/results.h"
 #include "scene/scene_io.h"
 
@@ -34,15 +36,21 @@ int main(int argc, char** argv) {
   fast::VerbOptions options;
   live::LiveOptions live_options;
   bench::BenchVerbOptions bench_options;
+  fast::NewOptions new_options;
+  std::string shell;
   int exit_code = fast::done;
+  fast::add_new_verb(app, new_options, exit_code);
   fast::add_verb(
-      app, "plan", "what the fast model computes for a scene, what it leaves out and why", options,
-      [&] { return plan(options); }, exit_code);
+      app, "plan", "what the fast model computes for a scene, what it leaves out and why",
+      "meshes/scenes/ball-on-cube-press.toml --set fast.formulation=published", options, [&] { return plan(options); },
+      exit_code);
   fast::add_verb(
-      app, "fast", "the real-time pipeline over the scene's track in virtual time", options,
-      [&] { return run(options); }, exit_code)
+      app, "fast", "the real-time pipeline over the scene's track in virtual time",
+      "meshes/scenes/ball-on-cube-press.toml --out out/press", options, [&] { return run(options); }, exit_code)
       ->add_option("--out", options.out, "result folder (default out/<scene>-fast)");
   live::add_live_verb(app, options, live_options, exit_code);
   bench::add_bench_verb(app, bench_options, exit_code);
+  fast::add_completion_verb(app, shell, exit_code);
+  app.footer("touchstone-fast VERB --help: options and an example");
   return fast::run_command_line(app, argc, argv, exit_code);
 }

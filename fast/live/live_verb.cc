@@ -63,7 +63,8 @@ int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const s
 void add_live_verb(CLI::App& app, fast::VerbOptions& options, LiveOptions& live, int& exit_code) {
   const std::string program = app.get_name();
   CLI::App* verb = fast::add_verb(
-      app, "live", "the real-time pipeline in the wall clock, driven by a device", options,
+      app, "live", "the real-time pipeline in the wall clock, driven by a device",
+      "meshes/scenes/ball-on-cube-press.toml --device hand --seconds 10", options,
       [&options, &live, program] { return live_verb(options, live, program + " live"); }, exit_code);
   verb->add_option_function<std::string>(
           "--device",
@@ -81,7 +82,6 @@ void add_live_verb(CLI::App& app, fast::VerbOptions& options, LiveOptions& live,
   verb->add_option("--log", live.log, "replay: live.csv of an earlier run");
   verb->add_option("--processor", live.scheduling.processor, "for the loop's thread (default the last allowed)");
   verb->add_option("--out", options.out, "result folder (default out/<scene>-live)");
-  verb->footer("Example:\n  " + program + " live meshes/scenes/ball-on-cube-press.toml --device hand --seconds 10");
 }
 
 }  // namespace touchstone::live

@@ -58,12 +58,6 @@ std::vector<Field<T>> solid_fields(const std::array<std::string_view, 6>& keys, 
   };
 }
 
-/// Edge of the cube that holds as much as the body's bounding box [m]: what lengths without a value are fractions of.
-double body_size_m(const Scene& scene) {
-  const Bounds bounds = body_shape(scene.body)->bounds();
-  return std::cbrt((bounds.upper_m - bounds.lower_m).prod());
-}
-
 /// A default need not be more exact, and reads better.
 double three_digits(double value) {
   std::array<char, 32> text{};
@@ -152,18 +146,18 @@ std::vector<Field<Scene>> make_scene_fields() {
            "Contact regions at a time; 1 takes all contact points as one region. A convex tool on a convex body has one."},
       {"fast.r_th_m", "m", above(0.0, 1.0), required, fast, +[](S& s) -> double& { return s.fast.r_th_m; }, always,
            "r_th: contact points closer than this belong to one contact region; a convex tool is always in one.",
-           +[](const S& s) { return three_digits(body_size_m(s) / 15.0); }, "L / 15"},
+           +[](const S& s) { return three_digits(body_size_m(s.body) / 15.0); }, "L / 15"},
       {"fast.r_R_m", "m", above(0.0, 10.0), required, fast, +[](S& s) -> double& { return s.fast.r_R_m; }, always,
            "r_R: radius of the local neighbourhood R.",
-           +[](const S& s) { return three_digits(body_size_m(s) / 4.0); }, "L / 4"},
+           +[](const S& s) { return three_digits(body_size_m(s.body) / 4.0); }, "L / 4"},
       {"fast.C_n", "", between(0.0, 1e3), "0.2", fast, +[](S& s) -> double& { return s.fast.C_n; }, always,
            "C_n: strength of the local factor; 0 leaves it out."},
       {"fast.C_r_m", "m", above(0.0, 10.0), required, fast, +[](S& s) -> double& { return s.fast.C_r_m; }, always,
            "C_r: core radius of the local factor.",
-           +[](const S& s) { return three_digits(body_size_m(s) / 30.0); }, "L / 30"},
+           +[](const S& s) { return three_digits(body_size_m(s.body) / 30.0); }, "L / 30"},
       {"fast.s_c_m2", "m^2", above(0.0, 1e3), required, fast, +[](S& s) -> double& { return s.fast.s_c_m2; }, always,
            "s_c: cross-section area of all beams together.",
-           +[](const S& s) { return three_digits(body_size_m(s) * body_size_m(s) / 3.6); }, "L^2 / 3.6"},
+           +[](const S& s) { return three_digits(body_size_m(s.body) * body_size_m(s.body) / 3.6); }, "L^2 / 3.6"},
 
       {"live.force_max_n", "N", above(0.0, 1e4), "40.0", fast, +[](S& s) -> double& { return s.live.force_max_n; }, always,
            "Device loop: largest norm of the force sent to the device."},
@@ -236,6 +230,11 @@ std::string number_text(double value) {
   std::string out(text, end.ptr);
   if (out.find_first_of(".en") == std::string::npos) out += ".0";
   return out;
+}
+
+double body_size_m(const Body& body) {
+  const Bounds bounds = body_shape(body)->bounds();
+  return std::cbrt((bounds.upper_m - bounds.lower_m).prod());
 }
 
 Eigen::Quaterniond unit(const Eigen::Quaterniond& q) {

@@ -42,6 +42,9 @@ struct TrackRow {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
 };
 
+/// Edge of the cube that holds as much as the body's bounding box [m]: what lengths without a value are fractions of.
+[[nodiscard]] double body_size_m(const Body& body);
+
 /// At unit length, and such that what is written out reads back bit for bit. @param q  of non-zero length
 [[nodiscard]] Eigen::Quaterniond unit(const Eigen::Quaterniond& q);
 

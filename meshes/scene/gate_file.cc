@@ -205,6 +205,7 @@ const char* name_of(GateRun run) {
 
 GateFile parse_gate_file(std::string_view text, const std::filesystem::path& file) {
   const toml::table document = parse_document(text, file);
+  require_kind(document, file, FileKind::gates);
   return Reader(document, file).gates();
 }
 

@@ -2,6 +2,7 @@
 
 #include "scene/error.h"
 #include "scene/files.h"
+#include "scene/nearest_name.h"
 #include "scene/triangle_mesh.h"
 
 #include <algorithm>
@@ -177,7 +178,7 @@ RawMesh read_obj(const std::string& bytes, const std::string& name) {
 
 std::string read_mesh_bytes(const std::filesystem::path& file) {
   std::optional<std::string> bytes = read_file(file);
-  if (!bytes) fail(file.string(), "cannot be read");
+  if (!bytes) fail(file.string(), "cannot be read" + did_you_mean_file(file));
   return *std::move(bytes);
 }
 

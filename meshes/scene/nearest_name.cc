@@ -29,4 +29,37 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   return *best;
 }
 
+std::string did_you_mean(std::string_view name, const std::vector<std::string>& known) {
+  if (known.empty()) return "";
+  const std::string nearest = nearest_name(name, known);
+  if (2 * edit_distance(name, nearest) > std::max(name.size(), nearest.size())) return "";
+  return "; did you mean \"" + nearest + "\"?";
+}
+
+std::string did_you_mean_file(const std::filesystem::path& missing) {
+  const std::filesystem::path folder = missing.has_parent_path() ? missing.parent_path() : ".";
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) return "; there is no folder " + folder.string();
+  std::vector<std::string> names, others;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (!entry.is_regular_file(error)) continue;
+    (entry.path().extension() == missing.extension() ? names : others).push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(names);
+  std::ranges::sort(others);
+  // The ending is the same for all and says nothing of how near two names are.
+  std::vector<std::string> stems;
+  for (const std::string& name : names) stems.push_back(std::filesystem::path(name).stem().string());
+  const std::string stem = missing.stem().string();
+  std::string nearest;
+  if (!did_you_mean(stem, stems).empty()) {
+    nearest = nearest_name(stem, stems) + missing.extension().string();
+  } else if (!did_you_mean(missing.filename().string(), others).empty()) {
+    nearest = nearest_name(missing.filename().string(), others);
+  } else {
+    return "";
+  }
+  return "; did you mean \"" + (missing.parent_path() / nearest).string() + "\"?";
+}
+
 }  // namespace touchstone::scene

@@ -7,6 +7,7 @@
 #include "scene/mesh_file.h"
 #include "scene/nearest_name.h"
 #include "scene/rules.h"
+#include "scene/toml_reader.h"
 #include "scene/track_csv.h"
 
 #include <toml++/toml.h>
@@ -239,8 +240,16 @@ class Reader {
   void read_value(const Field<T>& field, const toml::node& node, const std::string& key, T& object) {
     const bool good = std::visit([&](const auto& access) { return assign(field, access, node, object); }, field.access);
     if (good) return;
-    faults_.push_back(at(node.source(), key + " = " + written(node) + "; expected " + expected_text(field)));
+    faults_.push_back(at(
+        node.source(), key + " = " + written(node) + "; expected " + expected_text(field) + meant_choice(field, node)));
     failed_.insert(key);
+  }
+
+  template <class T>
+  static std::string meant_choice(const Field<T>& field, const toml::node& node) {
+    const auto* choice = std::get_if<Choice<T>>(&field.access);
+    if (choice == nullptr || !node.is_string()) return "";
+    return did_you_mean(node.value_or(std::string()), {choice->names.begin(), choice->names.end()});
   }
 
   template <class T>
@@ -482,7 +491,9 @@ void take_in_included(const std::filesystem::path& file, toml::table& document) 
   if (!node->is_string()) refuse("include = " + written(*node) + "; expected the path of a TOML file, from this one");
   const std::filesystem::path included = file.parent_path() / node->value_or(std::string());
   const std::optional<std::string> text = read_file(included);
-  if (!text) refuse("include: cannot read " + included.string() + "; expected a TOML file with keys of a scene");
+  if (!text)
+    refuse("include: cannot read " + included.string() + "; expected a TOML file with keys of a scene" +
+           did_you_mean_file(included));
   try {
     toml::table all = toml::parse(*text, included.string());
     if (all.contains("include"))
@@ -598,6 +609,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file,
   } catch (const toml::parse_error& error) {
     rethrow(error, file.string());
   }
+  require_kind(document, file, FileKind::scene);
   take_in_included(file, document);
   for (const std::string& setting : overrides) apply_override(setting, document);
   return Reader(document, file).read();
@@ -607,7 +619,8 @@ Scene load_scene(const std::filesystem::path& file, const std::vector<std::strin
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
   if (!in || std::filesystem::is_directory(file) || !(text << in.rdbuf())) {
-    throw InputError({{file.string(), 0, 0, "cannot read the scene; expected a readable TOML file"}});
+    throw InputError(
+        {{file.string(), 0, 0, "cannot read the scene; expected a readable TOML file" + did_you_mean_file(file)}});
   }
   return parse_scene(text.str(), file, overrides);
 }

@@ -241,6 +241,7 @@ Fault in_study(const Fault& fault, const StudyCase& one) {
 
 Study load_study(const std::filesystem::path& file) {
   const toml::table document = read_document(file);
+  require_kind(document, file, FileKind::sweep);
   return Reader(document, file).read();
 }
 

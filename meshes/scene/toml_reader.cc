@@ -8,6 +8,55 @@
 
 namespace touchstone::scene {
 
+namespace {
+
+std::optional<FileKind> kind_of(const toml::table& document) {
+  const auto has = [&](const char* key) { return document.contains(key); };
+  if (has("gate")) return FileKind::gates;
+  if (has("training") || has("held_out") || document["kind"].value<std::string>() == "tuning") return FileKind::tuning;
+  if (has("axis") || has("case") || document["kind"].value<std::string>() == "sweep") return FileKind::sweep;
+  if (has("body") || has("tool") || has("track")) return FileKind::scene;
+  return std::nullopt;
+}
+
+std::string name_of(FileKind kind) {
+  switch (kind) {
+    case FileKind::scene:
+      return "a scene";
+    case FileKind::sweep:
+      return "a study of many cases";
+    case FileKind::tuning:
+      return "a tuning study";
+    case FileKind::gates:
+      return "a gate file";
+  }
+  return "";
+}
+
+std::string command_for(FileKind kind, const std::filesystem::path& file) {
+  switch (kind) {
+    case FileKind::scene:
+      return "touchstone compare " + file.string() + " (or plan, fast, live, reference, trade, export)";
+    case FileKind::sweep:
+      return "touchstone study expand " + file.string();
+    case FileKind::tuning:
+      return "touchstone tune " + file.string();
+    case FileKind::gates:
+      return "touchstone gate --gates " + (file.has_parent_path() ? file.parent_path().string() : ".");
+  }
+  return "";
+}
+
+}  // namespace
+
+void require_kind(const toml::table& document, const std::filesystem::path& file, FileKind wanted) {
+  const std::optional<FileKind> kind = kind_of(document);
+  if (!kind || *kind == wanted) return;
+  throw InputError({{file.string(), 0, 0,
+                     "this is " + name_of(*kind) + ", expected " + name_of(wanted) +
+                         "; the verb for it is: " + command_for(*kind, file)}});
+}
+
 toml::table parse_document(std::string_view text, const std::filesystem::path& file) {
   try {
     return toml::parse(text, file.string());
@@ -21,7 +70,8 @@ toml::table parse_document(std::string_view text, const std::filesystem::path& f
 toml::table read_document(const std::filesystem::path& file) {
   const std::optional<std::string> text = read_file(file);
   if (!text) {
-    throw InputError({{file.string(), 0, 0, "cannot read the study; expected a readable TOML file"}});
+    throw InputError(
+        {{file.string(), 0, 0, "cannot read the study; expected a readable TOML file" + did_you_mean_file(file)}});
   }
   return parse_document(*text, file);
 }
@@ -88,7 +138,8 @@ std::string TomlReader::word(const toml::table& table, const std::string& key, c
     add(table, key + ": missing; expected " + expected);
   } else if (!node->is_string() ||
              std::find(words.begin(), words.end(), node->value_or(std::string())) == words.end()) {
-    add(*node, key + " = " + value_text(*node) + "; expected " + expected);
+    add(*node, key + " = " + value_text(*node) + "; expected " + expected +
+                   did_you_mean(node->value_or(std::string()), words));
   } else {
     return node->value_or(std::string());
   }

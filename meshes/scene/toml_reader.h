@@ -13,10 +13,16 @@
 
 namespace touchstone::scene {
 
+/// What a TOML file of ours is for, told by the tables it has.
+enum class FileKind { scene, sweep, tuning, gates };
+
+/// @throws InputError when the document is clearly of another kind than wanted, with the verb that takes it
+void require_kind(const toml::table& document, const std::filesystem::path& file, FileKind wanted);
+
 /// The text's document. @param file  for messages. @throws InputError when it is no TOML
 [[nodiscard]] toml::table parse_document(std::string_view text, const std::filesystem::path& file);
 
-/// The file's document. @throws InputError when it cannot be read or is no TOML
+/// The study file's document. @throws InputError when it cannot be read or is no TOML
 [[nodiscard]] toml::table read_document(const std::filesystem::path& file);
 
 /// A value as TOML that reads back the same.

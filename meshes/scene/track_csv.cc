@@ -1,5 +1,7 @@
 #include "scene/track_csv.h"
 
+#include "scene/nearest_name.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -43,7 +45,7 @@ std::vector<TrackRow> read_track_csv(const std::filesystem::path& file, std::vec
   std::vector<TrackRow> track;
   std::ifstream in(file);
   if (!in || std::filesystem::is_directory(file)) {
-    faults.push_back({name, 0, 0, "cannot read the track; expected a readable CSV file"});
+    faults.push_back({name, 0, 0, "cannot read the track; expected a readable CSV file" + did_you_mean_file(file)});
     return track;
   }
   std::vector<std::size_t> meaning;  // of each column: index into column_names

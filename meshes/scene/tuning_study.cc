@@ -338,6 +338,7 @@ Scene with_parameters(Scene scene, const std::filesystem::path& file) {
 TuningStudy load_tuning_study(const std::filesystem::path& file,
                               const std::function<std::vector<Fault>(const Scene&)>& check) {
   const toml::table document = read_document(file);
+  require_kind(document, file, FileKind::tuning);
   return Reader(document, file, check).read();
 }
 

@@ -5,7 +5,10 @@
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -210,6 +213,238 @@ std::string full_program() {
     if (verb.ends_with(" compare")) return verb.substr(0, verb.rfind(' '));
   }
   return "";
+}
+
+class NewVerb : public testing::Test {
+ protected:
+  NewVerb() { std::filesystem::create_directories(dir_); }
+  ~NewVerb() override { std::filesystem::remove_all(dir_); }
+  /// The command in the test's folder.
+  [[nodiscard]] Answer make(const std::string& program, const std::string& options) const {
+    return run("cd " + dir_.string() + " && " + program + " new " + options);
+  }
+  [[nodiscard]] std::string text(const std::string& name) const {
+    std::ifstream in(dir_ / name);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+  const std::string block = "--body box 60x60x40mm --youngs-modulus 3MPa --poissons-ratio 0.45 --depth 2mm ";
+  const std::filesystem::path dir_ =
+      std::filesystem::path(testing::TempDir()) / ("new-verb-" + std::to_string(getpid()));
+};
+
+TEST_F(NewVerb, TheWrittenSceneRunsAndItsForceIsThatOfTheHalfSpace) {
+  for (const std::string& program : programs()) {
+    std::filesystem::remove(dir_ / "block.toml");
+    const Answer made = make(program, "block.toml " + block + "--tool sphere 10mm");
+    EXPECT_EQ(made.exit_code, 0) << made.output;
+    EXPECT_THAT(made.output, HasSubstr("Scene: block.toml\nNext:\n  "));
+    const std::string file = (dir_ / "block.toml").string();
+    EXPECT_EQ(run(program + " plan " + file).exit_code, 0);
+    const Answer ran = run(program + " fast " + file + " --quiet --out " + (dir_ / "out").string());
+    EXPECT_EQ(ran.exit_code, 0) << ran.output;
+    EXPECT_THAT(ran.output, HasSubstr("Status: ok")) << "the defaults do not suit a first scene";
+    const std::size_t at = ran.output.find("mm): ");
+    ASSERT_NE(at, std::string::npos) << ran.output;
+    const double force_n = std::stod(ran.output.substr(at + 5));
+    // Hertz: 4/3 E* sqrt(R) d^1.5; the law is within some percent of it at this depth.
+    const double hertz_n = 4.0 / 3.0 * 3.0e6 / (1.0 - 0.45 * 0.45) * std::sqrt(0.01) * std::pow(0.002, 1.5);
+    EXPECT_NEAR(force_n, hertz_n, 0.1 * hertz_n);
+  }
+}
+
+TEST_F(NewVerb, TakesAMeshOffCentreWithFriction) {
+  const std::string stl = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/tools/mallet.stl";
+  for (const std::string& program : programs()) {
+    std::filesystem::remove_all(dir_ / "in");
+    std::filesystem::create_directories(dir_ / "in/a");
+    const Answer made = make(program, "in/a/mallet.toml " + block + "--tool mesh " + stl +
+                                          " --unit mm --at -10x5mm --friction 0.3 --slide 3mm");
+    EXPECT_EQ(made.exit_code, 0) << made.output;
+    EXPECT_THAT(text("in/a/mallet.toml"), HasSubstr("\nK = 0.3 "));
+    EXPECT_THAT(text("in/a/mallet.toml"), HasSubstr("position_m = [-0.01, 0.005]"));
+    EXPECT_EQ(run(program + " plan " + (dir_ / "in/a/mallet.toml").string()).exit_code, 0);
+  }
+}
+
+TEST_F(NewVerb, RefusesInOneLineAndWritesNothing) {
+  const std::string program = *programs().begin();
+  const auto refused = [&](const std::string& options, const std::string& message) {
+    const Answer answer = make(program, "a.toml " + options);
+    EXPECT_EQ(answer.exit_code, 2) << options;
+    EXPECT_THAT(answer.output, HasSubstr(message));
+    EXPECT_EQ(std::count(answer.output.begin(), answer.output.end(), '\n'), 1) << answer.output;
+    EXPECT_FALSE(std::filesystem::exists(dir_ / "a.toml")) << options;
+  };
+  refused(block + "--tool sphere 10", "--tool sphere 10: expected a length with its unit");
+  refused(block + "--tool shpere 10mm", "did you mean \"sphere\"?");
+  refused(block + "--tool capsule 10mm", "expected radius and length of the straight part, such as 6x20mm");
+  refused(block + "--tool mesh none.stl --unit mm", "none.stl: cannot be read");
+  refused(block + "--tool mesh none.stl", "--unit is missing: expected the unit of the mesh file's coordinates");
+  refused(block + "--tool sphere 10mm --at 50x0mm", "moved straight down the tool never meets the body");
+  refused("--body box 60x60x40mm --youngs-modulus 3 --poissons-ratio 0.4 --tool sphere 10mm --depth 2mm",
+          "--youngs-modulus 3: expected a number with its unit");
+  refused("--body box 60x60x4mm --youngs-modulus 3MPa --poissons-ratio 0.4 --tool sphere 10mm --depth 3mm",
+          "--depth: more than half of the body's height");
+  const std::string stl = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/tools/mallet.stl";
+  refused(block + "--tool mesh " + stl + " --unit m", "--unit: the mesh is");
+  EXPECT_THAT(make(program, "none/a.toml " + block + "--tool sphere 10mm").output, HasSubstr("and there is no "));
+  std::ofstream(dir_ / "there.toml") << "mine";
+  const Answer answer = make(program, "there.toml " + block + "--tool sphere 10mm");
+  EXPECT_EQ(answer.exit_code, 2);
+  EXPECT_THAT(answer.output, HasSubstr("there.toml: there is such a file already"));
+  EXPECT_EQ(text("there.toml"), "mine");
+}
+
+TEST(Help, WithoutArgumentsIsTheOverview) {
+  for (const std::string& program : programs()) {
+    const Answer alone = run(program);
+    EXPECT_EQ(alone.exit_code, 0);
+    EXPECT_EQ(alone.output, run(program + " --help").output);
+    EXPECT_THAT(alone.output, HasSubstr("\n  new "));
+    EXPECT_THAT(alone.output, HasSubstr("VERB --help"));
+  }
+}
+
+/// The verbs and the verbs below them, as the help lists them.
+std::vector<std::string> all_verbs(const std::string& program) {
+  std::vector<std::string> list;
+  std::istringstream in(run(program).output);
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("  ") && line.size() > 2 && std::islower(line[2]) && !line.starts_with("  touchstone"))
+      list.push_back(line.substr(2, line.find(' ', 2) - 2));
+  }
+  return list;
+}
+
+TEST(Help, EveryVerbHasAnExampleOfItsOwn) {
+  for (const std::string& program : programs()) {
+    const std::vector<std::string> list = all_verbs(program);
+    EXPECT_GE(list.size(), program.ends_with("-fast") ? 6u : 14u);
+    const std::string name = std::filesystem::path(program).filename();
+    for (const std::string& verb : list) {
+      if (verb == "study") continue;
+      const std::string help = run(program + " " + verb + " --help").output;
+      const std::size_t at = help.find("Example:\n");
+      ASSERT_NE(at, std::string::npos) << verb;
+      EXPECT_THAT(help.substr(at), HasSubstr(name + " " + verb)) << verb;
+    }
+  }
+}
+
+TEST(Misspelt, VerbsAndOptionsGetTheNearestName) {
+  for (const std::string& program : programs()) {
+    const std::string name = std::filesystem::path(program).filename();
+    const auto refused = [&](const std::string& arguments, const std::string& message) {
+      const Answer answer = run(program + " " + arguments);
+      EXPECT_EQ(answer.exit_code, 2) << arguments;
+      EXPECT_EQ(answer.output, name + message + "\n");
+    };
+    refused("paln " + scene, ": unknown verb \"paln\"; did you mean \"plan\"?");
+    refused("plan " + scene + " --quite", " plan: unknown option --quite; did you mean \"--quiet\"?");
+    refused("plan --quite", " plan: unknown option --quite; did you mean \"--quiet\"?");
+    refused("fast " + scene + " --uot=x", " fast: unknown option --uot; did you mean \"--out\"?");
+    refused("fast " + scene + " --zzzzzzzz", " fast: unknown option --zzzzzzzz; see " + name + " fast --help");
+    refused(scene, ": expected a verb before " + scene + ", such as: " + name + " plan " + scene);
+    EXPECT_THAT(run(program + " zzzzzz").output, HasSubstr("unknown verb \"zzzzzz\"; expected one of new, plan, "));
+  }
+  if (full_program().empty()) return;
+  const Answer nested = run(full_program() + " study expnd x.toml");
+  EXPECT_EQ(nested.exit_code, 2);
+  EXPECT_EQ(nested.output, "touchstone study: unknown verb \"expnd\"; did you mean \"expand\"?\n");
+}
+
+TEST(Misspelt, AFileThatIsNotThereGetsTheNearestInItsFolder) {
+  const std::string folder = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/";
+  for (const std::string& program : programs()) {
+    const Answer answer = run(program + " plan " + folder + "scenes/ball-on-cube-pres.toml");
+    EXPECT_EQ(answer.exit_code, 2);
+    EXPECT_THAT(answer.output, HasSubstr("; did you mean \"" + folder + "scenes/ball-on-cube-press.toml\"?"));
+    EXPECT_THAT(run(program + " plan " + folder + "sceens/x.toml").output,
+                HasSubstr("; there is no folder " + folder + "sceens"));
+    EXPECT_THAT(run(program + " plan " + folder + "scenes/quite-another.toml").output,
+                HasSubstr("expected a readable TOML file\n"));
+    // Another ending.
+    EXPECT_THAT(run(program + " plan " + folder + "scenes/hertz-sphere.tml").output,
+                HasSubstr("; did you mean \"" + folder + "scenes/hertz-sphere.toml\"?"));
+  }
+}
+
+TEST(WrongFile, IsCalledWhatItIsWithTheVerbThatTakesIt) {
+  if (full_program().empty()) GTEST_SKIP() << "a build without the reference";
+  const std::string source = std::string(TOUCHSTONE_SOURCE_DIR);
+  const std::string sweep = source + "/meshes/studies/ball-on-cube-depth-and-place.toml";
+  const std::string tuning = source + "/meshes/studies/ball-on-cube.toml";
+  const std::string gates = source + "/tests/gates/hertz.toml";
+  const auto refused = [&](const std::string& arguments, const std::string& message) {
+    const Answer answer = run(full_program() + " " + arguments);
+    EXPECT_EQ(answer.exit_code, 2) << arguments;
+    EXPECT_THAT(answer.output, HasSubstr(message));
+    EXPECT_EQ(std::count(answer.output.begin(), answer.output.end(), '\n'), 1) << answer.output;
+  };
+  const std::string for_scene = "the verb for it is: touchstone compare " + scene;
+  refused("tune " + scene, "this is a scene, expected a tuning study; " + for_scene);
+  refused("study expand " + scene, "this is a scene, expected a study of many cases; " + for_scene);
+  refused("gate " + scene, "this is a scene");
+  refused("tune " + sweep,
+          "this is a study of many cases, expected a tuning study; the verb for it is: touchstone "
+          "study expand " +
+              sweep);
+  refused("study expand " + tuning, "this is a tuning study");
+  refused("compare " + sweep, "this is a study of many cases, expected a scene");
+  refused("compare " + tuning, "expected a scene; the verb for it is: touchstone tune " + tuning);
+  refused("compare " + gates, "this is a gate file, expected a scene; the verb for it is: touchstone gate --gates " +
+                                  source + "/tests/gates");
+}
+
+/// What bash would offer for the last of the words, with the program's script.
+std::set<std::string> offered(const std::string& program, const std::vector<std::string>& words,
+                              const std::string& folder = "/") {
+  const std::string name = std::filesystem::path(program).filename();
+  std::string function = "_" + name, list;
+  std::replace(function.begin(), function.end(), '-', '_');
+  for (const std::string& word : words) list += " '" + word + "'";
+  const Answer answer = run("cd " + folder + " && bash -c \"source <(" + program + " completion bash); COMP_WORDS=(" +
+                            name + list + "); COMP_CWORD=" + std::to_string(words.size()) + "; " + function +
+                            " 2>/dev/null; printf '%s\\\\n' \\\"\\${COMPREPLY[@]}\\\"\"");
+  EXPECT_EQ(answer.exit_code, 0) << answer.output;
+  std::set<std::string> out;
+  std::istringstream in(answer.output);
+  for (std::string line; std::getline(in, line);) {
+    if (!line.empty()) out.insert(line);
+  }
+  return out;
+}
+
+TEST(Completion, BashOffersVerbsOptionsKeysAndFiles) {
+  using testing::Contains;
+  using testing::ElementsAre;
+  for (const std::string& program : programs()) {
+    EXPECT_THAT(offered(program, {"pl"}), ElementsAre("plan"));
+    const std::vector<std::string> verbs = all_verbs(program);
+    for (const std::string& verb : verbs) EXPECT_THAT(offered(program, {""}), Contains(verb));
+    EXPECT_THAT(offered(program, {"plan", "--q"}), ElementsAre("--quiet"));
+    EXPECT_THAT(offered(program, {"plan", "--"}), testing::Not(Contains("--out")));
+    EXPECT_THAT(offered(program, {"fast", "--"}), Contains("--out"));
+    EXPECT_THAT(offered(program, {"fast", "--set", "fast.s_"}), ElementsAre("fast.s_c_m2="));
+    EXPECT_THAT(offered(program, {"live", "--device", "h"}), ElementsAre("hand"));
+    EXPECT_THAT(offered(program, {"live", "--device", "=", "h"}), ElementsAre("hand"));
+    EXPECT_THAT(offered(program, {"completion", "z"}), ElementsAre("zsh"));
+    const std::string source = TOUCHSTONE_SOURCE_DIR;
+    EXPECT_THAT(offered(program, {"fast", "meshes/scenes/hertz"}, source),
+                ElementsAre("meshes/scenes/hertz-sphere.toml"));
+    // Scenes and folders, no other files.
+    const std::set<std::string> places = offered(program, {"fast", ""}, source);
+    EXPECT_THAT(places, Contains("meshes"));
+    EXPECT_THAT(places, testing::Not(Contains("README.md")));
+    EXPECT_THAT(run(program + " completion zsh").output, HasSubstr("#compdef "));
+    EXPECT_EQ(run(program + " completion fish").exit_code, 2);
+  }
+  if (full_program().empty()) return;
+  EXPECT_THAT(offered(full_program(), {"study", ""}), ElementsAre("--help", "collect", "expand", "run"));
+  EXPECT_THAT(offered(full_program(), {"study", "run", "--in"}), ElementsAre("--index"));
+  EXPECT_THAT(offered(full_program(), {"compare", "--level", ""}), ElementsAre());
 }
 
 TEST(ReferenceVerb, AStoreThatCannotBeIsRefusedInOneLine) {

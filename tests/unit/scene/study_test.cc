@@ -90,7 +90,9 @@ TEST_F(StudyTest, RangesEndWhereTheySayAndStepEvenly) {
 }
 
 TEST_F(StudyTest, EveryFaultHasItsPlaceAndWhatWasExpected) {
-  EXPECT_THAT(refusal("scene = \"x.toml\"\nrun = \"fsat\"\n"), HasSubstr("2:7: run = \"fsat\"; expected \"fast\" or"));
+  EXPECT_THAT(
+      refusal("scene = \"x.toml\"\nrun = \"fsat\"\n"),
+      HasSubstr("2:7: run = \"fsat\"; expected \"fast\" or \"reference\" or \"compare\"; did you mean \"fast\"?"));
   EXPECT_THAT(refusal("run = \"fast\"\n"), HasSubstr("scene: missing"));
   EXPECT_THAT(refusal(head + "kind = \"tune\"\n"), HasSubstr("3:8: kind = \"tune\"; expected \"sweep\""));
   EXPECT_THAT(refusal(head), HasSubstr("no case; expected [[axis]] or [[case]] rows"));
