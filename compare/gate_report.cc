@@ -42,13 +42,13 @@ std::string beyond_text(const GateRecord& record) {
   return fmt::format("{:.9g} is beyond {} of the accepted {:.9g}", *record.value, limit, *record.accepted);
 }
 
-std::string why_red(const GateRecord& record) { return record.failure.empty() ? beyond_text(record) : record.failure; }
-
 std::size_t red_count(const std::vector<GateRecord>& records) {
   return static_cast<std::size_t>(std::ranges::count_if(records, [](const GateRecord& r) { return !r.passes(); }));
 }
 
 }  // namespace
+
+std::string why_red(const GateRecord& record) { return record.failure.empty() ? beyond_text(record) : record.failure; }
 
 std::string gates_text(const std::vector<GateRecord>& records, const std::vector<std::string>& faults) {
   std::vector<std::array<std::string, 8>> rows;

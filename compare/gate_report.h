@@ -5,6 +5,9 @@
 
 namespace touchstone::compare {
 
+/// Why a gate that does not pass is red.
+[[nodiscard]] std::string why_red(const GateRecord& record);
+
 /// The table: gate, kind, value, what the limit holds, limit, margin, ok or RED; below it why a gate is red.
 /// @param faults  of the folder, not of single gates
 [[nodiscard]] std::string gates_text(const std::vector<GateRecord>& records, const std::vector<std::string>& faults);

@@ -1,6 +1,7 @@
 #include "compare/gate_verb.h"
 
 #include "compare/gate_limits.h"
+#include "compare/gate_page.h"
 #include "compare/gate_report.h"
 #include "fast/command_line.h"
 #include "fast/progress_line.h"
@@ -81,8 +82,10 @@ int gate(const GateOptions& options, const std::string& command) {
     scene::write_file(options.out / "table.txt", text);
     scene::write_summary(options.out / "summary.json", gate_report_figures(records, faults));
     scene::write_manifest(options.out / "manifest.json", manifest);
+    scene::write_file(options.out / "report.html",
+                      gate_page_html(folder, records, faults, proofs, manifest, options.out));
     if (!options.junit.empty()) scene::write_file(options.junit, gates_junit(records, faults));
-    std::cout << text;
+    std::cout << text << "Report: " << (options.out / "report.html").string() << '\n';
     const bool good = faults.empty() && std::ranges::all_of(records, &GateRecord::passes);
     return good ? fast::done : fast::answer_is_no;
   });
