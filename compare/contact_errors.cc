@@ -97,9 +97,7 @@ void compare_torques(const fast::Run& run, const reference::Result& result, Erro
     for (const Vec3& middle_m : result.region_middles_m[t]) {
       lever_m = std::max(lever_m, (middle_m - result.instants[t].tool.position_m).norm());
     }
-    // An unknown band stays unknown over a lever of zero.
-    const double band_nm = std::isfinite(e.force_uncertainty_n) ? e.force_uncertainty_n * lever_m : INFINITY;
-    squares.add((torque_nm(run.instants[t]) - torque_nm(result.instants[t])).norm(), band_nm);
+    squares.add((torque_nm(run.instants[t]) - torque_nm(result.instants[t])).norm(), e.force_uncertainty_n * lever_m);
     scale_nm = std::max(scale_nm, e.force_reference_n * lever_m);
   }
   if (scale_nm > 0.0) errors.force_torque_nrmse = squares.over(scale_nm);

@@ -33,7 +33,7 @@ struct InstantErrors {
   bool deep = false;                      ///< depth above deep_share of the largest
   double force_fast_n = 0.0;              ///< |F_f|
   double force_reference_n = 0.0;         ///< |F_r|
-  double force_uncertainty_n = 0.0;       ///< half width of the reference's band; infinite where unknown
+  double force_uncertainty_n = 0.0;       ///< half width of the reference's band; NaN where unknown
   double force_error_n = 0.0;             ///< |F_f - F_r|, of the vectors
   double friction_fast_n = 0.0;           ///< |T_f|, the part of F_f along the surface; zero without friction
   double friction_reference_n = 0.0;      ///< |T_r|

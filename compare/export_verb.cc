@@ -37,8 +37,9 @@ SideBySide side_by_side(const reference::Deck& deck, const CalculixRun& run, con
     const double uncertainty_n = result.force_uncertainty_n[instant];
     const double row[] = {ours.time_s, ours.depth_m, ours_n, uncertainty_n, theirs_n, force, surface};
     for (std::size_t k = 0; k < both.columns.size(); ++k) both.columns[k].values.push_back(row[k]);
-    both.text += fmt::format("{:10.4g} {:12.5g} {:12.2g} {:12.5g} {:9.3f}% {:9.3f}%\n", 1e3 * ours.depth_m, ours_n,
-                             uncertainty_n, theirs_n, 100.0 * force, 100.0 * surface);
+    const std::string band = std::isfinite(uncertainty_n) ? fmt::format("{:.2g}", uncertainty_n) : "unknown";
+    both.text += fmt::format("{:10.4g} {:12.5g} {:>12} {:12.5g} {:9.3f}% {:9.3f}%\n", 1e3 * ours.depth_m, ours_n, band,
+                             theirs_n, 100.0 * force, 100.0 * surface);
   }
   return both;
 }

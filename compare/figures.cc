@@ -4,6 +4,7 @@
 #include "fast/results.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace touchstone::compare {
@@ -130,7 +131,7 @@ class Collector {
   }
   void number_or_why(std::string key, const std::optional<double>& value, const std::string& why) {
     if (value) return number(std::move(key), *value);
-    text(std::move(key), why);
+    absent(std::move(key), why);
   }
   void number_or_absent(std::string key, const std::optional<double>& value) {
     number_or_why(std::move(key), value, absent_);
@@ -141,16 +142,18 @@ class Collector {
   void measure_or_why(const std::string& key, const Measure& measure, const std::string& why,
                       const std::string& unit = "") {
     if (!measure.value) {
-      text(key, why);
-      text(key + std::string(uncertainty_suffix), why);
-      return;
+      absent(key, why, unit);
+      return absent(key + std::string(uncertainty_suffix), why, unit);
     }
     number(key, *measure.value, unit);
     if (measure.uncertainty) return number(key + std::string(uncertainty_suffix), *measure.uncertainty, unit);
-    text(key + std::string(uncertainty_suffix), "unknown");
+    absent(key + std::string(uncertainty_suffix), "unknown", unit);
   }
   void add(scene::Figure figure) { figures_.push_back(std::move(figure)); }
-  void text(std::string key, std::string value) { figures_.push_back({std::move(key), 0.0, std::move(value), ""}); }
+  /// @param why  there is no number
+  void absent(std::string key, std::string why, std::string unit = "") {
+    figures_.push_back({std::move(key), NAN, std::move(why), std::move(unit)});
+  }
   [[nodiscard]] scene::Figures take() { return std::move(figures_); }
 
  private:

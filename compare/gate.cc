@@ -93,9 +93,7 @@ GateRecord judged(const GateFolder& folder, const scene::GateFile& file, const s
   return judge(file.name, gate, answer.figures, accepted_of(folder, file.name + "." + gate.name), scene_hash);
 }
 
-std::string hash_of(const scene::GateFile& file) {
-  return scene::scene_hash(scene_of(file));
-}
+std::string hash_of(const scene::GateFile& file) { return scene::scene_hash(scene_of(file)); }
 
 bool is_drift(const GateFolder& folder, const std::string& name) {
   for (const scene::GateFile& file : folder.files) {
@@ -205,7 +203,7 @@ GateRecord judge(const std::string& file, const scene::Gate& gate, const scene::
   if (gate.kind == scene::GateKind::truth) {
     const std::string key = gate.quantity + std::string(uncertainty_suffix);
     const scene::Figure* uncertainty = find(figures, key);
-    if (uncertainty == nullptr || !uncertainty->text.empty()) {
+    if (uncertainty == nullptr || !uncertainty->text.empty() || !std::isfinite(uncertainty->number)) {
       record.failure = "missing: " + gate.quantity + " has no uncertainty, so it is no error against a truth";
       return record;
     }

@@ -10,9 +10,13 @@ namespace touchstone::compare {
 namespace {
 
 scene::Figure ratio_or_why(const std::string& key, const std::optional<double>& value) {
-  if (!value) return {key, 0.0, "undefined: the reference is never in contact", ""};
-  if (std::isinf(*value)) return {key, 0.0, "unknown", ""};
+  if (!value) return {key, NAN, "undefined: the reference is never in contact", ""};
   return {key, *value, "", ""};
+}
+
+scene::Figure uncertainty_or_why(const std::string& key, const std::optional<double>& value) {
+  if (value && !std::isfinite(*value)) return {key, NAN, "unknown", ""};
+  return ratio_or_why(key, value);
 }
 
 }  // namespace
@@ -43,8 +47,8 @@ scene::Figures reference_figures(const reference::Result& result, const Referenc
     newton_iterations += level.newton_iterations;
   }
   scene::Figures figures{
-      ratio_or_why("reference.force_uncertainty_rel", quality.force_uncertainty_rel),
-      ratio_or_why("reference.shape_uncertainty_rel", result.shape_uncertainty_rel),
+      uncertainty_or_why("reference.force_uncertainty_rel", quality.force_uncertainty_rel),
+      uncertainty_or_why("reference.shape_uncertainty_rel", result.shape_uncertainty_rel),
       ratio_or_why("reference.residual_penetration_rel", quality.residual_penetration_rel),
       ratio_or_why("reference.penetration_between_nodes_rel", quality.between_nodes_rel),
       ratio_or_why("reference.equilibrium_rel", quality.equilibrium_rel),

@@ -111,10 +111,12 @@ std::string reference_text(const reference::Result& result) {
   const auto deepest = std::max_element(result.instants.begin(), result.instants.end(),
                                         [](const auto& a, const auto& b) { return a.depth_m < b.depth_m; });
   const auto at = static_cast<std::size_t>(deepest - result.instants.begin());
-  std::string text = fmt::format(
-      "Force at the deepest instant ({:.3g} mm): {:.4g} N +- {:.2g} N\nModel: {}, {} unknowns on the finest mesh\n",
-      1e3 * deepest->depth_m, deepest->force_n().norm(), result.force_uncertainty_n[at], result.model,
-      result.levels.back().unknowns);
+  const double band_n = result.force_uncertainty_n[at];
+  std::string text =
+      fmt::format("Force at the deepest instant ({:.3g} mm): {:.4g} N {}\nModel: {}, {} unknowns on the finest mesh\n",
+                  1e3 * deepest->depth_m, deepest->force_n().norm(),
+                  std::isfinite(band_n) ? fmt::format("+- {:.2g} N", band_n) : "(uncertainty unknown)", result.model,
+                  result.levels.back().unknowns);
   for (std::size_t level = 0; level < result.levels.size(); ++level) {
     const reference::LevelRecord& mesh = result.levels[level];
     text +=

@@ -1,5 +1,6 @@
 #include "compare/result_folder.h"
 
+#include "compare/headline.h"
 #include "scene/error.h"
 
 #include <fmt/format.h>
@@ -55,13 +56,14 @@ std::string text_or_nothing(const Json& object, const char* key) {
 }
 
 scene::Figures figures_of(const Json& summary) {
-  const Json units = summary.value("units", Json::object());
+  const Json units = summary.value("units", Json::object()), reasons = summary.value("reasons", Json::object());
   scene::Figures figures;
   for (const auto& [key, value] : summary.items()) {
     if (value.is_object()) continue;
     scene::Figure figure{key, std::numeric_limits<double>::quiet_NaN(), "", text_or_nothing(units, key.c_str())};
     if (value.is_number()) figure.number = value.get<double>();
-    if (value.is_string()) figure.text = value.get<std::string>();
+    if (value.is_string()) figure = {key, 0.0, value.get<std::string>(), figure.unit};
+    if (value.is_null()) figure.text = text_or_nothing(reasons, key.c_str());
     figures.push_back(std::move(figure));
   }
   return figures;
@@ -69,10 +71,7 @@ scene::Figures figures_of(const Json& summary) {
 
 }  // namespace
 
-const scene::Figure* ResultFolder::figure(std::string_view key) const {
-  const auto found = std::find_if(figures.begin(), figures.end(), [&](const auto& f) { return f.key == key; });
-  return found == figures.end() ? nullptr : &*found;
-}
+const scene::Figure* ResultFolder::figure(std::string_view key) const { return find_figure(figures, key); }
 
 const std::vector<double>* ResultFolder::column(std::string_view name) const {
   const auto found = std::find_if(curve.begin(), curve.end(), [&](const auto& c) { return c.name == name; });
@@ -83,6 +82,8 @@ const std::vector<double>& ResultFolder::required_column(std::string_view name) 
   if (const std::vector<double>* values = column(name)) return *values;
   throw scene::InputError({{(folder / "curve.csv").string(), 1, 0, fmt::format("has no column {}", name)}});
 }
+
+scene::Figures read_figures(const std::filesystem::path& file) { return figures_of(read_object(file)); }
 
 std::vector<scene::Column> parse_csv(std::string_view text, const std::filesystem::path& file) {
   if (text.ends_with('\n')) text.remove_suffix(1);
@@ -136,7 +137,7 @@ ResultFolder read_result_folder(const std::filesystem::path& folder) {
     out.version = text_or_nothing(manifest, "version") + " " + text_or_nothing(manifest, "commit");
     out.date = text_or_nothing(manifest, "date");
   });
-  attempt([&] { out.figures = figures_of(read_object(folder / "summary.json")); });
+  attempt([&] { out.figures = read_figures(folder / "summary.json"); });
   attempt([&] { out.curve = parse_csv(read_required(folder / "curve.csv"), folder / "curve.csv"); });
   if (!faults.empty()) throw scene::InputError(std::move(faults));
   return out;

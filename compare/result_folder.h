@@ -34,6 +34,10 @@ struct ResultFolder {
 /// @throws scene::InputError with every file that is missing or damaged, and the line where it is
 [[nodiscard]] ResultFolder read_result_folder(const std::filesystem::path& folder);
 
+/// Reads what scene::write_summary wrote. A number that was not finite is NaN, with the reason as its text.
+/// @throws scene::InputError when the file is missing or damaged, and the line where it is
+[[nodiscard]] scene::Figures read_figures(const std::filesystem::path& file);
+
 /// Reads what scene::write_csv wrote. @param file  for messages
 /// @throws scene::InputError with the line that has another number of values than the head, or no number
 [[nodiscard]] std::vector<scene::Column> parse_csv(std::string_view text, const std::filesystem::path& file);

@@ -1,8 +1,9 @@
 #include "compare/results_page.h"
 
 #include "compare/errors.h"
-#include "compare/figures.h"
+#include "compare/headline.h"
 #include "compare/page.h"
+#include "compare/study.h"
 #include "compare/svg_plot.h"
 #include "compare/text.h"
 #include "scene/error.h"
@@ -13,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 
 namespace touchstone::compare {
@@ -22,18 +24,6 @@ namespace {
 constexpr std::array palette = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"};
 
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-
-struct HeadlineColumn {
-  std::string_view key, title;
-};
-constexpr HeadlineColumn headline[] = {{"force.nrmse", "Force error, of the peak"},
-                                       {"force.peak_rel", "Error of the largest force"},
-                                       {"shape.rel_l2", "Shape error, of the displacement"},
-                                       {"contact.area_iou", "Contact area in common"},
-                                       {"force.peak_reference_n", "Largest force, reference"},
-                                       {"fast.step_us.p50", "Fast step, median"},
-                                       {"fast.step_us.p999", "99.9 % are shorter than"},
-                                       {"reference.wall_s", "Reference took"}};
 
 /// A result with what the page calls it.
 struct Entry {
@@ -55,8 +45,37 @@ std::string relative_link(const std::filesystem::path& file, const std::filesyst
   return out;
 }
 
-/// The folder's name; with its parents' as far as needed to tell it from the others.
-std::string short_name(const std::vector<ResultFolder>& results, std::size_t at) {
+/// A result with its place in the study it lies in, if it does.
+struct Placed {
+  ResultFolder result;
+  std::optional<StudyPlace> place;
+};
+
+/// Results of one study stand in the study's order, where the first of them was given.
+std::vector<Placed> in_order(const std::vector<ResultFolder>& results) {
+  std::vector<Placed> out;
+  for (const ResultFolder& result : results) {
+    std::optional<StudyPlace> place = place_in_study(result.folder);
+    const auto same = [&](const Placed& other) { return place && other.place && other.place->study == place->study; };
+    auto at = out.end();
+    if (const auto first = std::find_if(out.begin(), out.end(), same); first != out.end()) {
+      at = std::find_if(first, out.end(),
+                        [&](const Placed& other) { return !same(other) || other.place->index > place->index; });
+    }
+    out.insert(at, {result, std::move(place)});
+  }
+  return out;
+}
+
+/// What its study calls it, with the study where others have the name, too; else the folder's name, with its parents'
+/// as far as needed to tell it from the others.
+std::string short_name(const std::vector<Placed>& results, std::size_t at) {
+  if (const auto& place = results[at].place) {
+    const bool shared = std::any_of(results.begin(), results.end(), [&](const Placed& other) {
+      return other.place && other.place->study != place->study && other.place->name == place->name;
+    });
+    return shared ? place->study.filename().string() + ": " + place->name : place->name;
+  }
   const auto tail = [](const std::filesystem::path& folder, int parts) {
     std::filesystem::path rest = std::filesystem::weakly_canonical(folder), out;
     for (int i = 0; i < parts && rest.has_relative_path(); ++i) {
@@ -66,49 +85,21 @@ std::string short_name(const std::vector<ResultFolder>& results, std::size_t at)
     return out.generic_string();
   };
   for (int parts = 1; parts < 16; ++parts) {
-    const std::string name = tail(results[at].folder, parts);
+    const std::string name = tail(results[at].result.folder, parts);
     const auto alike = std::count_if(results.begin(), results.end(),
-                                     [&](const ResultFolder& r) { return tail(r.folder, parts) == name; });
+                                     [&](const Placed& r) { return tail(r.result.folder, parts) == name; });
     if (alike == 1) return name;
   }
-  return results[at].folder.generic_string();
-}
-
-std::string headline_cell(const ResultFolder& result, std::string_view key) {
-  const scene::Figure* value = result.figure(key);
-  if (value == nullptr) return cell("–");
-  if (!value->text.empty()) return cell(value->text);
-  const std::string unknown = "unknown";
-  std::string out = escape_xml(std::isfinite(value->number) ? figure_text(*value) : unknown);
-  const scene::Figure* uncertainty = result.figure(std::string(key) + std::string(uncertainty_suffix));
-  if (uncertainty != nullptr) {
-    const bool known = uncertainty->text.empty() && std::isfinite(uncertainty->number);
-    out += tag("span", fmt::format("± {}", known ? figure_text(*uncertainty) : unknown), "class=\"under\"");
-    if (known && std::abs(value->number) <= uncertainty->number) {
-      out += tag("span", "not distinguishable", "class=\"under\"");
-    }
-  }
-  return "<td class=\"n\">" + out + "</td>";
+  return results[at].result.folder.generic_string();
 }
 
 std::string headline_table(const std::vector<Entry>& entries) {
-  std::string out = "<div class=\"scroll\"><table>\n<tr><th>Result</th>";
-  for (const HeadlineColumn& column : headline) {
-    out += tag("th", std::string(column.title), fmt::format("class=\"wrap\" title=\"{}\"", column.key));
-  }
-  out += "</tr>\n";
+  std::string out = "<div class=\"scroll\"><table>\n<tr><th>Result</th>" + headline_heads() + "</tr>\n";
   for (const Entry& entry : entries) {
     out += "<tr><td>" + tag("a", entry.title, fmt::format("href=\"{}\"", entry.link)) +
-           tag("span", entry.name, "class=\"under\"") + "</td>";
-    for (const HeadlineColumn& column : headline) out += headline_cell(entry.result, column.key);
-    out += "</tr>\n";
+           tag("span", entry.name, "class=\"under\"") + "</td>" + headline_cells(entry.result.figures) + "</tr>\n";
   }
-  return out + "</table></div>\n" +
-         tag("p",
-             "± is the reference's own uncertainty in the same norm. Not distinguishable: the error is no larger than "
-             "that, so it may be none.",
-             "class=\"dim\"") +
-         "\n";
+  return out + "</table></div>\n" + headline_note();
 }
 
 /// A curve of one result; drawn as the reference is, or the fast model.
@@ -228,11 +219,13 @@ std::string results_page_html(const std::vector<ResultFolder>& results, const st
                       fmt::format("was made by \"{}\", expected a result of \"touchstone compare\"", result.command)});
   }
   if (!faults.empty()) throw scene::InputError(std::move(faults));
+  const std::vector<Placed> placed = in_order(results);
   std::vector<Entry> entries;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    const std::string name = short_name(results, i);
-    entries.push_back({results[i], name, results[i].title.empty() ? name : results[i].title,
-                       relative_link(results[i].folder / "report.html", place)});
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const ResultFolder& result = placed[i].result;
+    const std::string name = short_name(placed, i);
+    entries.push_back({result, name, result.title.empty() ? name : result.title,
+                       relative_link(result.folder / "report.html", place)});
   }
   const std::string title = fmt::format("{} result{}", entries.size(), entries.size() == 1 ? "" : "s");
   return page(title,

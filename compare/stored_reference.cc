@@ -1,5 +1,6 @@
 #include "compare/stored_reference.h"
 
+#include "reference/run/uncertainty.h"
 #include "scene/build_info.h"
 #include "scene/files.h"
 #include "scene/hash.h"
@@ -10,6 +11,7 @@
 #include <zlib.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -322,6 +324,15 @@ reference::Result stored_reference(const path& folder, const scene::Scene& scene
   }
   take_curve(Table(checked(folder / curve_name, curve_checksum)), result);
   take_surface(checked(folder / surface_name, surface_checksum), surface.points_m.cols(), result);
+  // Written as null, as where there is nothing to be uncertain about; the bands tell which.
+  const auto& bands_n = result.force_uncertainty_n;
+  if (std::any_of(bands_n.begin(), bands_n.end(), [](double band_n) { return std::isnan(band_n); })) {
+    result.force_uncertainty_rel = reference::force_uncertainty_rel(result.instants, bands_n);
+  }
+  const auto& bands_m = result.displacement_uncertainty_m;
+  if (std::any_of(bands_m.begin(), bands_m.end(), [](const auto& band_m) { return band_m.hasNaN(); })) {
+    result.shape_uncertainty_rel = reference::shape_uncertainty_rel(result.instants, bands_m, surface.vertex_area_m2);
+  }
   result.from_store = true;
   return result;
 }

@@ -173,4 +173,19 @@ StudyManifest read_manifest(const std::filesystem::path& folder) {
   return manifest;
 }
 
+std::optional<StudyPlace> place_in_study(const std::filesystem::path& result_folder) {
+  std::filesystem::path folder = std::filesystem::weakly_canonical(result_folder);
+  if (!folder.has_filename()) folder = folder.parent_path();
+  const std::filesystem::path study = folder.parent_path().parent_path();
+  if (folder.parent_path().filename() != "results" || !std::filesystem::exists(study / "manifest.json")) return {};
+  try {
+    for (const ManifestCase& one : read_manifest(study).cases) {
+      if (folder.filename() == one.id) return StudyPlace{study, one.index, one.name};
+    }
+  } catch (const scene::InputError&) {
+    // Some other manifest: the folder only happens to be called as in a study.
+  }
+  return {};
+}
+
 }  // namespace touchstone::compare

@@ -6,6 +6,7 @@
 //   results/<id>/        the result folder of each case, with what study_run.h keeps of how it went
 //   array.sbatch         a Slurm script to read and edit
 //   summary.csv|json|md  the table over all cases that study_table.h makes
+//   report.html          the same on a page, with the errors drawn over what varies
 //
 // Expanding again, with more values, keeps the results that are there.
 #pragma once
@@ -13,6 +14,7 @@
 #include "scene/study.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,6 +54,15 @@ struct StudyManifest {
 ///         std::filesystem::filesystem_error
 StudyManifest expand(const scene::Study& study, const std::filesystem::path& folder,
                      const std::filesystem::path& program, const std::filesystem::path& store);
+
+/// Where a result folder stands in the study it lies in.
+struct StudyPlace {
+  std::filesystem::path study;  ///< the study's folder, without symbolic links
+  int index = 0;                ///< of the case, from 1
+  std::string name;             ///< of the case
+};
+/// Nothing for a folder that is no case's of a study around it.
+[[nodiscard]] std::optional<StudyPlace> place_in_study(const std::filesystem::path& result_folder);
 
 /// @throws scene::InputError when there is none or it cannot be read
 [[nodiscard]] StudyManifest read_manifest(const std::filesystem::path& folder);

@@ -1,6 +1,10 @@
 #include "compare/study_table.h"
 
-#include "compare/text.h"
+#include "compare/figures.h"
+#include "compare/headline.h"
+#include "compare/result_folder.h"
+#include "compare/study_page.h"
+#include "compare/study_parameters.h"
 #include "scene/files.h"
 
 #include <fmt/format.h>
@@ -8,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -27,12 +32,6 @@ constexpr std::array short_figures = {"force.nrmse",
                                       "reference.wall_s",
                                       "fast.step_us.p50"};
 
-struct Row {
-  const ManifestCase* one = nullptr;
-  CaseStatus status;
-  Json figures = Json::object();
-};
-
 /// RFC 4180.
 std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -41,9 +40,16 @@ std::string csv_cell(const std::string& text) {
   return out + "\"";
 }
 
-std::string plain_text(const Json& value) {
-  if (value.is_null()) return "";
-  return value.is_string() ? value.get<std::string>() : value.dump();
+bool is_number(const scene::Figure& figure) { return figure.text.empty() || !std::isfinite(figure.number); }
+
+std::string plain_text(const scene::Figure& figure) {
+  if (!is_number(figure)) return figure.text;
+  return std::isfinite(figure.number) ? fmt::format("{}", figure.number) : "nan";
+}
+
+Json json_of(const scene::Figure& figure) {
+  if (!is_number(figure)) return figure.text;
+  return std::isfinite(figure.number) ? Json(figure.number) : Json(nullptr);
 }
 
 std::string markdown_cell(const std::string& text) {
@@ -59,29 +65,43 @@ std::string label_at(const ManifestCase& one, const std::string& axis) {
   return "";
 }
 
-std::string csv(const StudyManifest& manifest, const std::vector<Row>& rows, const std::vector<std::string>& keys) {
+/// What varies beside the axes.
+std::vector<StudyParameter> keys_beside(const StudyManifest& manifest) {
+  std::vector<StudyParameter> parameters = study_parameters(manifest);
+  std::erase_if(parameters, [&](const StudyParameter& parameter) {
+    return std::find(manifest.axes.begin(), manifest.axes.end(), parameter.name) != manifest.axes.end();
+  });
+  return parameters;
+}
+
+std::string csv(const StudyManifest& manifest, const std::vector<StudyRow>& rows,
+                const std::vector<StudyParameter>& beside, const std::vector<std::string>& keys) {
   std::string text = "index,id,name,state,why,version,wall_s";
   for (const std::string& axis : manifest.axes) text += "," + csv_cell(axis);
+  for (const StudyParameter& parameter : beside) text += "," + csv_cell(parameter.name);
   for (const std::string& key : keys) text += "," + csv_cell(key);
   text += '\n';
-  for (const Row& row : rows) {
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const StudyRow& row = rows[k];
     const bool done = row.status.state == CaseState::done;
     text += fmt::format("{},{},{},{},{},{},{}", row.one->index, row.one->id, csv_cell(row.one->name),
                         state_name(row.status.state), csv_cell(row.status.why), csv_cell(row.status.version),
                         done ? fmt::format("{}", row.status.wall_s) : "");
     for (const std::string& axis : manifest.axes) text += "," + csv_cell(label_at(*row.one, axis));
+    for (const StudyParameter& parameter : beside) text += "," + csv_cell(parameter.written[k]);
     for (const std::string& key : keys) {
-      text += "," + csv_cell(row.figures.contains(key) ? plain_text(row.figures[key]) : "");
+      const scene::Figure* figure = find_figure(row.figures, key);
+      text += "," + (figure != nullptr ? csv_cell(plain_text(*figure)) : "");
     }
     text += '\n';
   }
   return text;
 }
 
-Json json(const StudyManifest& manifest, const std::vector<Row>& rows, const Json& units) {
+Json json(const StudyManifest& manifest, const std::vector<StudyRow>& rows, const Json& units) {
   Json out = {{"name", manifest.name}, {"title", manifest.title}, {"run", manifest.run}, {"axes", manifest.axes}};
   out["cases"] = Json::array();
-  for (const Row& row : rows) {
+  for (const StudyRow& row : rows) {
     Json one = {{"index", row.one->index}, {"id", row.one->id}, {"name", row.one->name}};
     one["along"] = Json::object();
     for (const auto& [axis, label] : row.one->along) one["along"][axis] = label;
@@ -92,7 +112,8 @@ Json json(const StudyManifest& manifest, const std::vector<Row>& rows, const Jso
     if (row.status.state == CaseState::done) {
       one["version"] = row.status.version;
       one["wall_s"] = row.status.wall_s;
-      one["figures"] = row.figures;
+      one["figures"] = Json::object();
+      for (const scene::Figure& figure : row.figures) one["figures"][figure.key] = json_of(figure);
     }
     out["cases"].push_back(std::move(one));
   }
@@ -100,34 +121,38 @@ Json json(const StudyManifest& manifest, const std::vector<Row>& rows, const Jso
   return out;
 }
 
-std::string markdown(const StudyManifest& manifest, const std::vector<Row>& rows, const Json& units,
-                     const std::string& missing) {
+std::string markdown(const StudyManifest& manifest, const std::vector<StudyRow>& rows,
+                     const std::vector<StudyParameter>& beside_axes, const std::string& missing) {
   std::vector<std::string> keys;
   for (const char* key : short_figures) {
-    if (std::any_of(rows.begin(), rows.end(), [&](const Row& row) { return row.figures.contains(key); })) {
+    if (std::any_of(rows.begin(), rows.end(),
+                    [&](const StudyRow& row) { return find_figure(row.figures, key) != nullptr; })) {
       keys.emplace_back(key);
     }
   }
-  const bool beside = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.one->along.empty(); });
+  const bool beside = std::any_of(rows.begin(), rows.end(), [](const StudyRow& row) { return row.one->along.empty(); });
   std::string head = "| case |", rule = "|---|";
   const auto column = [&](const std::string& name, bool number) {
     head += " " + markdown_cell(name) + " |";
     rule += number ? "---:|" : "---|";
   };
   for (const std::string& axis : manifest.axes) column(axis, false);
+  for (const StudyParameter& parameter : beside_axes) column(parameter.label(), parameter.numeric());
   if (beside) column("name", false);
   column("state", false);
   for (const std::string& key : keys) column(key, true);
   std::string text =
       "# " + (manifest.title.empty() ? manifest.name : manifest.title) + "\n\n" + head + "\n" + rule + "\n";
-  for (const Row& row : rows) {
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const StudyRow& row = rows[k];
     text += fmt::format("| {} |", row.one->index);
     for (const std::string& axis : manifest.axes) text += " " + markdown_cell(label_at(*row.one, axis)) + " |";
+    for (const StudyParameter& parameter : beside_axes) text += " " + markdown_cell(parameter.values[k]) + " |";
     if (beside) text += " " + (row.one->along.empty() ? markdown_cell(row.one->name) : "") + " |";
     text += fmt::format(" {} |", state_name(row.status.state));
     for (const std::string& key : keys) {
-      const bool number = row.figures.contains(key) && row.figures[key].is_number();
-      text += " " + (number ? quantity_text(row.figures[key].get<double>(), units.value(key, "")) : "") + " |";
+      const scene::Figure* figure = find_figure(row.figures, key);
+      text += " " + (figure != nullptr ? markdown_cell(figure_text(*figure)) : "") + " |";
     }
     text += '\n';
   }
@@ -149,23 +174,21 @@ std::string ranges_text(const std::vector<int>& ascending) {
 }
 
 StudyTable collect(const StudyManifest& manifest) {
-  std::vector<Row> rows;
+  std::vector<StudyRow> rows;
   std::vector<std::string> keys;
   std::set<std::string> known, versions;
   Json units = Json::object();
   StudyTable table{static_cast<int>(manifest.cases.size()), 0, ""};
   std::vector<int> again;
   for (const ManifestCase& one : manifest.cases) {
-    Row row{&one, case_status(manifest, one), Json::object()};
+    StudyRow row{&one, case_status(manifest, one), {}};
     if (row.status.state == CaseState::done) {
       ++table.done;
       versions.insert(row.status.version);
-      const Json summary = Json::parse(*scene::read_file(manifest.result_folder(one) / "summary.json"));
-      for (const auto& [key, value] : summary.items()) {
-        if (key == "units") continue;
-        row.figures[key] = value;
-        units[key] = summary.at("units").value(key, "");
-        if (known.insert(key).second) keys.push_back(key);
+      row.figures = read_figures(manifest.result_folder(one) / "summary.json");
+      for (const scene::Figure& figure : row.figures) {
+        units[figure.key] = figure.unit;
+        if (known.insert(figure.key).second) keys.push_back(figure.key);
       }
     } else {
       table.text += fmt::format("case {} ({}): {}{}\n", one.index, one.name, state_name(row.status.state),
@@ -180,9 +203,11 @@ StudyTable collect(const StudyManifest& manifest) {
     for (const std::string& version : versions) table.text += " " + version + ";";
     table.text.back() = '\n';
   }
-  scene::write_file(manifest.folder / "summary.csv", csv(manifest, rows, keys));
+  const std::vector<StudyParameter> beside = keys_beside(manifest);
+  scene::write_file(manifest.folder / "summary.csv", csv(manifest, rows, beside, keys));
   scene::write_file(manifest.folder / "summary.json", json(manifest, rows, units).dump(2) + "\n");
-  scene::write_file(manifest.folder / "summary.md", markdown(manifest, rows, units, table.text));
+  scene::write_file(manifest.folder / "summary.md", markdown(manifest, rows, beside, table.text));
+  scene::write_file(manifest.folder / "report.html", study_page_html(manifest, rows));
   return table;
 }
 

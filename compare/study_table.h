@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compare/study_run.h"
+#include "scene/record.h"
 
 #include <string>
 
@@ -12,9 +13,17 @@ struct StudyTable {
   std::string text;  ///< for the terminal: what is not done, why, and the indices to run again
 };
 
-/// Merges the summaries into summary.csv, summary.json and summary.md in the study's folder: one row per case with its
-/// place on every axis, its state, and every figure; what a case does not have is empty. Cases may be running.
-/// @throws std::filesystem::filesystem_error
+/// One case with what it left.
+struct StudyRow {
+  const ManifestCase* one = nullptr;  ///< of the manifest
+  CaseStatus status;
+  scene::Figures figures;  ///< of its summary.json where it is done
+};
+
+/// Merges the summaries into summary.csv, summary.json, summary.md and report.html in the study's folder: one row per
+/// case with its place on every axis, its state, and every figure. What a case does not have is empty; a number that is
+/// not known is nan, in JSON null. Cases may be running.
+/// @throws scene::InputError when a case's scene or summary cannot be read, std::filesystem::filesystem_error
 StudyTable collect(const StudyManifest& manifest);
 
 /// Numbers as a batch system takes them: "1,3-5,9".

@@ -72,8 +72,8 @@ int collect_verb(const StudyOptions& options) {
   const StudyManifest manifest = read_manifest(options.study);
   const StudyTable table = collect(manifest);
   std::cout << table.text
-            << fmt::format("{} of {} cases are done. Table: {}\n", table.done, table.cases,
-                           (manifest.folder / "summary.csv").string());
+            << fmt::format("{} of {} cases are done. Table: {}\nReport: {}\n", table.done, table.cases,
+                           (manifest.folder / "summary.csv").string(), (manifest.folder / "report.html").string());
   return table.done == table.cases ? fast::done : fast::answer_is_no;
 }
 
@@ -109,8 +109,9 @@ void add_study_verb(CLI::App& app, StudyOptions& options, int& exit_code) {
   run->add_flag("--quiet", options.quiet, "no progress of the cases' solvers");
   run->footer(example + "run out/depth-and-place --index 3");
 
-  CLI::App* collect = add("collect", "one table over all cases; exit 1 when some are not done, and which and why",
-                          "DIR", "the study's folder", collect_verb);
+  CLI::App* collect =
+      add("collect", "table and report over all cases; exit 1 when some are not done, and which and why", "DIR",
+          "the study's folder", collect_verb);
   collect->footer(example + "collect out/depth-and-place");
 }
 

@@ -183,6 +183,31 @@ std::string curve_line(const Curve& curve, const Axis& x, const Axis& y) {
   return fmt::format("<path d=\"{}\" {} {} stroke-linejoin=\"round\"/>\n", path, fill, stroke(curve));
 }
 
+/// Bars about the points whose half height is known.
+std::string error_bars(const Curve& curve, const Axis& x, const Axis& y) {
+  std::string out;
+  for (std::size_t i = 0; i < curve.y_half.size(); ++i) {
+    if (!x.can_show(curve.x[i]) || !y.can_show(curve.y[i]) || !std::isfinite(curve.y_half[i])) continue;
+    const double low = curve.y[i] - curve.y_half[i];
+    const double x_px = x.px(curve.x[i]), top_px = y.px(curve.y[i] + curve.y_half[i]);
+    const double bottom_px = y.px(y.log() ? std::max(low, y.low()) : low);
+    constexpr double cap_px = 4.0;
+    out += fmt::format(
+        "<path class=\"bar\" d=\"M{0:.1f} {1:.1f}H{2:.1f}M{3:.1f} {1:.1f}V{4:.1f}M{0:.1f} {4:.1f}H{2:.1f}\" "
+        "fill=\"none\" stroke=\"{5}\" stroke-width=\"1.5\"/>\n",
+        x_px - cap_px, top_px, x_px + cap_px, x_px, bottom_px, colour_of(curve));
+  }
+  return out;
+}
+
+/// Of a point whose bar is not known.
+std::string hollow_marker(const Curve& curve, double x_px, double y_px, const std::string& title_element) {
+  return fmt::format(
+      "<circle class=\"unknown\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"none\" pointer-events=\"all\" "
+      "stroke=\"{}\" stroke-width=\"1.5\">{}</circle>",
+      x_px, y_px, colour_of(curve), title_element);
+}
+
 /// Round for the reference and square for the fast model, so that grey print tells them apart.
 std::string marker(const Curve& curve, double x_px, double y_px, const std::string& title_element) {
   if (curve.look == Look::fast) {
@@ -193,6 +218,11 @@ std::string marker(const Curve& curve, double x_px, double y_px, const std::stri
                      colour_of(curve), title_element);
 }
 
+std::string bar_words(const Curve& curve, std::size_t point) {
+  if (curve.y_half.empty()) return "";
+  return " ± " + (std::isfinite(curve.y_half[point]) ? number_text(curve.y_half[point], 4) : std::string("unknown"));
+}
+
 std::string curve_markers(const Curve& curve, const Plot& plot, const Axis& x, const Axis& y) {
   std::string out;
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -200,8 +230,10 @@ std::string curve_markers(const Curve& curve, const Plot& plot, const Axis& x, c
     const double px = x.px(curve.x[i]), py = y.px(curve.y[i]);
     const std::string tip =
         escape_xml(fmt::format("{}{}{}: {}; {}: {}", curve.name, curve.name.empty() ? "" : " | ", plot.x_label,
-                               number_text(curve.x[i], 4), plot.y_label, number_text(curve.y[i], 4)));
-    out += marker(curve, px, py, "<title>" + tip + "</title>") + "\n";
+                               number_text(curve.x[i], 4), plot.y_label, number_text(curve.y[i], 4))) +
+        bar_words(curve, i);
+    const bool hollow = !curve.y_half.empty() && !std::isfinite(curve.y_half[i]);
+    out += (hollow ? hollow_marker : marker)(curve, px, py, "<title>" + tip + "</title>") + "\n";
   }
   return out;
 }
@@ -375,7 +407,16 @@ std::string to_svg(const Plot& plot, int width_px, int height_px) {
       y_extent.include(y[i]);
     }
   };
-  for (const Curve& curve : plot.curves) include(curve.x, curve.y);
+  for (const Curve& curve : plot.curves) {
+    include(curve.x, curve.y);
+    std::vector<double> ends(curve.y_half.size());
+    for (const double sign : {1.0, -1.0}) {
+      // As for a band, the lower end may come close to zero.
+      if (sign < 0.0 && plot.y_log) continue;
+      for (std::size_t i = 0; i < ends.size(); ++i) ends[i] = curve.y[i] + sign * curve.y_half[i];
+      if (!ends.empty()) include(curve.x, ends);
+    }
+  }
   for (const Band& band : plot.bands) {
     include(band.x, band.high);
     // The lower edge of a band may come close to zero: on a logarithmic axis it would take over the range.
@@ -405,6 +446,7 @@ std::string to_svg(const Plot& plot, int width_px, int height_px) {
   for (const Span& span : plot.spans) out += span_area(span, x, y);
   for (const Band& band : plot.bands) out += band_area(band, x, y);
   for (const Curve& curve : plot.curves) out += curve_line(curve, x, y);
+  for (const Curve& curve : plot.curves) out += error_bars(curve, x, y);
   for (const Curve& curve : plot.curves) {
     if (curve.markers) out += curve_markers(curve, plot, x, y);
   }

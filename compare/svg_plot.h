@@ -21,6 +21,8 @@ struct Curve {
   bool markers = true;
   bool filled = false;       ///< the area within, holes left out
   std::string own_colour{};  ///< "#rrggbb" in place of the look's, where one side has many curves
+  /// Half height of a bar about each point, NaN where it is not known: the marker is then hollow. Empty: no bars.
+  std::vector<double> y_half = {};
 };
 
 /// Area between two curves over x.

@@ -119,7 +119,7 @@ scene::Figures model_figures(const Tuning& tuning, const TunedModel& model) {
       if (found.error) {
         out.push_back({key, *found.error, "", one.log ? "" : one.unit});
       } else {
-        out.push_back({key, 0.0,
+        out.push_back({key, NAN,
                        found.open                       ? "none: the data leave it open"
                        : found.at_bound == AtBound::low ? "none: at its lower bound"
                                                         : "none: at its upper bound",

@@ -64,6 +64,8 @@ constexpr int width_px = 1280, height_px = 760;
 /// The body's part of the window; the curve has the rest.
 constexpr double body_share = 0.62;
 constexpr std::array ink = {0.11, 0.12, 0.13};
+/// Of a point whose value is not known.
+constexpr double unknown_grey = 0.75;
 constexpr int tool_triangles = 3000;
 /// Of 100: thin lines and letters stay clean.
 constexpr int jpeg_quality = 95;
@@ -153,6 +155,7 @@ vtkSmartPointer<vtkLookupTable> lookup_table(ColourMap map) {
   auto table = vtkSmartPointer<vtkLookupTable>::New();
   constexpr int entries = 256;
   table->SetNumberOfTableValues(entries);
+  table->SetNanColor(unknown_grey, unknown_grey, unknown_grey, 1.0);
   for (int i = 0; i < entries; ++i) {
     const double at = static_cast<double>(i) / (entries - 1) * static_cast<double>(steps.size() - 1);
     const std::size_t low = std::min(static_cast<std::size_t>(at), steps.size() - 2);
@@ -270,6 +273,14 @@ struct ResultView::Parts {
       }
     }
     return found;
+  }
+
+  /// Has the colouring a value anywhere at this instant?
+  [[nodiscard]] bool any_value() const {
+    for (vtkIdType i = 0; i < surfaces[instant]->GetNumberOfPoints(); ++i) {
+      if (std::isfinite(value_m(instant, i))) return true;
+    }
+    return false;
   }
 
   void make_space(const ResultFolder& result) {
@@ -394,6 +405,8 @@ struct ResultView::Parts {
     body_mapper->UseLookupTableScalarRangeOn();
     bar->SetLookupTable(table);
     bar->SetTitle((colourings[colouring].name + "\n[mm]\n").c_str());
+    const bool known = any_value();
+    bar->SetVisibility(known ? 1 : 0);
 
     const scene::Pose& pose = poses[instant];
     vtkNew<vtkMatrix4x4> matrix;
@@ -409,6 +422,7 @@ struct ResultView::Parts {
     for (const scene::Column& force : forces) {
       text += fmt::format("{} {}   ", force.name, quantity_text(force.values[instant], "N"));
     }
+    if (!known) text += "\nThe " + colourings[colouring].name + " is unknown: the body is grey.\n";
     words->SetInput((text + "  (h: keys)").c_str());
     for (const vtkIdType row : {0, 1}) cursor->SetValue(row, 0, time_s[instant]);
     cursor->Modified();
@@ -462,6 +476,8 @@ std::size_t ResultView::instant_count() const { return parts_->surfaces.size(); 
 std::size_t ResultView::instant() const { return parts_->instant; }
 std::string ResultView::side() const { return parts_->bodies[parts_->body].name; }
 std::string ResultView::colour() const { return parts_->colourings[parts_->colouring].name; }
+
+std::string ResultView::words() const { return parts_->words->GetInput(); }
 
 void ResultView::show_instant(long instant) {
   parts_->instant = static_cast<std::size_t>(std::clamp(instant, 0L, static_cast<long>(instant_count()) - 1));

@@ -21,6 +21,7 @@ class ResultView {
   [[nodiscard]] std::size_t instant() const;
   [[nodiscard]] std::string side() const;    ///< shown: "reference", "fast model", or "body" where there is one only
   [[nodiscard]] std::string colour() const;  ///< what colours the body, such as "error"
+  [[nodiscard]] std::string words() const;   ///< over the picture: instant, depth, forces
 
   /// Clamped to the instants there are.
   void show_instant(long instant);

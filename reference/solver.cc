@@ -98,7 +98,7 @@ scene::Plan plan(const Scene& scene) {
   } else if (levels >= 3) {
     uncertainty << "from " << levels << " refinement levels";
   } else {
-    uncertainty << "fewer than three levels: unknown, reported as infinite";
+    uncertainty << "fewer than three levels: unknown";
   }
   add("uncertainty", levels >= 3, uncertainty.str());
   for (int level = 0; level < levels; ++level) {

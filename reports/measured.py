@@ -1,5 +1,6 @@
 """What the scripts that write measured tables into a page of reports/ share."""
 import argparse
+import json
 import pathlib
 import sys
 
@@ -37,6 +38,12 @@ def arguments(text, kind, names, out, page, **folders):
     given.names = given.names or list(names)
     given.passed_on = passed_on
     return given
+
+
+def read_summary(file):
+    """A summary.json as one table; a number that is null for a reason is the reason."""
+    summary = json.loads(file.read_text())
+    return summary | summary.pop("reasons", {})
 
 
 def write_between_marks(page, what, text):

@@ -122,7 +122,13 @@ void write_csv(const std::filesystem::path& path, const std::vector<Column>& col
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
       if (i > 0) text += ',';
-      text.append(number, std::to_chars(number, number + sizeof number, columns[i].values.at(row)).ptr);
+      const double value = columns[i].values.at(row);
+      // Without the sign that a NaN may have, which not every reader takes.
+      if (std::isnan(value)) {
+        text += "nan";
+      } else {
+        text.append(number, std::to_chars(number, number + sizeof number, value).ptr);
+      }
     }
     text += '\n';
   }
@@ -131,12 +137,15 @@ void write_csv(const std::filesystem::path& path, const std::vector<Column>& col
 
 void write_summary(const std::filesystem::path& path, const Figures& figures) {
   Json json;
-  Json units;
+  Json units, reasons;
   for (const Figure& figure : figures) {
-    json[figure.key] = figure.text.empty() ? number_or_null(figure.number) : Json(figure.text);
+    const bool is_text = !figure.text.empty() && std::isfinite(figure.number);
+    json[figure.key] = is_text ? Json(figure.text) : number_or_null(figure.number);
     units[figure.key] = figure.unit;
+    if (!is_text && !figure.text.empty()) reasons[figure.key] = figure.text;
   }
   json["units"] = units;
+  if (!reasons.is_null()) json["reasons"] = reasons;
   write_file(path, json.dump(2) + "\n");
 }
 

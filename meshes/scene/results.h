@@ -28,11 +28,11 @@ struct Column {
 /// time_s and the tool's pose, which both sides share.
 [[nodiscard]] std::vector<Column> track_columns(const std::vector<InstantRecord>& records);
 
-/// Comma-separated, one header line, numbers as short as they read back exactly.
+/// Comma-separated, one header line, numbers as short as they read back exactly; unknown is nan.
 void write_csv(const std::filesystem::path& path, const std::vector<Column>& columns);
 
-/// One flat JSON object, dotted key to number or text, plus "units" with the same keys.
-/// A number that is not finite is written as null.
+/// One flat JSON object, dotted key to number or text, plus "units" with the same keys. A number that is not finite is
+/// null, and its text, which then says why, stands in "reasons" under the same key.
 void write_summary(const std::filesystem::path& path, const Figures& figures);
 
 /// Wall and CPU time of a named stage [s].

@@ -244,6 +244,12 @@ Study load_study(const std::filesystem::path& file) {
   return Reader(document, file).read();
 }
 
+std::optional<std::string> value_in(std::string_view text, const std::filesystem::path& file, const std::string& key) {
+  const toml::table document = parse_document(text, file);
+  const auto node = document.at_path(key);
+  return node ? std::optional(value_text(*node.node())) : std::nullopt;
+}
+
 std::vector<Scene> load_cases(const Study& study, const std::function<std::vector<Fault>(const Scene&)>& check) {
   std::vector<Scene> scenes;
   std::vector<Fault> faults;

@@ -30,7 +30,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -62,6 +64,11 @@ inline constexpr std::size_t study_cases_max = 100'000;
 
 /// @throws InputError with every fault of the file, each with line, column and what was expected
 [[nodiscard]] Study load_study(const std::filesystem::path& file);
+
+/// The value, as TOML, at a key of a scene file's text, spelt as for --set; nothing where it has none.
+/// @param file  for messages. @throws InputError when the text is no TOML
+[[nodiscard]] std::optional<std::string> value_in(std::string_view text, const std::filesystem::path& file,
+                                                  const std::string& key);
 
 /// The scene of every case.
 /// @param check  more faults of one scene, such as what a solver cannot do; may be empty

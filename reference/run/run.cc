@@ -218,10 +218,10 @@ class Run {
   }
 
   void unknown_uncertainty() {
-    constexpr double infinite = std::numeric_limits<double>::infinity();
-    result_.force_uncertainty_n.assign(times_s_.size(), infinite);
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    result_.force_uncertainty_n.assign(times_s_.size(), unknown);
     result_.displacement_uncertainty_m.assign(times_s_.size(),
-                                              Eigen::VectorXd::Constant(rest_points_m_.cols(), infinite));
+                                              Eigen::VectorXd::Constant(rest_points_m_.cols(), unknown));
     result_.force_uncertainty_rel = force_uncertainty_rel(result_.instants, result_.force_uncertainty_n);
     result_.shape_uncertainty_rel =
         shape_uncertainty_rel(result_.instants, result_.displacement_uncertainty_m, options_.rest_area_m2);

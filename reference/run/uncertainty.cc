@@ -11,6 +11,8 @@ namespace {
 constexpr double safety = 1.25;
 constexpr double closest_pair = 1.49;
 
+constexpr double unknown_uncertainty = std::numeric_limits<double>::quiet_NaN();
+
 /// Two levels and what the difference between them is worth at the finest one.
 struct Pair {
   std::size_t coarse, fine;
@@ -31,7 +33,7 @@ std::vector<Pair> pairs(const std::vector<double>& finer) {
 
 std::vector<double> force_band(const std::vector<std::vector<double>>& levels, const std::vector<double>& finer) {
   const std::size_t instants = levels.empty() ? 0 : levels.back().size();
-  if (levels.size() < 3) return std::vector<double>(instants, std::numeric_limits<double>::infinity());
+  if (levels.size() < 3) return std::vector<double>(instants, unknown_uncertainty);
   std::vector<double> own(instants, 0.0), band(instants);
   for (const Pair& pair : pairs(finer)) {
     for (std::size_t i = 0; i < instants; ++i) {
@@ -53,7 +55,7 @@ std::vector<Eigen::VectorXd> displacement_band(const std::vector<std::vector<Eig
   for (std::size_t i = 0; i < instants; ++i) {
     const Eigen::Index points = levels.back()[i].cols();
     if (levels.size() < 3) {
-      own[i] = Eigen::VectorXd::Constant(points, std::numeric_limits<double>::infinity());
+      own[i] = Eigen::VectorXd::Constant(points, unknown_uncertainty);
       continue;
     }
     own[i].setZero(points);

@@ -22,12 +22,12 @@ namespace touchstone::reference {
 /// law.
 /// @param levels  [level][instant], coarsest first
 /// @param finer   f of each level
-/// @returns infinity throughout with fewer than three levels
+/// @returns NaN, for unknown, throughout with fewer than three levels
 [[nodiscard]] std::vector<double> force_band(const std::vector<std::vector<double>>& levels,
                                              const std::vector<double>& finer);
 
-/// The same per rest point, with the length of the difference of two displacement vectors. Quadratic cells do better than
-/// first order, but the far field is refined less than the contact.
+/// The same per rest point, with the length of the difference of two displacement vectors. Quadratic cells do better
+/// than first order, but the far field is refined less than the contact.
 /// @param levels  [level][instant], each 3 x points
 /// @returns per instant, per point
 [[nodiscard]] std::vector<Eigen::VectorXd> displacement_band(const std::vector<std::vector<Eigen::Matrix3Xd>>& levels,

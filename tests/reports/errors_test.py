@@ -51,7 +51,9 @@ class Measure(unittest.TestCase):
         self.answer(figures)
 
     def answer(self, summary):
-        (self.folder / "summary.json").write_text(json.dumps(summary))
+        """As the program writes it: what is no number is null, and a text says why."""
+        reasons = {key: value for key, value in summary.items() if isinstance(value, str)}
+        (self.folder / "summary.json").write_text(json.dumps(summary | dict.fromkeys(reasons) | {"reasons": reasons}))
 
     def tuned(self, study, formulation, text, law="duffing"):
         folder = self.folder / "tuned" / f"{study}-tune"

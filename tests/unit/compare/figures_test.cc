@@ -134,8 +134,11 @@ TEST(Figures, AreReadableByPeople) {
 
 TEST(Figures, SayWhenTheBandIsUnknown) {
   testing::Sides sides = testing::pressed(5, 200);
-  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::infinity());
+  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(find(figures_of(sides), "force.nrmse_uncertainty").text, "unknown");
+  EXPECT_TRUE(std::isnan(find(figures_of(sides), "force.nrmse_uncertainty").number)) << "a text among numbers";
+  EXPECT_TRUE(std::isnan(find(figures_of(sides), "reference.force_uncertainty_rel").number));
+  EXPECT_TRUE(std::isnan(find(figures_of(sides), "force.friction_nrmse").number)) << "without friction";
   EXPECT_EQ(find(figures_of(sides), "reference.force_uncertainty_rel").text, "unknown");
 }
 

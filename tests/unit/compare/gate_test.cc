@@ -68,6 +68,10 @@ TEST(Judge, WhatIsMissingIsRedAndNamed) {
   EXPECT_THAT(why({{"force.nrmse", 0.0, "", ""}}), HasSubstr("no uncertainty"));
   EXPECT_THAT(why({{"force.nrmse", 0.0, "", ""}, {"force.nrmse_uncertainty", 0.0, "unknown", ""}}),
               HasSubstr("no uncertainty"));
+  EXPECT_THAT(why({{"force.nrmse", 0.0, "", ""}, {"force.nrmse_uncertainty", nan, "", ""}}),
+              HasSubstr("no uncertainty"));
+  EXPECT_THAT(why({{"force.nrmse", 0.0, "", ""}, {"force.nrmse_uncertainty", nan, "unknown", ""}}),
+              HasSubstr("no uncertainty"));
   EXPECT_THAT(why({{"force.nrmse", 0.0, "", "N"}, {"force.nrmse_uncertainty", 0.0, "", "N"}}), HasSubstr("unit"));
 }
 

@@ -89,9 +89,9 @@ TEST(Report, MarksWhatCannotBeDistinguished) {
 
 TEST(Report, OfAReferenceWithoutABandIsStillWhole) {
   testing::Sides sides = testing::pressed(5, 600);
-  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::infinity());
+  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
   for (Eigen::VectorXd& u : sides.result.displacement_uncertainty_m) {
-    u.setConstant(std::numeric_limits<double>::infinity());
+    u.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   const std::string html = report_of(sides);
   EXPECT_TRUE(testing::is_well_formed(html));

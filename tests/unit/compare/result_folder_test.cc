@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
 namespace touchstone::compare {
 namespace {
@@ -81,6 +82,17 @@ TEST_F(ResultFolderTest, NamesTheLineOfADamage) {
   EXPECT_THAT(fault(), HasSubstr("curve.csv:3: has 1 values, expected 2"));
   scene::write_file(folder_.path() / "curve.csv", "time_s,depth_m\n0,1\n1,2x\n");
   EXPECT_THAT(fault(), HasSubstr("curve.csv:3: \"2x\" in column depth_m is no number"));
+}
+
+TEST_F(ResultFolderTest, ReadsBackWhyANumberIsNotKnown) {
+  sides_.result.force_uncertainty_n.assign(4, std::numeric_limits<double>::quiet_NaN());
+  (void)write_comparison(folder_.path(), sides_.scene, sides_.run, sides_.result, sides_.manifest);
+  const ResultFolder read = read_result_folder(folder_.path());
+  const scene::Figure* figure = read.figure("force.nrmse_uncertainty");
+  ASSERT_NE(figure, nullptr);
+  EXPECT_TRUE(std::isnan(figure->number));
+  EXPECT_EQ(figure->text, "unknown");
+  for (const double band_n : read.required_column("reference_force_uncertainty_n")) EXPECT_TRUE(std::isnan(band_n));
 }
 
 }  // namespace

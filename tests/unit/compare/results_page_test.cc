@@ -67,6 +67,29 @@ TEST_F(ResultsPage, KeepsTheTitleOfAMeshToolsResultThatWasMoved) {
               HasSubstr(">A mallet's head pressed on a rubber cube (paper, Fig. 15)</a>"));
 }
 
+TEST_F(ResultsPage, CallsTheCasesOfAStudyByTheirNamesInItsOrder) {
+  const std::filesystem::path study = folder_.path() / "study";
+  std::filesystem::create_directories(study);
+  scene::write_file(study / "manifest.json",
+                    R"({"format": 1, "kind": "sweep", "name": "s", "title": "", "run": "compare",
+    "axes": [], "cases": [{"index": 1, "id": "fff", "name": "soft", "along": {}, "set": {}},
+                          {"index": 2, "id": "aaa", "name": "stiff", "along": {}, "set": {}}]})");
+  const ResultFolder stiff = make("study/results/aaa"), soft = make("study/results/fff"), other = make("other");
+  const std::string html = results_page_html({other, stiff, soft}, folder_.path());
+  const auto place = [&](const std::string& name) { return html.find("class=\"under\">" + name + "<"); };
+  EXPECT_LT(place("other"), place("soft"));
+  EXPECT_LT(place("soft"), place("stiff"));
+  EXPECT_NE(place("stiff"), std::string::npos);
+  EXPECT_EQ(place("aaa"), std::string::npos);
+  EXPECT_THAT(html, HasSubstr(">stiff</text>")) << "the legend";
+  // Of two studies alike, which one.
+  std::filesystem::copy(study, folder_.path() / "again", std::filesystem::copy_options::recursive);
+  const std::string both =
+      results_page_html({soft, read_result_folder(folder_.path() / "again/results/fff")}, folder_.path());
+  EXPECT_THAT(both, HasSubstr(">study: soft<"));
+  EXPECT_THAT(both, HasSubstr(">again: soft<"));
+}
+
 TEST_F(ResultsPage, SaysWhichErrorsCannotBeDistinguished) {
   const std::string apart = results_page_html({make("apart")}, folder_.path());
   EXPECT_EQ(count(apart, "class=\"under\">not distinguishable<"), 0u);
@@ -79,7 +102,7 @@ TEST_F(ResultsPage, SaysWhichErrorsCannotBeDistinguished) {
 
 TEST_F(ResultsPage, SaysWhereTheUncertaintyIsUnknown) {
   const ResultFolder result = make("unknown", [](testing::Sides& sides) {
-    sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::infinity());
+    sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
   });
   const std::string html = results_page_html({result}, folder_.path());
   EXPECT_THAT(html, HasSubstr("± unknown"));

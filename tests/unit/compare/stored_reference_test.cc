@@ -9,6 +9,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 namespace touchstone::compare {
 namespace {
 
@@ -111,6 +114,21 @@ TEST_F(StoredReferenceTest, ANumberWrittenOverIsNotUsed) {
   digit = digit == '1' ? '2' : '1';
   scene::write_file(folder() / "curve.csv", text);
   EXPECT_THAT(refusal(sides_.scene, sides_.run.surface), HasSubstr("altered"));
+}
+
+TEST_F(StoredReferenceTest, AnUnknownUncertaintyIsReadBackAsUnknown) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  for (double& band_n : sides_.result.force_uncertainty_n) band_n = unknown;
+  for (Eigen::VectorXd& band_m : sides_.result.displacement_uncertainty_m) band_m.setConstant(unknown);
+  sides_.result.force_uncertainty_rel = sides_.result.shape_uncertainty_rel = unknown;
+  store_reference(folder(), sides_.scene, sides_.run.surface, sides_.result, "test");
+  const reference::Result back = stored_reference(folder(), sides_.scene, sides_.run.surface);
+  EXPECT_TRUE(std::isnan(back.force_uncertainty_n[2]));
+  EXPECT_TRUE(std::isnan(back.displacement_uncertainty_m[2][0]));
+  ASSERT_TRUE(back.force_uncertainty_rel && back.shape_uncertainty_rel)
+      << "as if there were nothing to be uncertain of";
+  EXPECT_TRUE(std::isnan(*back.force_uncertainty_rel));
+  EXPECT_TRUE(std::isnan(*back.shape_uncertainty_rel));
 }
 
 }  // namespace

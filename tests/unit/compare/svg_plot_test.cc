@@ -160,5 +160,26 @@ TEST(SvgPlot, PutsSeveralInRows) {
   }
 }
 
+TEST(SvgPlot, BarsSayHowWellAPointIsKnownAndAHollowMarkerThatItIsNot) {
+  Plot plot = line({1, 2, 3}, {10, 20, 30});
+  plot.curves[0].y_half = {1.0, 8.0, std::numeric_limits<double>::quiet_NaN()};
+  const std::string svg = to_svg(plot);
+  EXPECT_TRUE(testing::is_well_formed(svg));
+  EXPECT_FALSE(testing::shows_not_a_number(svg));
+  const std::regex bar("class=\"bar\" d=\"M[0-9.]+ ([0-9.]+)H[0-9.]+M[0-9.]+ [0-9.]+V([0-9.]+)M");
+  std::vector<double> heights_px;
+  for (std::sregex_iterator at(svg.begin(), svg.end(), bar), end; at != end; ++at) {
+    heights_px.push_back(std::stod((*at)[2]) - std::stod((*at)[1]));
+  }
+  ASSERT_EQ(heights_px.size(), 2u);
+  EXPECT_NEAR(heights_px[1] / heights_px[0], 8.0, 0.1);
+  EXPECT_EQ(count(svg, "± 8</title>"), 1u);
+  EXPECT_EQ(count(svg, "± unknown</title>"), 1u);
+  EXPECT_EQ(count(svg, "class=\"unknown\""), 1u);
+  // The axis has room for the longest bar.
+  plot.curves[0].y_half = {0.0, 200.0, 0.0};
+  EXPECT_EQ(count(to_svg(plot), ">200</text>"), 1u);
+}
+
 }  // namespace
 }  // namespace touchstone::compare

@@ -105,9 +105,9 @@ TEST(Verdict, CallsAnErrorWithinTheBandNotDistinguishable) {
 
 TEST(Verdict, DoesNotTakeAnUnknownBandForAnExcuse) {
   testing::Sides sides = testing::pressed(5, 200);
-  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::infinity());
+  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
   for (Eigen::VectorXd& u : sides.result.displacement_uncertainty_m) {
-    u.setConstant(std::numeric_limits<double>::infinity());
+    u.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   const std::string text = told(sides);
   EXPECT_FALSE(says(text, "not distinguishable")) << text;

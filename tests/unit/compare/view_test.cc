@@ -20,9 +20,11 @@
 #include <vtkPNGReader.h>
 #include <vtkPointData.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <set>
 
 // After all others: its macros take common words.
@@ -155,6 +157,32 @@ TEST_F(ViewTest, ShowsAMeshToolFromAFolderThatWasMoved) {
   const std::vector<Rgb> with_tool = picture(view);
   view.press("t");
   EXPECT_GT(difference(with_tool, picture(view)), 0.01) << "the tool is not in the picture";
+}
+
+TEST_F(ViewTest, SaysThatAnUncertaintyIsUnknownAndLeavesTheBodyGrey) {
+  testing::Sides sides = testing::pressed(4, 600);
+  for (Eigen::VectorXd& u_m : sides.result.displacement_uncertainty_m) {
+    u_m.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  sides.manifest.resolved_scene = read_result_folder(folder_.path()).resolved_scene;
+  (void)write_comparison(folder_.path(), sides.scene, sides.run, sides.result, sides.manifest);
+  const VirtualDisplay display;
+  ResultView view(read_result_folder(folder_.path()));
+  view.press("c");
+  view.press("t");  // the tool is grey, too
+  const auto coloured = [](const std::vector<Rgb>& pixels) {
+    // Left of the curve; a coloured pixel's channels differ, as no grey one's do.
+    return std::count_if(pixels.begin(), pixels.end(), [](const Rgb& p) {
+      return *std::max_element(p.begin(), p.end()) - *std::min_element(p.begin(), p.end()) > 60;
+    });
+  };
+  ASSERT_EQ(view.colour(), "error");
+  EXPECT_EQ(view.words().find("unknown"), std::string::npos);
+  const auto with_error = coloured(picture(view));
+  view.press("c");
+  ASSERT_EQ(view.colour(), "uncertainty");
+  EXPECT_NE(view.words().find("The uncertainty is unknown"), std::string::npos);
+  EXPECT_LT(coloured(picture(view)), with_error / 2);
 }
 
 TEST_F(ViewTest, WritesTheFormatThatTheEndingNames) {

@@ -58,6 +58,23 @@ TEST_F(ResultFolder, SummaryIsFlatWithUnitsForEveryKey) {
   EXPECT_EQ(json["units"].size() + 1, json.size());
 }
 
+TEST_F(ResultFolder, ANumberThatIsNotKnownIsNullWithTheReasonBesideIt) {
+  write_summary(dir_ / "s.json", {{"force.nrmse_uncertainty", NAN, "unknown", ""},
+                                  {"fit.condition", INFINITY, "infinite", ""},
+                                  {"fast.status", 0, "ok", ""}});
+  const auto json = nlohmann::json::parse(read("s.json"));
+  EXPECT_TRUE(json["force.nrmse_uncertainty"].is_null());
+  EXPECT_TRUE(json["fit.condition"].is_null());
+  EXPECT_EQ(json["reasons"], nlohmann::json({{"force.nrmse_uncertainty", "unknown"}, {"fit.condition", "infinite"}}));
+  EXPECT_EQ(json["fast.status"], "ok");
+  EXPECT_EQ(json["units"].size(), 3u);
+}
+
+TEST_F(ResultFolder, CsvSaysNanWithoutASign) {
+  write_csv(dir_ / "c.csv", {{"a_n", {NAN, std::copysign(NAN, -1.0), 1.0}}});
+  EXPECT_EQ(read("c.csv"), "a_n\nnan\nnan\n1\n");
+}
+
 TEST_F(ResultFolder, RecordsBecomeColumnsOfEqualLength) {
   std::vector<InstantRecord> records(3);
   records[1].regions.push_back({0.002, Vec3(1, 2, 3), Vec3(4, 5, 6), 7e-6});

@@ -174,5 +174,17 @@ TEST(ShippedStudies, HaveScenesWithoutFault) {
   EXPECT_GT(count, 0);
 }
 
+TEST(ValueIn, FindsAKeyAsItIsSpeltForSet) {
+  const std::string text =
+      "[body.material]\nyoungs_modulus_pa = 3e6\n[contact]\nlaw = \"duffing\"\n"
+      "[[track]]\nposition_m = [0.0, 0.1, 0.2]\n[[track]]\nposition_m = [0.3, 0.4, 0.5]\n";
+  EXPECT_EQ(value_in(text, "a.toml", "body.material.youngs_modulus_pa"), "3e+06");
+  EXPECT_EQ(value_in(text, "a.toml", "contact.law"), "\"duffing\"");
+  EXPECT_EQ(value_in(text, "a.toml", "track[1].position_m[2]"), "0.5");
+  EXPECT_EQ(value_in(text, "a.toml", "track[2].position_m[2]"), std::nullopt);
+  EXPECT_EQ(value_in(text, "a.toml", "place"), std::nullopt);
+  EXPECT_THROW((void)value_in("a = ", "a.toml", "a"), InputError);
+}
+
 }  // namespace
 }  // namespace touchstone::scene

@@ -1,0 +1,23 @@
+// The figures that a table over many results shows, each with the reference's own uncertainty under it.
+#pragma once
+
+#include "scene/record.h"
+
+#include <string>
+#include <string_view>
+
+namespace touchstone::compare {
+
+/// The figure of this key, or null.
+[[nodiscard]] const scene::Figure* find_figure(const scene::Figures& figures, std::string_view key);
+
+/// Head cells of the table.
+[[nodiscard]] std::string headline_heads();
+
+/// The cells of one result under them.
+[[nodiscard]] std::string headline_cells(const scene::Figures& figures);
+
+/// What the table says in it, as a paragraph below.
+[[nodiscard]] std::string headline_note();
+
+}  // namespace touchstone::compare
