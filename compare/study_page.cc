@@ -115,24 +115,25 @@ bool spans_decades(const std::vector<double>& values) {
   return high >= log_ratio * low;
 }
 
-/// One line for every combination of the other parameters.
-Plot line_plot(const Series& series, const std::vector<StudyParameter>& parameters, std::size_t along) {
+/// One line for every combination of the other parameters. @param drawn  which cases
+Plot line_plot(const Series& series, const std::vector<StudyParameter>& parameters, std::size_t along,
+               const std::vector<bool>& drawn) {
   const StudyParameter& x = parameters[along];
   std::vector<std::string> names;  // of the lines, in the study's order
   std::map<std::string, std::vector<std::size_t>> lines;
   for (std::size_t k = 0; k < series.points.size(); ++k) {
-    if (!std::isfinite(x.numbers[k]) || !std::isfinite(series.points[k].value)) continue;
+    if (!drawn[k] || !std::isfinite(x.numbers[k]) || !std::isfinite(series.points[k].value)) continue;
     std::string name;
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       if (p == along || parameters[p].values[k].empty()) continue;
-      name += (name.empty() ? "" : ", ") + parameters[p].name + " = " + parameters[p].values[k] +
+      name += (name.empty() ? "" : ", ") + parameters[p].shown + " = " + parameters[p].values[k] +
               (parameters[p].unit.empty() ? "" : " " + parameters[p].unit);
     }
     if (lines[name].empty()) names.push_back(name);
     lines[name].push_back(k);
   }
   Plot plot;
-  plot.title = std::string(series.quantity.title) + " over " + x.name;
+  plot.title = std::string(series.quantity.title) + " over " + x.shown;
   plot.x_label = x.label();
   plot.y_label = series.quantity.y_label;
   plot.x_log = spans_decades(x.numbers);
@@ -168,14 +169,15 @@ std::array<int, 3> colour_at(double share) {
 }
 
 /// Two parameters against each other: the value and its colour in every cell.
-std::string heat_table(const Series& series, const StudyParameter& across, const StudyParameter& down) {
+std::string heat_table(const Series& series, const StudyParameter& across, const StudyParameter& down,
+                       const std::vector<bool>& drawn) {
   double largest = 0.0;
   for (const Point& point : series.points) largest = std::max(largest, std::isfinite(point.value) ? point.value : 0.0);
   const auto name_of = [](const StudyParameter& parameter, const std::string& value) {
     return parameter.unit.empty() ? value : value + std::string(no_break) + parameter.unit;
   };
   const std::vector<std::string> columns = across.distinct();
-  std::string out = "<div class=\"scroll\"><table>\n<tr>" + tag("th", down.name + " ↓  " + across.name + " →");
+  std::string out = "<div class=\"scroll\"><table>\n<tr>" + tag("th", down.shown + " ↓  " + across.shown + " →");
   for (const std::string& column : columns) out += tag("th", name_of(across, column), "class=\"n\"");
   out += "</tr>\n";
   for (const std::string& row : down.distinct()) {
@@ -183,7 +185,7 @@ std::string heat_table(const Series& series, const StudyParameter& across, const
     for (const std::string& column : columns) {
       std::string text = "–", style;
       for (std::size_t k = 0; k < series.points.size(); ++k) {
-        if (across.values[k] != column || down.values[k] != row || series.points[k].text.empty()) continue;
+        if (!drawn[k] || across.values[k] != column || down.values[k] != row || series.points[k].text.empty()) continue;
         text = series.points[k].text;
         if (!std::isfinite(series.points[k].value)) continue;
         // From light to dark; the lightest fifth is left to the page.
@@ -198,7 +200,7 @@ std::string heat_table(const Series& series, const StudyParameter& across, const
     }
     out += "</tr>\n";
   }
-  return out + "</table></div>\n";
+  return out + "</table></div>\n" + tag("p", "Colour: from zero, light, to the largest, dark.", "class=\"dim\"") + "\n";
 }
 
 /// One row for each case: its name, a mark with its bar on a common scale from zero, and the number.
@@ -216,7 +218,7 @@ std::string rows_by_case(const Series& series, const std::vector<StudyRow>& rows
                     "<th class=\"n\">Value</th></tr>\n";
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const Point& p = series.points[k];
-    out += "<tr>" + tag("td", rows[k].one->name) + "<td>";
+    out += "<tr>" + tag("td", rows[k].one->name) + "<td style=\"min-width:9rem\">";
     if (std::isfinite(p.value)) {
       const double middle = 0.5 * height_px;
       out += fmt::format(
@@ -250,14 +252,21 @@ bool makes_a_table(const std::vector<StudyParameter>& parameters) {
   return across > 1 && down > 1 && 2 * there.size() > across * down;
 }
 
-std::string quantity_section(const Series& series, const std::vector<StudyParameter>& parameters,
+std::string quantity_section(const Series& series, const std::vector<StudyParameter>& all,
                              const std::vector<StudyRow>& rows) {
   constexpr std::size_t lines_with_names = 8;
-  std::string out = tag("h2", std::string(series.quantity.title)) + "\n";
+  // Where there are axes, cases beside them are no points of their lines.
+  std::vector<StudyParameter> parameters = all;
+  const bool has_axes = std::any_of(all.begin(), all.end(), [](const StudyParameter& one) { return one.axis; });
+  if (has_axes) std::erase_if(parameters, [](const StudyParameter& one) { return !one.axis; });
+  std::vector<bool> drawn;
+  for (const StudyRow& row : rows) drawn.push_back(!has_axes || !row.one->along.empty());
+
   std::string plots;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     if (!parameters[p].numeric()) continue;
-    Plot plot = line_plot(series, parameters, p);
+    Plot plot = line_plot(series, parameters, p, drawn);
+    if (std::none_of(plot.curves.begin(), plot.curves.end(), [](const Curve& c) { return c.x.size() > 1; })) continue;
     std::string note = series.note();
     if (plot.curves.size() > lines_with_names) {
       for (Curve& curve : plot.curves) curve.name.clear();
@@ -265,13 +274,14 @@ std::string quantity_section(const Series& series, const std::vector<StudyParame
     }
     plots += figure(to_svg(plot, 560, 380), note);
   }
-  const bool cases_off_the_plots =
-      std::any_of(rows.begin(), rows.end(), [](const StudyRow& row) { return row.one->along.empty(); });
+  std::string out = tag("h2", std::string(series.quantity.title)) + "\n";
   if (!plots.empty()) out += "<div class=\"plots\">\n" + plots + "</div>\n";
   if (makes_a_table(parameters)) {
     const bool first_is_longer = parameters[0].distinct().size() >= parameters[1].distinct().size();
-    out += heat_table(series, parameters[first_is_longer ? 0 : 1], parameters[first_is_longer ? 1 : 0]);
-  } else if (plots.empty() || cases_off_the_plots) {
+    out += heat_table(series, parameters[first_is_longer ? 0 : 1], parameters[first_is_longer ? 1 : 0], drawn);
+  }
+  const bool all_drawn = std::all_of(drawn.begin(), drawn.end(), [](bool one) { return one; });
+  if (!all_drawn || (plots.empty() && !makes_a_table(parameters))) {
     out += rows_by_case(series, rows) + (plots.empty() ? tag("p", series.note(), "class=\"dim\"") + "\n" : "");
   }
   return out;
@@ -295,11 +305,9 @@ std::string range_sentence(const Series& series, const std::vector<StudyRow>& ro
                         : fmt::format("{}: from {} ({}) to {} ({}).", what, series.points[*least].text,
                                       rows[*least].one->name, series.points[*most].text, rows[*most].one->name);
   if (unknown > 0) {
-    out += unknown == values ? " The reference's uncertainty is unknown in every case: fewer than three meshes."
-                             : fmt::format(
-                                   " The reference's uncertainty is unknown in {} of {} cases: fewer than three "
-                                   "meshes.",
-                                   unknown, values);
+    out += unknown == values
+               ? " The reference's uncertainty is unknown in every case."
+               : fmt::format(" The reference's uncertainty is unknown in {} of {} cases.", unknown, values);
   }
   return out;
 }
@@ -308,7 +316,8 @@ std::string case_table(const StudyManifest& manifest, const std::vector<StudyPar
                        const std::vector<StudyRow>& rows) {
   std::string out = tag("h2", "Cases") + "\n<div class=\"scroll\"><table>\n<tr><th>Case</th>";
   for (const StudyParameter& parameter : parameters) {
-    out += tag("th", parameter.label(), parameter.numeric() ? "class=\"wrap\"" : "");
+    out += tag("th", parameter.label(),
+               fmt::format("title=\"{}\"{}", escape_xml(parameter.name), parameter.numeric() ? " class=\"wrap\"" : ""));
   }
   out += headline_heads() + "</tr>\n";
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -384,7 +393,7 @@ std::string study_page_html(const StudyManifest& manifest, const std::vector<Stu
   const auto done =
       std::count_if(rows.begin(), rows.end(), [](const StudyRow& row) { return row.status.state == CaseState::done; });
   std::string varies;
-  for (const StudyParameter& parameter : parameters) varies += (varies.empty() ? "" : ", ") + parameter.name;
+  for (const StudyParameter& parameter : parameters) varies += (varies.empty() ? "" : ", ") + parameter.shown;
   std::string out =
       tag("h1", title) + "\n" +
       tag("p",

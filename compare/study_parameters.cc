@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -78,6 +79,24 @@ std::string value_of(const StudyManifest& manifest, const ManifestCase& one, con
   return words_of(scene::value_in(*text, file, key).value_or(""));
 }
 
+/// Places of the cases beside the axes on this axis, when it is this key that varies along it: the label of the cases
+/// that have the same value. @returns whether it is
+bool place_beside(const StudyManifest& manifest, const std::vector<std::string>& values, StudyParameter& axis) {
+  std::map<std::string, std::string> label_of_value, value_of_label;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (manifest.cases[k].along.empty()) continue;
+    const std::string& label = axis.values[k];
+    if (label_of_value.emplace(values[k], label).first->second != label) return false;
+    if (value_of_label.emplace(label, values[k]).first->second != values[k]) return false;
+  }
+  if (label_of_value.size() < 2) return false;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const auto known = label_of_value.find(values[k]);
+    if (manifest.cases[k].along.empty() && known != label_of_value.end()) axis.values[k] = known->second;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::vector<std::string> StudyParameter::distinct() const {
@@ -90,37 +109,44 @@ std::vector<std::string> StudyParameter::distinct() const {
 
 std::vector<StudyParameter> study_parameters(const StudyManifest& manifest) {
   std::vector<StudyParameter> found;
-  std::set<std::string> known;
-  const auto add = [&](StudyParameter parameter) {
-    known.insert(parameter.name);
-    if (std::set<std::string>(parameter.values.begin(), parameter.values.end()).size() < 2) return;
-    parameter.written = parameter.values;
-    read_numbers(parameter);
-    found.push_back(std::move(parameter));
-  };
-  std::set<std::string> beside;  // keys that cases beside the axes set
-  std::vector<std::string> in_order;
-  for (const ManifestCase& one : manifest.cases) {
-    if (!one.along.empty()) continue;
-    for (const auto& [key, value] : one.settings) {
-      if (beside.insert(key).second) in_order.push_back(key);
-    }
-  }
   for (const std::string& axis : manifest.axes) {
-    StudyParameter parameter{axis, "", {}, {}, {}};
+    const bool is_key = axis.find('.') != std::string::npos;
+    StudyParameter parameter;
+    parameter.name = axis;
+    parameter.axis = true;
     for (const ManifestCase& one : manifest.cases) {
-      const bool is_key = axis.find('.') != std::string::npos;
       parameter.values.push_back(!one.along.empty() ? label_on(one, axis)
                                  : is_key           ? value_of(manifest, one, axis)
                                                     : "");
     }
-    add(std::move(parameter));
+    found.push_back(std::move(parameter));
   }
-  for (const std::string& key : in_order) {
-    if (known.contains(key)) continue;
-    StudyParameter parameter{key, "", {}, {}, {}};
+  std::vector<std::string> keys;  // that cases beside the axes set
+  for (const ManifestCase& one : manifest.cases) {
+    for (const auto& [key, value] : one.settings) {
+      if (one.along.empty() && std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+    }
+  }
+  for (const std::string& key : keys) {
+    StudyParameter parameter;
+    parameter.name = key;
     for (const ManifestCase& one : manifest.cases) parameter.values.push_back(value_of(manifest, one, key));
-    add(std::move(parameter));
+    const bool known = std::any_of(found.begin(), found.end(), [&](StudyParameter& other) {
+      return other.name == key || (other.axis && place_beside(manifest, parameter.values, other));
+    });
+    if (!known) found.push_back(std::move(parameter));
+  }
+  std::erase_if(found, [](const StudyParameter& one) {
+    return std::all_of(one.values.begin(), one.values.end(), [&](const auto& v) { return v == one.values.front(); });
+  });
+  const auto last_part = [](const std::string& key) { return key.substr(key.rfind('.') + 1); };
+  for (StudyParameter& parameter : found) {
+    const auto alike = std::count_if(found.begin(), found.end(), [&](const StudyParameter& other) {
+      return last_part(other.name) == last_part(parameter.name);
+    });
+    parameter.shown = alike == 1 ? last_part(parameter.name) : parameter.name;
+    parameter.written = parameter.values;
+    read_numbers(parameter);
   }
   return found;
 }

@@ -15,10 +15,12 @@ struct StudyParameter {
   std::vector<std::string> values;   ///< as people write them; empty where a case has no place on the axis
   std::vector<std::string> written;  ///< the same to the last digit, as the study or the scene writes them
   std::vector<double> numbers;       ///< the same where all values are numbers, NaN for an empty one; empty otherwise
+  bool axis = false;                 ///< of the study, not a key that cases beside the axes set
+  std::string shown;                 ///< the name, of a key its last part where that is clear
 
   [[nodiscard]] bool numeric() const noexcept { return !numbers.empty(); }
   /// With its unit, for an axis of a plot or the head of a column.
-  [[nodiscard]] std::string label() const { return unit.empty() ? name : name + " [" + unit + "]"; }
+  [[nodiscard]] std::string label() const { return unit.empty() ? shown : shown + " [" + unit + "]"; }
   /// Every value once, in the order of the cases; empty ones left out.
   [[nodiscard]] std::vector<std::string> distinct() const;
 };

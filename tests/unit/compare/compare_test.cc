@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -39,9 +40,10 @@ TEST_F(WriteComparison, FillsTheFolderAndNothingElse) {
     EXPECT_GT(entry.file_size(), 0u) << names.back();
   }
   std::sort(names.begin(), names.end());
-  EXPECT_EQ(names, (std::vector<std::string>{"area-aware.toml", "curve.csv", "manifest.json", "report.html",
-                                             "shape.svg", "summary.json", "surface.pvd", "surface_0000.vtp",
-                                             "surface_0001.vtp", "surface_0002.vtp", "surface_0003.vtp"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"area-aware.toml", "curve.csv", "manifest.json", "report.html", "shape.svg", "summary.json",
+                                             "surface.pvd", "surface_0000.vtp", "surface_0001.vtp", "surface_0002.vtp",
+                                             "surface_0003.vtp", "tool.pvd", "tool_0000.vtp", "tool_0001.vtp",
+                                             "tool_0002.vtp", "tool_0003.vtp"}));
 }
 
 TEST_F(WriteComparison, CurveHasOneRowPerInstantAndBothSides) {
@@ -92,12 +94,15 @@ TEST_F(WriteComparison, CurveHasOneRowPerInstantAndBothSides) {
 TEST_F(WriteComparison, SummaryIsFlatWithAUnitForEveryKey) {
   std::ifstream in(folder_.path() / "summary.json");
   const nlohmann::json summary = nlohmann::json::parse(in);
-  ASSERT_EQ(summary.size(), comparison_.figures.size() + 1);
+  ASSERT_EQ(summary.size(), comparison_.figures.size() + 2) << "units and reasons";
   ASSERT_EQ(summary.at("units").size(), comparison_.figures.size());
   for (const scene::Figure& figure : comparison_.figures) {
     const nlohmann::json& value = summary.at(figure.key);
     if (figure.text.empty()) {
       EXPECT_EQ(value.get<double>(), figure.number) << figure.key;
+    } else if (std::isnan(figure.number)) {
+      EXPECT_TRUE(value.is_null()) << figure.key;
+      EXPECT_EQ(summary.at("reasons").at(figure.key).get<std::string>(), figure.text) << figure.key;
     } else {
       EXPECT_EQ(value.get<std::string>(), figure.text) << figure.key;
     }

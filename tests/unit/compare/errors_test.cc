@@ -182,7 +182,7 @@ TEST(Errors, AreAbsentWithoutContactAndNeverNan) {
   EXPECT_FALSE(e.force_nrmse.value || e.force_peak_rel.value || e.force_rel_deep.value || e.shape_rel_l2.value ||
                e.shape_max_over_depth.value || e.contact_area_iou || e.reference.force_uncertainty_rel);
   for (const scene::Figure& f : make_figures(e, sides.run, sides.result)) {
-    EXPECT_TRUE(std::isfinite(f.number)) << f.key;
+    EXPECT_TRUE(std::isfinite(f.number) || !f.text.empty()) << f.key << " is not a number, and nobody says why";
   }
   EXPECT_EQ(make_figures(e, sides.run, sides.result).front().text, "undefined: the reference is never in contact");
 }
