@@ -40,10 +40,10 @@ TEST_F(WriteComparison, FillsTheFolderAndNothingElse) {
     EXPECT_GT(entry.file_size(), 0u) << names.back();
   }
   std::sort(names.begin(), names.end());
-  EXPECT_EQ(names, (std::vector<std::string>{"area-aware.toml", "curve.csv", "manifest.json", "report.html", "shape.svg", "summary.json",
-                                             "surface.pvd", "surface_0000.vtp", "surface_0001.vtp", "surface_0002.vtp",
-                                             "surface_0003.vtp", "tool.pvd", "tool_0000.vtp", "tool_0001.vtp",
-                                             "tool_0002.vtp", "tool_0003.vtp"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"area-aware.toml", "curve.csv", "manifest.json", "report.html",
+                                             "shape.svg", "summary.json", "surface.pvd", "surface_0000.vtp",
+                                             "surface_0001.vtp", "surface_0002.vtp", "surface_0003.vtp", "tool.pvd",
+                                             "tool_0000.vtp", "tool_0001.vtp", "tool_0002.vtp", "tool_0003.vtp"}));
 }
 
 TEST_F(WriteComparison, CurveHasOneRowPerInstantAndBothSides) {
