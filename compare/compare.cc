@@ -2,6 +2,7 @@
 
 #include "compare/comparison_drawings.h"
 #include "compare/figures.h"
+#include "compare/model_table.h"
 #include "compare/plot_files.h"
 #include "compare/report.h"
 #include "compare/svg_plot.h"
@@ -44,12 +45,15 @@ std::vector<scene::Column> curve_columns(const fast::Run& run, const reference::
 
 Comparison write_comparison(const std::filesystem::path& folder, const scene::Scene& scene, const fast::Run& run,
                             const reference::Result& result, const scene::Manifest& manifest, const Call& call,
-                            bool plots) {
+                            bool plots, const scene::Scene* given) {
   const Errors errors = compute_errors(scene, run, result);
   const Plans plans{fast::plan(scene), reference::plan(scene)};
   const Verdict told = verdict(scene, run, result, errors, call);
+  const std::vector<JudgedModel> models = judge_models(given != nullptr ? *given : scene, scene, run, errors, result,
+                                                       given != nullptr ? call.parameters.filename().string() : "");
   const ComparisonDrawings drawings = comparison_drawings(scene, run, result, errors);
-  Comparison comparison{make_figures(errors, run, result), told.text()};
+  Comparison comparison{make_figures(errors, run, result), told.text() + model_table_text(models) + "\n"};
+  for (scene::Figure& figure : model_figures(models)) comparison.figures.push_back(std::move(figure));
   scene::write_csv(folder / "curve.csv", curve_columns(run, result, errors));
   write_surfaces(folder, run, result, errors);
   write_tool(folder, scene.tool, result.instants);
@@ -61,7 +65,7 @@ Comparison write_comparison(const std::filesystem::path& folder, const scene::Sc
   scene::write_summary(folder / "summary.json", comparison.figures);
   scene::write_manifest(folder / "manifest.json", manifest);
   write_report(folder / "report.html",
-               {scene, run, result, errors, comparison.figures, told, drawings, plans, manifest});
+               {scene, run, result, errors, comparison.figures, told, drawings, plans, manifest, models});
   return comparison;
 }
 

@@ -31,9 +31,10 @@ struct Comparison {
 /// Compares and writes the whole folder, which must exist.
 /// @param call  for the commands to type next; without a scene file there are none
 /// @param plots  also every plot of the report as files, in plots/
+/// @param given  the scene without tuned constants, where `scene` has them
 /// @throws std::logic_error when the sides do not belong together, std::filesystem::filesystem_error
 Comparison write_comparison(const std::filesystem::path& folder, const scene::Scene& scene, const fast::Run& run,
                             const reference::Result& result, const scene::Manifest& manifest, const Call& call = {},
-                            bool plots = false);
+                            bool plots = false, const scene::Scene* given = nullptr);
 
 }  // namespace touchstone::compare

@@ -3,6 +3,7 @@
 #include "compare/page.h"
 #include "compare/text.h"
 #include "fast/state.h"
+#include "scene/area_law.h"
 
 #include <fmt/format.h>
 
@@ -63,7 +64,8 @@ scene::Scene as_printed(scene::Scene scene) {
 
 scene::Scene with_untuned_area_law(scene::Scene scene) {
   scene.contact.law = scene::ContactLaw::area_aware;
-  scene.contact.k1_per_radius_n_per_m2 = 2.0 * scene.body.material.contact_modulus_pa();
+  scene.contact.k1_per_radius_n_per_m2 =
+      scene::area_law_constant_n_per_m2(scene.body.material, scene.tool, scene.fast.formulation);
   scene.contact.k1_n_per_m = scene.contact.k3_n_per_m3 = 0.0;
   return scene;
 }

@@ -207,7 +207,7 @@ class Finder {
                      percent_text(before), percent_text(trial.force_nrmse)),
          command_text(untuned, " --out " + quoted(call_.folder.string() + "-area-aware")),
          name,
-         fmt::format("# The area-aware law F = k1 D, k1 = 2 E/(1 - nu^2) times the contact radius: nothing is tuned.\n"
+         fmt::format("# The area-aware law F = k1 D. Its constant follows from the material: nothing is tuned.\n"
                      "[contact]\nlaw = \"area_aware\"\nk1_per_radius_n_per_m2 = {:.6g}\nk3_n_per_m3 = 0.0\n",
                      changed.contact.k1_per_radius_n_per_m2)});
   }

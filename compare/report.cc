@@ -55,6 +55,7 @@ std::string figures_of(const std::vector<Drawing>& drawings) {
 /// What is read first: numbers, two sentences, the force and both bodies.
 std::string first_screen(const ReportContent& c) {
   std::string out = tiles(c);
+  if (!c.models.empty()) out += model_table_html(c.models);
   out += tag("p", c.verdict.force + (c.verdict.shape.empty() ? "" : " " + c.verdict.shape), "class=\"lead\"") + "\n";
   out += "<div class=\"first\">\n<div>\n" + figures_of({c.drawings.force, c.drawings.shape_error}) +
          "</div>\n<div>\n" + viewer_section(c.scene, c.run, c.result, c.errors) + "</div>\n</div>\n";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compare/compare.h"
+#include "compare/model_table.h"
 #include "compare/comparison_drawings.h"
 #include "compare/verdict.h"
 
@@ -20,6 +21,7 @@ struct ReportContent {
   const ComparisonDrawings& drawings;
   const Plans& plans;
   const scene::Manifest& manifest;
+  std::vector<JudgedModel> models{};  ///< which one to use; empty: no table
 };
 
 /// The page as well-formed XHTML, so that tools can read it too.

@@ -233,8 +233,8 @@ class Ladder {
         absent(name + " skeleton, Duffing law", name + "-duffing", TradeFamily::paper,
                "the scene's law is the area-aware one");
       }
-      // Without a constant of the scene's own, the flat punch's on a half-space, which nothing has to be tuned for.
-      const std::string from = duffing ? "k1 = 2 E* a of the material" : "of the scene";
+      // Without a constant of the scene's own, the material's, which nothing has to be tuned for.
+      const std::string from = duffing ? "k1 of the material" : "of the scene";
       add_skeleton({.name = name + " skeleton, area-aware law, " + from,
                     .key = name + "-area-aware",
                     .label = name + ", area-aware",

@@ -90,7 +90,8 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
     manifest.entries.emplace_back("linear_solver", result.linear_solver);
     manifest.entries.emplace_back("reference_key", result.key);
     manifest.entries.emplace_back("command_line", command_text(call, ""));
-    const Comparison comparison = write_comparison(folder, scene, run, result, manifest, call, plots);
+    const Comparison comparison =
+        write_comparison(folder, scene, run, result, manifest, call, plots, parameters.empty() ? nullptr : &given);
     if (plots) {
       std::cout << "Plots: " << (folder / "plots").string() << " (SVG"
                 << (has_pdf() ? " and PDF" : "; PDF needs a build with librsvg, Debian's librsvg2-dev") << ")\n";

@@ -1,5 +1,6 @@
 #include "scene/new_scene.h"
 
+#include "scene/area_law.h"
 #include "scene/fields.h"
 
 #include <array>
@@ -7,7 +8,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <numbers>
 
 namespace touchstone::scene {
 namespace {
@@ -95,20 +95,12 @@ std::string tool_text(const Tool& tool) {
 
 bool flat(const Tool& tool) { return tool.shape == ToolShape::cylinder || tool.shape == ToolShape::box; }
 
-/// Hertz's force of a ball, 4/3 E* sqrt(R) D^1.5, over 2 E* a <d>, with a = sqrt(2 R D) and <d> = 2/3 D, the mean depth
-/// that the corrected formulation takes under a ball: its weights fall with the distance from the middle as 1 / r.
-constexpr double rounded_tool_factor = std::numbers::sqrt2 / 2.0;
-
 std::string row(const std::string& comment, double time_s, const Eigen::Vector2d& place_m, double depth_m) {
   return "[[track]]" + std::string(25, ' ') + "# " + comment + "\ntime_s = " + plain(time_s) +
          "\nposition_m = " + list({place_m.x(), place_m.y()}) + "\ndepth_m = " + plain(depth_m) + "\n\n";
 }
 
 }  // namespace
-
-double area_law_constant_n_per_m2(const Material& material, const Tool& tool) {
-  return 2.0 * material.contact_modulus_pa() * (flat(tool) ? 1.0 : rounded_tool_factor);
-}
 
 std::string new_scene_toml(const NewScene& scene, const std::string& name) {
   const Body& body = scene.body;
@@ -167,7 +159,7 @@ std::string new_scene_toml(const NewScene& scene, const std::string& name) {
              "# the 0.707.\n"
            : "") +
       "[contact]\nlaw = \"area_aware\"\nk1_per_radius_n_per_m2 = " +
-      plain(rounded(area_law_constant_n_per_m2(material, tool), 4)) + "\n" +
+      plain(rounded(area_law_constant_n_per_m2(material, tool, Formulation::corrected), 4)) + "\n" +
       line("k3_n_per_m3 = 0.0", "a cubic term on top, for \"touchstone tune\" to fit") + "\n";
 
   const std::string mark = scene.friction ? "" : "# ";

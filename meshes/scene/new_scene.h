@@ -19,10 +19,6 @@ struct NewScene {
   std::optional<double> friction;                     ///< Coulomb's coefficient
 };
 
-/// k1_per_radius_n_per_m2 of the area-aware law for a half space: 2 E* under a flat tool, 2 E* / sqrt(2) under a
-/// rounded one, with which the corrected formulation's force of a ball is Hertz's; E* = E / (1 - nu^2).
-[[nodiscard]] double area_law_constant_n_per_m2(const Material& material, const Tool& tool);
-
 /// A scene file. @param name  the file's, for the commands in its first lines
 [[nodiscard]] std::string new_scene_toml(const NewScene& scene, const std::string& name);
 

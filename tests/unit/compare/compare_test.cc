@@ -91,6 +91,21 @@ TEST_F(WriteComparison, CurveHasOneRowPerInstantAndBothSides) {
   EXPECT_EQ(rows, 4u);
 }
 
+TEST_F(WriteComparison, JudgesTheOtherModelsToo) {
+  std::ifstream in(folder_.path() / "summary.json");
+  const nlohmann::json summary = nlohmann::json::parse(in);
+  for (const char* model : {"paper", "area_aware", "scene"}) {
+    const std::string key = std::string("model.") + model + ".force.nrmse";
+    ASSERT_TRUE(summary.contains(key));
+    EXPECT_GT(summary.at(key).get<double>(), 0.0);
+  }
+  EXPECT_EQ(summary.at("model.scene.force.nrmse"), summary.at("force.nrmse")) << "the scene's own model";
+  EXPECT_NE(comparison_.text.find("area-aware law, published skeleton"), std::string::npos) << comparison_.text;
+  std::ifstream page(folder_.path() / "report.html");
+  const std::string html{std::istreambuf_iterator<char>(page), {}};
+  EXPECT_NE(html.find("<td>area-aware law, published skeleton</td>"), std::string::npos);
+}
+
 TEST_F(WriteComparison, SummaryIsFlatWithAUnitForEveryKey) {
   std::ifstream in(folder_.path() / "summary.json");
   const nlohmann::json summary = nlohmann::json::parse(in);

@@ -67,11 +67,12 @@ TEST_F(ModelTable, AModelAppearsOnce) {
   EXPECT_THAT(keys(judge(sides_.scene)), ElementsAre("area_aware", "scene"));
 }
 
-TEST_F(ModelTable, TheUntunedLawIsTheFlatPunchOfTheMaterial) {
-  const scene::Scene scene = with_untuned_area_law(sides_.scene);
+TEST_F(ModelTable, TheUntunedLawFollowsFromTheMaterial) {
+  const scene::Scene scene = with_untuned_area_law(as_printed(sides_.scene));
   EXPECT_EQ(scene.contact.law, scene::ContactLaw::area_aware);
   EXPECT_DOUBLE_EQ(scene.contact.k1_per_radius_n_per_m2, 2.0 * 3.0e6 / 0.75);
   EXPECT_EQ(scene.contact.k3_n_per_m3, 0.0);
+  EXPECT_DOUBLE_EQ(with_untuned_area_law(sides_.scene).contact.k1_per_radius_n_per_m2, std::sqrt(2.0) * 3.0e6 / 0.75);
 }
 
 TEST(ModelTableText, SaysWhatEachErrorIsRelativeToAndAlignsItsColumns) {

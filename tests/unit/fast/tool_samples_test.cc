@@ -152,7 +152,9 @@ TEST_P(EveryTool, IsCoveredByAboutAsManySamplesAsWished) {
     EXPECT_GE(samples.count(), wish / 2);
     EXPECT_LE(samples.count(), 2 * wish);
     // A convex mesh may stand for a shape, and shall cost no more.
-    if (tool.mesh && tool.mesh->convex) EXPECT_NEAR(samples.count(), wish, 0.1 * wish);
+    if (tool.mesh && tool.mesh->convex) {
+      EXPECT_NEAR(samples.count(), wish, 0.1 * wish);
+    }
     EXPECT_NEAR(std::accumulate(samples.area_m2.begin(), samples.area_m2.end(), 0.0), surface_m2(),
                 1e-10 * surface_m2());
     EXPECT_NEAR(samples.spacing_m, std::sqrt(surface_m2() / samples.count()), 1e-15);

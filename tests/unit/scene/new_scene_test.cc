@@ -1,6 +1,8 @@
 // A first scene from a few numbers: it loads, says what was asked, and asks for no constant.
 #include "scene/new_scene.h"
 
+#include "scene/area_law.h"
+
 #include "scene/first_contact.h"
 #include "scene/scene_io.h"
 
@@ -46,7 +48,9 @@ TEST(NewScene, SaysWhatWasAsked) {
 TEST(NewScene, TheLawFollowsFromTheMaterial) {
   NewScene asked = ball_on_block();
   const double flat = 2.0 * 3.0e6 / (1.0 - 0.45 * 0.45);
-  EXPECT_DOUBLE_EQ(area_law_constant_n_per_m2(asked.body.material, asked.tool), std::sqrt(0.5) * flat);
+  EXPECT_DOUBLE_EQ(area_law_constant_n_per_m2(asked.body.material, asked.tool, Formulation::corrected),
+                   std::sqrt(0.5) * flat);
+  EXPECT_DOUBLE_EQ(area_law_constant_n_per_m2(asked.body.material, asked.tool, Formulation::published), flat);
   const Scene scene = loaded(asked);
   EXPECT_EQ(scene.contact.law, ContactLaw::area_aware);
   EXPECT_NEAR(scene.contact.k1_per_radius_n_per_m2, std::sqrt(0.5) * flat, 1e-4 * flat);
@@ -55,7 +59,7 @@ TEST(NewScene, TheLawFollowsFromTheMaterial) {
     asked.tool.shape = shape;
     asked.tool.length_m = 0.02;
     asked.tool.size_m = Vec3(0.01, 0.02, 0.03);
-    EXPECT_DOUBLE_EQ(area_law_constant_n_per_m2(asked.body.material, asked.tool), flat);
+    EXPECT_DOUBLE_EQ(area_law_constant_n_per_m2(asked.body.material, asked.tool, Formulation::corrected), flat);
     EXPECT_NEAR(loaded(asked).contact.k1_per_radius_n_per_m2, flat, 1e-4 * flat);
     EXPECT_THAT(new_scene_toml(asked, "a.toml"), Not(HasSubstr("* 0.707.")));
   }
