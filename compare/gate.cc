@@ -234,8 +234,6 @@ void require_known(const GateFolder& folder, const GateNames& names) {
   }
   for (const std::string& name : names) {
     if (!all.contains(name)) {
-      // A file in place of a name: what it is, when it is no gate file.
-      if (std::filesystem::is_regular_file(name)) (void)scene::load_gate_file(name);
       throw scene::InputError("gate: no gate has the name \"" + name + "\"; expected FILE or FILE.GATE with FILE of " +
                               known + scene::did_you_mean(name, {all.begin(), all.end()}));
     }

@@ -27,6 +27,10 @@ void require_names(const GateOptions& options, const char* flag) {
 }  // namespace
 
 int gate(const GateOptions& options, const std::string& command) {
+  for (const std::string& name : options.names) {
+    // A file in place of a name: what it is, when it is no gate file.
+    if (std::filesystem::is_regular_file(name)) (void)scene::load_gate_file(name);
+  }
   const GateFolder folder = load_gates(options.folder);
   require_known(folder, options.names);
   if (options.list) {
