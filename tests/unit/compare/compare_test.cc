@@ -127,7 +127,7 @@ TEST_F(WriteComparison, SummaryIsFlatWithAUnitForEveryKey) {
 
 TEST_F(WriteComparison, TellsTheVerdictInPlainText) {
   EXPECT_TRUE(comparison_.text.starts_with("The fast model's force at the deepest instant")) << comparison_.text;
-  EXPECT_NE(comparison_.text.find("\n  touchstone tune meshes/studies/ball-on-cube.toml\n"), std::string::npos)
+  EXPECT_NE(comparison_.text.find("\n  touchstone compare meshes/scenes/ball-on-cube-press.toml"), std::string::npos)
       << comparison_.text;
 }
 

@@ -161,12 +161,19 @@ Sides pressed_by_mallet(const std::filesystem::path& folder, int instants) {
   std::filesystem::copy(source / "tools/mallet.stl", folder / "tools");
   std::filesystem::copy(source / "scenes/mallet-head-on-cube.toml", folder / "scenes");
   Sides sides = pressed(instants, 200);
+  const scene::Scene ball = sides.scene;
   sides.scene = scene::load_scene(folder / "scenes/mallet-head-on-cube.toml");
+  sides.scene.track = ball.track;
+  sides.scene.compare.instants = ball.compare.instants;
+  sides.scene.fast.triangles = ball.fast.triangles;
+  sides.scene.fast.rate_hz = 50.0;
   sides.manifest = scene::make_manifest(sides.scene, "touchstone compare");
   // The ball's centre is 10 mm above its lowest point, the mallet's 23.566 mm.
+  constexpr double higher_m = 0.013566;
+  for (scene::Waypoint& waypoint : sides.scene.track) waypoint.pose.position_m.z() += higher_m;
   for (std::size_t t = 0; t < sides.run.instants.size(); ++t) {
     for (scene::InstantRecord* record : {&sides.run.instants[t], &sides.result.instants[t]}) {
-      record->tool.position_m.z() += 0.013566;
+      record->tool.position_m.z() += higher_m;
     }
   }
   return sides;
