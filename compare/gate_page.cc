@@ -85,18 +85,18 @@ std::string head(const std::vector<GateRecord>& records, const std::vector<std::
                  const std::vector<GateProof>& proofs) {
   const auto red = std::ranges::count_if(records, [](const GateRecord& r) { return !r.passes(); });
   const bool good = red == 0 && faults.empty();
-  std::string out = tag("h1",
-                        good      ? fmt::format("All {} gates hold", records.size())
-                        : red > 0 ? fmt::format("{} of {} gates {} red", red, records.size(), red == 1 ? "is" : "are")
-                                  : fmt::format("The gates hold, but the run failed: {} faults", faults.size()),
+  const std::string failed =
+      fmt::format(", but the run failed: {} fault{}", faults.size(), faults.size() == 1 ? "" : "s");
+  std::string out = tag("h1", gates_verdict(records) + (red == 0 && !faults.empty() ? failed : ""),
                         good ? "class=\"holds\"" : "class=\"broken\"") +
                     "\n";
   out += tag("p",
-             "A gate is a limit on one figure of one scene, computed anew. Of a truth the error and the reference's "
-             "uncertainty together must stay within the limit; of a drift the distance from the value last accepted.",
+             "A gate is a limit on one figure of one scene, computed anew in this run. A truth gate limits the error "
+             "together with the reference's uncertainty, a drift gate the distance from the value last accepted.",
              "class=\"dim\"") +
          "\n<div class=\"tiles\">\n";
-  out += tile("Red", fmt::format("{}", red), fmt::format("of {} gates", records.size()));
+  out +=
+      tile("Red", fmt::format("{}", red), fmt::format("of {} gate{}", records.size(), records.size() == 1 ? "" : "s"));
   const auto nearest = std::ranges::min_element(
       records, {}, [](const GateRecord& r) { return std::isfinite(r.held()) ? r.margin() / r.gate.limit : -INFINITY; });
   if (nearest != records.end()) {

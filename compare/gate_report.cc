@@ -48,6 +48,13 @@ std::size_t red_count(const std::vector<GateRecord>& records) {
 
 }  // namespace
 
+std::string gates_verdict(const std::vector<GateRecord>& records) {
+  const std::size_t red = red_count(records), all = records.size();
+  if (red == 0) return all == 1 ? "The gate holds" : fmt::format("All {} gates hold", all);
+  if (all == 1) return "The gate is red";
+  return fmt::format("{} of {} gates {} red", red, all, red == 1 ? "is" : "are");
+}
+
 std::string why_red(const GateRecord& record) { return record.failure.empty() ? beyond_text(record) : record.failure; }
 
 std::string gates_text(const std::vector<GateRecord>& records, const std::vector<std::string>& faults) {
@@ -67,11 +74,11 @@ std::string gates_text(const std::vector<GateRecord>& records, const std::vector
             "\n";
   }
   for (const std::string& fault : faults) text += wrapped("RED " + fault) + "\n";
-  const std::size_t red = red_count(records);
-  text += red == 0 && faults.empty()
-              ? fmt::format("All {} gates hold.\n", records.size())
-              : fmt::format("{} of {} gates are red, {} faults of the folder.\n", red, records.size(), faults.size());
-  return text;
+  text += gates_verdict(records);
+  if (!faults.empty()) {
+    text += fmt::format("; {} fault{} beside the gates", faults.size(), faults.size() == 1 ? "" : "s");
+  }
+  return text + ".\n";
 }
 
 std::string proofs_text(const std::vector<GateProof>& proofs) {

@@ -5,6 +5,9 @@
 
 namespace touchstone::compare {
 
+/// "The gate holds", "All 12 gates hold" or "1 of 2 gates is red".
+[[nodiscard]] std::string gates_verdict(const std::vector<GateRecord>& records);
+
 /// Why a gate that does not pass is red.
 [[nodiscard]] std::string why_red(const GateRecord& record);
 

@@ -1,6 +1,7 @@
 // touchstone: one scene in, one result folder out.
 #include "compare/export_verb.h"
 #include "compare/gate_verb.h"
+#include "compare/live_report.h"
 #include "compare/results_verb.h"
 #include "compare/study_verb.h"
 #include "compare/trade_verb.h"
@@ -114,7 +115,7 @@ int main(int argc, char** argv) {
   CLI::App* export_verb = compare::add_export_verb(app, options, export_options, reference, exit_code);
   export_verb->add_option("--out", options.out, "result folder (default out/<scene>-export)");
   add_store(export_verb);
-  live::add_live_verb(app, options, live_options, exit_code);
+  live::add_live_verb(app, options, live_options, exit_code, compare::write_live_report);
   compare::add_verify_verb(app, verify_options, exit_code);
   compare::GateOptions gate_options;
   compare::add_gate_verb(app, gate_options, exit_code);

@@ -4,6 +4,7 @@
 #include "compare/error_sums.h"
 #include "compare/model_table.h"
 #include "compare/text.h"
+#include "fast/command_line.h"
 #include "fast/state.h"
 #include "scene/error.h"
 #include "scene/tuning_study.h"
@@ -55,16 +56,6 @@ Trial tried(const scene::Scene& changed, const reference::Result& result, const 
 /// Two digits, as one would type it.
 std::string typed(double value) { return fmt::format("{:.2g}", value); }
 
-std::string quoted(const std::string& word) {
-  const bool plain = std::all_of(word.begin(), word.end(), [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("-_./=+,:@%").find(c) != std::string_view::npos;
-  });
-  if (plain && !word.empty()) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
-  return out + "'";
-}
-
 /// A study that trains on this scene, beside it or in the folder "studies" beside its own.
 std::filesystem::path tuning_study_of(const std::filesystem::path& scene_file) {
   const std::filesystem::path here = scene_file.parent_path();
@@ -80,9 +71,8 @@ std::filesystem::path tuning_study_of(const std::filesystem::path& scene_file) {
       if (text.find("kind = \"tuning\"") == std::string::npos) continue;
       try {
         const scene::TuningStudy study = scene::load_tuning_study(file, {});
-        const bool trains = std::any_of(study.training.begin(), study.training.end(), [&](const auto& contact) {
-          return contact.scene.name == scene_file.stem();
-        });
+        const bool trains = std::any_of(study.training.begin(), study.training.end(),
+                                        [&](const auto& contact) { return contact.scene.name == scene_file.stem(); });
         if (trains) return file;
       } catch (const scene::InputError&) {
         continue;  // somebody else's half-written file
@@ -117,9 +107,8 @@ class Finder {
 
   void nearer() {
     const auto nearest =
-        std::min_element(result_.instants.begin(), result_.instants.end(), [&](const auto& a, const auto& b) {
-          return separation_m(a) < separation_m(b);
-        });
+        std::min_element(result_.instants.begin(), result_.instants.end(),
+                         [&](const auto& a, const auto& b) { return separation_m(a) < separation_m(b); });
     if (errors_.depth_max_m > 0.0 || !(separation_m(*nearest) > 0.0)) return;
     add(fmt::format("Move the track nearer to the body: at its nearest, at {}{}s, the tool is {} away.",
                     number_text(nearest->time_s), no_break, quantity_text(separation_m(*nearest), "m")));
@@ -152,7 +141,8 @@ class Finder {
     const bool hidden = !errors_.force_nrmse.distinguishable() || !errors_.shape_rel_l2.distinguishable();
     if (!unknown && !hidden) return;
     if (scene_.reference.levels && *scene_.reference.levels < 3) {
-      add("Give the reference enough meshes to know its own uncertainty. Without it nobody can say how much of an error "
+      add("Give the reference enough meshes to know its own uncertainty. Without it nobody can say how much of an "
+          "error "
           "is the reference's.",
           command_text(without_reference(), ""));
     } else if (!unknown && *force > 0.002) {
@@ -170,7 +160,8 @@ class Finder {
     const double before = errors_.shape_rel_l2.value.value_or(0.0);
     if (!limited && !(errors_.shape_rel_l2.distinguishable() && before > 0.5)) return;
     std::optional<std::pair<double, Trial>> best;
-    const std::vector<double> powers = limited ? std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8} : std::vector<double>{1, 2, 3, -1, -2};
+    const std::vector<double> powers =
+        limited ? std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8} : std::vector<double>{1, 2, 3, -1, -2};
     for (const double power : powers) {
       if (!time_left()) break;
       scene::Scene changed = scene_;
@@ -202,11 +193,11 @@ class Finder {
     Call untuned = call_;
     untuned.parameters = call_.folder / name;
     steps_.push_back(
-        {fmt::format("Take the area-aware law with the material's own modulus, where nothing is tuned. Tried: the force "
-                     "error goes from {} to {} of the peak.",
-                     percent_text(before), percent_text(trial.force_nrmse)),
-         command_text(untuned, " --out " + quoted(call_.folder.string() + "-area-aware")),
-         name,
+        {fmt::format(
+             "Take the area-aware law with the material's own modulus, where nothing is tuned. Tried: the force "
+             "error goes from {} to {} of the peak.",
+             percent_text(before), percent_text(trial.force_nrmse)),
+         command_text(untuned, " --out " + fast::shell_word(call_.folder.string() + "-area-aware")), name,
          fmt::format("# The area-aware law F = k1 D. Its constant follows from the material: nothing is tuned.\n"
                      "[contact]\nlaw = \"area_aware\"\nk1_per_radius_n_per_m2 = {:.6g}\nk3_n_per_m3 = 0.0\n",
                      changed.contact.k1_per_radius_n_per_m2)});
@@ -218,8 +209,9 @@ class Finder {
     };
     if (!call_.parameters.empty() || (!matters(errors_.force_nrmse) && !matters(errors_.shape_rel_l2))) return;
     if (const std::filesystem::path study = tuning_study_of(call_.scene_file); !study.empty()) {
-      add("Tune the constants to the reference. The study that trains on this scene also judges them on other contacts.",
-          "touchstone tune " + quoted(study.string()));
+      add("Tune the constants to the reference. The study that trains on this scene also judges them on other "
+          "contacts.",
+          "touchstone tune " + fast::shell_word(study.string()));
     } else {
       add("Tune the constants to the reference: write a study with this scene as training contact, and give it to "
           "touchstone tune. reports/tuning.md says how; meshes/studies/ball-on-cube.toml is one.");
@@ -248,9 +240,9 @@ class Finder {
 }  // namespace
 
 std::string command_text(const Call& call, const std::string& options) {
-  std::string text = "touchstone compare " + quoted(call.scene_file.string());
-  for (const std::string& setting : call.overrides) text += " --set " + quoted(setting);
-  if (!call.parameters.empty()) text += " --parameters " + quoted(call.parameters.string());
+  std::string text = "touchstone compare " + fast::shell_word(call.scene_file.string());
+  for (const std::string& setting : call.overrides) text += " --set " + fast::shell_word(setting);
+  if (!call.parameters.empty()) text += " --parameters " + fast::shell_word(call.parameters.string());
   return text + call.reference + options;
 }
 

@@ -92,12 +92,14 @@ for (const figure of document.querySelectorAll('figure')) {
   figure.append(tip);
   const place = ({ mark }) => {
     const box = mark.getBoundingClientRect();
-    return { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+    return { x: box.x + box.width / 2, y: box.y + box.height / 2, half_x: box.width / 2, half_y: box.height / 2 };
   };
   const show = (event) => {
     let nearest = null, least = 40;
     for (const point of points) {
-      const at = place(point), away = Math.hypot(at.x - event.clientX, at.y - event.clientY);
+      const at = place(point), dx = Math.abs(at.x - event.clientX), dy = Math.abs(at.y - event.clientY);
+      // From the mark's edge; within it, or in two marks at once, the middle decides.
+      const away = Math.hypot(Math.max(0, dx - at.half_x), Math.max(0, dy - at.half_y)) + 1e-3 * Math.hypot(dx, dy);
       if (away < least) [nearest, least] = [{ ...point, at }, away];
     }
     tip.hidden = nearest === null;

@@ -178,6 +178,22 @@ std::string band_area(const Band& band, const Axis& x, const Axis& y) {
                      colour(band.look));
 }
 
+std::string bar_areas(const Bars& bars, const Plot& plot, const Axis& x, const Axis& y) {
+  std::string out;
+  for (std::size_t i = 0; i < bars.heights.size(); ++i) {
+    if (!(bars.heights[i] > 0.0)) continue;
+    const double left_px = x.px(bars.edges[i]), right_px = x.px(bars.edges[i + 1]), top_px = y.px(bars.heights[i]);
+    // A hair of ground between two of them, where there is room for it.
+    const double width_px = right_px - left_px > 4.0 ? right_px - left_px - 1.0 : right_px - left_px;
+    out += fmt::format(
+        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"><title>{}</title></rect>\n",
+        left_px, top_px, std::max(width_px, 1.0), y.from_px() - top_px, colour(bars.look),
+        escape_xml(fmt::format("{}: {} to {}; {}: {}", plot.x_label, number_text(bars.edges[i]),
+                               number_text(bars.edges[i + 1]), plot.y_label, number_text(bars.heights[i], 4))));
+  }
+  return out;
+}
+
 std::string curve_line(const Curve& curve, const Axis& x, const Axis& y) {
   if (curve.points_only) return "";
   std::string path;
@@ -244,6 +260,13 @@ std::string curve_markers(const Curve& curve, const Plot& plot, const Axis& x, c
         escape_xml(fmt::format("{}{}{}: {}; {}: {}", curve.name, curve.name.empty() ? "" : " | ", plot.x_label,
                                number_text(curve.x[i], 4), plot.y_label, number_text(curve.y[i], 4))) +
         bar_words(curve, i);
+    if (curve.hidden_markers) {
+      out += fmt::format(
+          "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"none\" "
+          "pointer-events=\"all\"><title>{}</title></circle>\n",
+          px, py, tip);
+      continue;
+    }
     const bool hollow = !curve.y_half.empty() && !std::isfinite(curve.y_half[i]);
     out += (hollow ? hollow_marker : marker)(curve, px, py, "<title>" + tip + "</title>") + "\n";
   }
@@ -273,13 +296,16 @@ std::vector<LegendEntry> legend_entries(const Plot& plot) {
   for (const Curve& curve : plot.curves) {
     if (!any_point(plot, curve.x, curve.y)) continue;
     std::string swatch = fmt::format("<line x1=\"0\" y1=\"0\" x2=\"26\" y2=\"0\" {}/>", stroke(curve));
-    if (curve.markers) swatch += marker(curve, 13.0, 0.0, "");
+    if (curve.markers && !curve.hidden_markers) swatch += marker(curve, 13.0, 0.0, "");
     add(curve.name, std::move(swatch));
   }
   for (const Band& band : plot.bands) {
     if (!any_point(plot, band.x, band.high)) continue;
     add(band.name, fmt::format("<rect x=\"0\" y=\"-5\" width=\"26\" height=\"10\" fill=\"{}\" fill-opacity=\"0.3\"/>",
                                colour(band.look)));
+  }
+  for (const Bars& bars : plot.bars) {
+    add(bars.name, fmt::format("<rect x=\"7\" y=\"-5\" width=\"12\" height=\"10\" fill=\"{}\"/>", colour(bars.look)));
   }
   std::set<std::string> listed;
   for (const Span& span : plot.spans) {
@@ -401,6 +427,12 @@ std::optional<Frame> frame_of(const Plot& plot, int width_px, int height_px) {
     // The lower edge of a band may come close to zero: on a logarithmic axis it would take over the range.
     if (!plot.y_log) include(band.x, band.low);
   }
+  for (const Bars& bars : plot.bars) {
+    for (std::size_t i = 0; i < bars.heights.size(); ++i) {
+      if (bars.heights[i] > 0.0) include({bars.edges[i], bars.edges[i + 1]}, {bars.heights[i], bars.heights[i]});
+      if (bars.heights[i] > 0.0 && !plot.y_log) y_extent.include(0.0);
+    }
+  }
   if (x_extent.empty() || y_extent.empty()) return std::nullopt;
   const double right_px = width_px - margin_right, bottom_px = height_px - margin_bottom;
   // The tick labels fix the left margin, the margin how many rows the legend takes and the rows which ticks there are.
@@ -505,6 +537,7 @@ std::string to_svg(const Plot& plot, int width_px, int height_px) {
       left_px - edge, top_px - edge, right_px - left_px + 2 * edge, bottom_px - top_px + 2 * edge);
   for (const Span& span : plot.spans) out += span_area(span, x, y);
   for (const Band& band : plot.bands) out += band_area(band, x, y);
+  for (const Bars& bars : plot.bars) out += bar_areas(bars, plot, x, y);
   for (const Curve& curve : plot.curves) out += curve_line(curve, x, y);
   for (const Curve& curve : plot.curves) out += error_bars(curve, x, y);
   for (const Curve& curve : plot.curves) {

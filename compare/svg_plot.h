@@ -19,9 +19,10 @@ struct Curve {
   Look look = Look::plain;
   std::vector<double> x, y;
   bool markers = true;
-  bool filled = false;       ///< the area within, holes left out
-  std::string own_colour{};  ///< "#rrggbb" in place of the look's, where one side has many curves
-  bool points_only = false;  ///< small markers and no line
+  bool filled = false;          ///< the area within, holes left out
+  std::string own_colour{};     ///< "#rrggbb" in place of the look's, where one side has many curves
+  bool points_only = false;     ///< small markers and no line
+  bool hidden_markers = false;  ///< found by a pointer only, where points lie close together
   /// Half height of a bar about each point, NaN where it is not known: the marker is then hollow. Empty: no bars.
   std::vector<double> y_half = {};
 };
@@ -31,6 +32,14 @@ struct Band {
   std::string name;
   Look look = Look::reference;
   std::vector<double> x, low, high;
+};
+
+/// Columns side by side, such as a histogram's.
+struct Bars {
+  std::string name;
+  Look look = Look::plain;
+  std::vector<double> edges;    ///< ascending, one more than heights
+  std::vector<double> heights;  ///< from the foot of the axis; zero draws nothing
 };
 
 /// A stretch of x, shaded over the whole height.
@@ -57,6 +66,7 @@ struct Plot {
   std::vector<Band> bands;
   std::vector<Curve> curves;
   std::vector<PointName> names = {};
+  std::vector<Bars> bars = {};
 };
 
 /// @returns one <svg> element, well-formed XML; without any point to draw it says "nothing to show"

@@ -7,6 +7,7 @@
 #include "scene/scene_io.h"
 
 #include <algorithm>
+#include <cctype>
 #include <iostream>
 
 namespace touchstone::fast {
@@ -120,6 +121,17 @@ int run_command_line(CLI::App& app, int argc, char** argv, int& exit_code) {
     std::cerr << error.what() << '\n';
     return bad_input;
   }
+}
+
+std::string shell_word(const std::string& word) {
+  const bool plain = std::all_of(word.begin(), word.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string_view("-_./=+,:@%").find(c) != std::string_view::npos;
+  });
+  if (plain && !word.empty()) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
+  return out + "'";
 }
 
 std::string plan_text(const std::string& title, const scene::Plan& plan) {

@@ -45,6 +45,9 @@ void group_verbs(CLI::App& app, const std::vector<std::pair<std::string, std::ve
 /// @param exit_code  the variable given to add_verb
 [[nodiscard]] int run_command_line(CLI::App& app, int argc, char** argv, int& exit_code);
 
+/// A word quoted for a shell where it needs it.
+[[nodiscard]] std::string shell_word(const std::string& word);
+
 /// "  yes  part   reason (cost)" lines under a title.
 [[nodiscard]] std::string plan_text(const std::string& title, const scene::Plan& plan);
 

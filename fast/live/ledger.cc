@@ -38,6 +38,14 @@ double DurationHistogram::percentile_ns(double part) const noexcept {
   return static_cast<double>(max_ns_);
 }
 
+std::uint64_t DurationHistogram::count_between(double from_ns, double to_ns) const noexcept {
+  std::uint64_t count = 0;
+  for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
+    if (middle_ns(bin) >= from_ns && middle_ns(bin) < to_ns) count += bins_[bin];
+  }
+  return count;
+}
+
 fast::Percentiles DurationHistogram::percentiles() const noexcept {
   return {1e-3 * percentile_ns(0.5), 1e-3 * percentile_ns(0.99), 1e-3 * percentile_ns(0.999),
           1e-3 * static_cast<double>(max_ns_)};

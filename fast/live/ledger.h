@@ -22,6 +22,8 @@ class DurationHistogram {
   /// @param part in (0, 1]
   [[nodiscard]] double percentile_ns(double part) const noexcept;
   [[nodiscard]] fast::Percentiles percentiles() const noexcept;
+  /// How many lie in [from_ns, to_ns), which may be infinite; right to 1 % of either end.
+  [[nodiscard]] std::uint64_t count_between(double from_ns, double to_ns) const noexcept;
 
  private:
   static constexpr int sub_bits = 6, longest_bits = 40;

@@ -82,16 +82,19 @@ Setup set_up(const scene::Scene& scene, const LiveOptions& options) {
   return setup;
 }
 
-/// Writes records down as they come; the file has its name only when complete.
+/// Writes records down as they come and keeps their history; the file has its name only when complete.
 class Recorder {
  public:
   explicit Recorder(std::filesystem::path file)
       : file_(std::move(file)), part_(file_.string() + ".part"), out_(part_, std::ios::binary) {
     out_ << log_header();
   }
-  void drain(RecordRing<TickRecord>& ring) {
+  void drain(RecordRing<TickRecord>& ring, RunHistory& history) {
     text_.clear();
-    for (TickRecord record; ring.pop(record);) append_log_line(record, text_);
+    for (TickRecord record; ring.pop(record);) {
+      append_log_line(record, text_);
+      history.add(record);
+    }
     out_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
     good_.store(static_cast<bool>(out_), std::memory_order_relaxed);
   }
@@ -179,10 +182,10 @@ LiveResult run_live(const scene::Scene& scene, const LiveOptions& options, const
     std::jthread recorder_thread([&](const std::stop_token& end) {
       block_signals();
       while (!end.stop_requested()) {
-        recorder.drain(ring);
+        recorder.drain(ring, result.history);
         std::this_thread::sleep_for(milliseconds(5));
       }
-      recorder.drain(ring);
+      recorder.drain(ring, result.history);
     });
     std::jthread reader_thread([&](const std::stop_token& end) {
       block_signals();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fast/live/device_loop.h"
+#include "fast/live/history.h"
 #include "fast/live/scheduling.h"
 #include "scene/results.h"
 #include "scene/scene.h"
@@ -38,6 +39,7 @@ struct ReplayAnswer {
 
 struct LiveResult {
   Ledger ledger;
+  RunHistory history;
   Scheduling scheduling;
   DurationHistogram shape_age;  ///< of the newest published shape, when the reader looked
   std::int64_t shapes_read = 0;

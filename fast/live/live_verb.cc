@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <iostream>
+#include <sstream>
 
 namespace touchstone::live {
 namespace {
@@ -35,13 +36,27 @@ class StopOnSignal {
   struct sigaction end_before_ {};
 };
 
+/// What to type for this run again.
+std::string command_line(const fast::VerbOptions& options, const LiveOptions& live, const std::string& command) {
+  std::ostringstream text;
+  text << command << ' ' << fast::shell_word(options.scene_file.string()) << " --device " << name_of(live.device);
+  for (const std::string& setting : options.overrides) text << " --set " << fast::shell_word(setting);
+  if (live.seconds) text << " --seconds " << *live.seconds;
+  if (live.rate_hz) text << " --rate " << *live.rate_hz;
+  if (!live.log.empty()) text << " --log " << fast::shell_word(live.log.string());
+  if (live.scheduling.processor) text << " --processor " << *live.scheduling.processor;
+  return text.str();
+}
+
 }  // namespace
 
-int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const std::string& command) {
+int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const std::string& command,
+              const WritePage& page) {
   const scene::Scene scene = options.load();
   const std::filesystem::path folder = options.folder(scene, "live");
   scene::prepare_result_folder(folder);
   scene::Manifest manifest = scene::make_manifest(scene, command);
+  manifest.entries.emplace_back("command_line", command_line(options, live, command));
   manifest.entries.emplace_back("device", name_of(live.device));
   if (!live.log.empty()) manifest.entries.emplace_back("log", live.log.string());
 
@@ -55,17 +70,20 @@ int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const s
   manifest.times.push_back(watch.read("live"));
   scene::write_summary(folder / "summary.json", figures(result, live));
   scene::write_manifest(folder / "manifest.json", manifest);
-  std::cout << summary_text(result) << "Results: " << folder.string() << '\n';
+  const std::string left =
+      page ? "Report: " + page(folder, scene, live, result, manifest).string() : "Results: " + folder.string();
+  std::cout << summary_text(result) << left << '\n';
   if (result.interrupted) return fast::interrupted;
   return result.replay && !result.replay->equal() ? fast::answer_is_no : fast::done;
 }
 
-void add_live_verb(CLI::App& app, fast::VerbOptions& options, LiveOptions& live, int& exit_code) {
+void add_live_verb(CLI::App& app, fast::VerbOptions& options, LiveOptions& live, int& exit_code,
+                   const WritePage& page) {
   const std::string program = app.get_name();
   CLI::App* verb = fast::add_verb(
       app, "live", "the real-time pipeline in the wall clock, driven by a device",
       "meshes/scenes/ball-on-cube-press.toml --device hand --seconds 10", options,
-      [&options, &live, program] { return live_verb(options, live, program + " live"); }, exit_code);
+      [&options, &live, program, page] { return live_verb(options, live, program + " live", page); }, exit_code);
   verb->add_option_function<std::string>(
           "--device",
           [&live](const std::string& name) {

@@ -170,6 +170,31 @@ TEST(LiveVerb, AnUnknownDeviceIsRefusedWithThoseThereAre) {
   }
 }
 
+TEST(LiveVerb, TheFullProgramLeavesAPageAndSaysWhere) {
+  for (const std::string& verb : verbs()) {
+    if (!verb.ends_with(" live")) continue;
+    const std::filesystem::path out = std::filesystem::path(testing::TempDir()) / "live-verb-out";
+    std::filesystem::remove_all(out);
+    const Answer answer = run(verb + " " + scene +
+                              " --device hand --seconds 0.3 --set 'live.force_max_n=2' --quiet --out " + out.string());
+    EXPECT_EQ(answer.exit_code, 0) << answer.output;
+    const bool full = verb.find("touchstone-fast") == std::string::npos;
+    EXPECT_EQ(std::filesystem::exists(out / "report.html"), full) << verb;
+    EXPECT_THAT(answer.output, HasSubstr(full ? "Report: " + (out / "report.html").string() + "\n"
+                                              : "Results: " + out.string() + "\n"));
+    const nlohmann::json manifest = nlohmann::json::parse(std::ifstream(out / "manifest.json"));
+    const std::string command = manifest["command_line"];
+    EXPECT_THAT(command, HasSubstr("ball-on-cube-press.toml --device hand --set live.force_max_n=2 --seconds 0.3"));
+    if (full) {
+      std::stringstream page;
+      page << std::ifstream(out / "report.html").rdbuf();
+      EXPECT_THAT(page.str(), HasSubstr("300 due, 1000 a second"));
+      EXPECT_THAT(page.str(), HasSubstr(command));
+    }
+    std::filesystem::remove_all(out);
+  }
+}
+
 TEST(FastVerb, LeavesTheResultFolderOfTheContract) {
   for (const std::string& verb : verbs()) {
     if (!verb.ends_with(" fast")) continue;

@@ -42,12 +42,14 @@ std::string html(const std::vector<GateRecord>& records, const std::vector<std::
 }
 
 TEST(GatePage, SaysFirstWhetherAllHold) {
-  EXPECT_THAT(html({truth("force", 0.01, 0.002)}), HasSubstr("All 1 gates hold</h1>"));
+  EXPECT_THAT(html({truth("force", 0.01, 0.002)}), HasSubstr("The gate holds</h1>"));
+  EXPECT_THAT(html({truth("force", 0.01, 0.002), truth("shape", 0.01, 0.002)}), HasSubstr("All 2 gates hold</h1>"));
+  EXPECT_THAT(html({truth("force", 0.03, 0.002)}), HasSubstr("The gate is red</h1>"));
   const std::string red = html({truth("force", 0.01, 0.002), truth("shape", 0.03, 0.002)});
   EXPECT_THAT(red, HasSubstr("1 of 2 gates is red</h1>"));
   EXPECT_THAT(red, HasSubstr("|0.03| + 0.002 is beyond 0.02. The limit is there because: because &lt;this&gt;."));
   EXPECT_THAT(html({truth("force", 0.01, 0.002)}, {"accepted value x: no gate asks for it"}),
-              HasSubstr("but the run failed: 1 faults</h1>"));
+              HasSubstr("The gate holds, but the run failed: 1 fault</h1>"));
 }
 
 TEST(GatePage, ShowsValueUncertaintyLimitMarginAndBar) {

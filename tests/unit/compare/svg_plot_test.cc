@@ -216,5 +216,40 @@ TEST(SvgPlot, BarsSayHowWellAPointIsKnownAndAHollowMarkerThatItIsNot) {
   EXPECT_EQ(count(to_svg(plot), ">200</text>"), 1u);
 }
 
+TEST(SvgPlot, BarsStandOnTheAxisSideBySideAndSayTheirRange) {
+  Plot plot;
+  plot.x_label = "time";
+  plot.y_label = "ticks";
+  plot.x_range = {0.0, 40.0};
+  plot.y_range = {0.0, 8.0};
+  plot.bars.push_back({"steps", Look::fast, {0.0, 10.0, 20.0, 40.0}, {4.0, 0.0, 8.0}});
+  const std::string svg = to_svg(plot, 480, 266);  // 400 px by 162 px within the axes, below one row of names
+  EXPECT_TRUE(testing::is_well_formed(svg));
+  EXPECT_NE(svg.find("<rect x=\"64.0\" y=\"139.0\" width=\"99.0\" height=\"81.0\" fill=\"#e4600a\">"
+                     "<title>time: 0 to 10; ticks: 4</title>"),
+            std::string::npos)
+      << svg;
+  EXPECT_NE(svg.find("<title>time: 20 to 40; ticks: 8</title>"), std::string::npos);
+  EXPECT_EQ(svg.find("time: 10 to 20"), std::string::npos);
+  EXPECT_NE(svg.find(">steps</text>"), std::string::npos);
+}
+
+TEST(SvgPlot, BarsAloneMakeTheAxes) {
+  Plot plot;
+  plot.bars.push_back({"", Look::fast, {5.0, 10.0}, {3.0}});
+  EXPECT_EQ(to_svg(plot).find("nothing to show"), std::string::npos);
+  plot.bars[0].heights = {0.0};
+  EXPECT_NE(to_svg(plot).find("nothing to show"), std::string::npos);
+}
+
+TEST(SvgPlot, HiddenMarkersTellTheirValuesAndAreNotSeen) {
+  Plot plot = line({0, 1, 2}, {0, 10, 40});
+  plot.curves[0].hidden_markers = true;
+  const std::string svg = to_svg(plot);
+  EXPECT_TRUE(circles(svg).size() == 3);
+  EXPECT_EQ(count(svg, "fill=\"none\" pointer-events=\"all\"><title>one | "), 3u);
+  EXPECT_EQ(count(svg, "<circle"), 3u);  // none in the legend
+}
+
 }  // namespace
 }  // namespace touchstone::compare

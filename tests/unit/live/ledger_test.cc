@@ -54,6 +54,15 @@ TEST(DurationHistogram, EveryDurationFallsIntoABinThatHoldsIt) {
   }
 }
 
+TEST(DurationHistogram, CountsBetweenTwoDurations) {
+  DurationHistogram histogram;
+  for (int i = 0; i < 1000; ++i) histogram.add(1'000'000 + 1000 * i);
+  EXPECT_EQ(histogram.count_between(0.0, INFINITY), 1000u);
+  EXPECT_EQ(histogram.count_between(0.0, 0.9e6), 0u);
+  EXPECT_NEAR(static_cast<double>(histogram.count_between(1.2e6, 1.5e6)), 300.0, 30.0);
+  EXPECT_EQ(histogram.count_between(0.0, 1.5e6) + histogram.count_between(1.5e6, INFINITY), 1000u);
+}
+
 TEST(DurationHistogram, SmallOnesAreExact) {
   DurationHistogram histogram;
   for (int i = 0; i < 100; ++i) histogram.add(i);
