@@ -57,7 +57,8 @@ std::string typed(double value) { return fmt::format("{:.2g}", value); }
 
 std::string quoted(const std::string& word) {
   const bool plain = std::all_of(word.begin(), word.end(), [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("-_./=+,:@%").find(c) != std::string_view::npos;
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string_view("-_./=+,:@%").find(c) != std::string_view::npos;
   });
   if (plain && !word.empty()) return word;
   std::string out = "'";
@@ -80,9 +81,8 @@ std::filesystem::path tuning_study_of(const std::filesystem::path& scene_file) {
       if (text.find("kind = \"tuning\"") == std::string::npos) continue;
       try {
         const scene::TuningStudy study = scene::load_tuning_study(file, {});
-        const bool trains = std::any_of(study.training.begin(), study.training.end(), [&](const auto& contact) {
-          return contact.scene.name == scene_file.stem();
-        });
+        const bool trains = std::any_of(study.training.begin(), study.training.end(),
+                                        [&](const auto& contact) { return contact.scene.name == scene_file.stem(); });
         if (trains) return file;
       } catch (const scene::InputError&) {
         continue;  // somebody else's half-written file
@@ -117,9 +117,8 @@ class Finder {
 
   void nearer() {
     const auto nearest =
-        std::min_element(result_.instants.begin(), result_.instants.end(), [&](const auto& a, const auto& b) {
-          return separation_m(a) < separation_m(b);
-        });
+        std::min_element(result_.instants.begin(), result_.instants.end(),
+                         [&](const auto& a, const auto& b) { return separation_m(a) < separation_m(b); });
     if (errors_.depth_max_m > 0.0 || !(separation_m(*nearest) > 0.0)) return;
     add(fmt::format("Move the track nearer to the body: at its nearest, at {}{}s, the tool is {} away.",
                     number_text(nearest->time_s), no_break, quantity_text(separation_m(*nearest), "m")));
@@ -151,10 +150,13 @@ class Finder {
     const bool unknown = !force || !errors_.shape_rel_l2.uncertainty;
     const bool hidden = !errors_.force_nrmse.distinguishable() || !errors_.shape_rel_l2.distinguishable();
     if (!unknown && !hidden) return;
+    const std::string& ended = result_.refinement.why_ended;
     if (scene_.reference.levels && *scene_.reference.levels < 3) {
-      add("Give the reference enough meshes to know its own uncertainty. Without it nobody can say how much of an error "
-          "is the reference's.",
+      add("Solve the reference on three meshes. With fewer its uncertainty is unknown.",
           command_text(without_reference(), ""));
+    } else if ((unknown || *force > 0.002) && ended.find("of memory") != std::string::npos) {
+      add("A finer mesh needs more memory than is allowed. On a machine that has it, allow it with --memory-gib; "
+          "otherwise make the first mesh coarser with reference.element_size_m.");
     } else if (!unknown && *force > 0.002) {
       const double half = 0.5 * std::max(*force, *errors_.shape_rel_l2.uncertainty);
       add("Refine the reference: an error is no larger than its uncertainty.",
@@ -170,7 +172,8 @@ class Finder {
     const double before = errors_.shape_rel_l2.value.value_or(0.0);
     if (!limited && !(errors_.shape_rel_l2.distinguishable() && before > 0.5)) return;
     std::optional<std::pair<double, Trial>> best;
-    const std::vector<double> powers = limited ? std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8} : std::vector<double>{1, 2, 3, -1, -2};
+    const std::vector<double> powers =
+        limited ? std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8} : std::vector<double>{1, 2, 3, -1, -2};
     for (const double power : powers) {
       if (!time_left()) break;
       scene::Scene changed = scene_;
@@ -202,11 +205,11 @@ class Finder {
     Call untuned = call_;
     untuned.parameters = call_.folder / name;
     steps_.push_back(
-        {fmt::format("Take the area-aware law with the material's own modulus, where nothing is tuned. Tried: the force "
-                     "error goes from {} to {} of the peak.",
-                     percent_text(before), percent_text(trial.force_nrmse)),
-         command_text(untuned, " --out " + quoted(call_.folder.string() + "-area-aware")),
-         name,
+        {fmt::format(
+             "Take the area-aware law with the material's modulus; nothing is tuned. Tried: the force error goes "
+             "from {} to {} of the peak.",
+             percent_text(before), percent_text(trial.force_nrmse)),
+         command_text(untuned, " --out " + quoted(call_.folder.string() + "-area-aware")), name,
          fmt::format("# The area-aware law F = k1 D, k1 = 2 E/(1 - nu^2) times the contact radius: nothing is tuned.\n"
                      "[contact]\nlaw = \"area_aware\"\nk1_per_radius_n_per_m2 = {:.6g}\nk3_n_per_m3 = 0.0\n",
                      changed.contact.k1_per_radius_n_per_m2)});
@@ -218,11 +221,11 @@ class Finder {
     };
     if (!call_.parameters.empty() || (!matters(errors_.force_nrmse) && !matters(errors_.shape_rel_l2))) return;
     if (const std::filesystem::path study = tuning_study_of(call_.scene_file); !study.empty()) {
-      add("Tune the constants to the reference. The study that trains on this scene also judges them on other contacts.",
+      add("Tune the constants to the reference on this and other contacts.",
           "touchstone tune " + quoted(study.string()));
     } else {
-      add("Tune the constants to the reference: write a study with this scene as training contact, and give it to "
-          "touchstone tune. reports/tuning.md says how; meshes/studies/ball-on-cube.toml is one.");
+      add("Tune the constants to the reference with touchstone tune and a study of this scene, as reports/tuning.md "
+          "describes. meshes/studies/ball-on-cube.toml is an example.");
     }
   }
 
