@@ -63,18 +63,29 @@ Plot force_plot(const Errors& errors, const Abscissa& x) {
 
 /// What there is to see of the reference's uncertainty in a plot of its force.
 std::string band_caption(const Plot& plot, const Errors& errors, const reference::Result& result) {
+  const std::optional<double> known = force_known_to(errors);
+  std::string text;
   switch (band_seen(plot, plot.bands.front())) {
     case BandSeen::nowhere:
       return "The reference's uncertainty is unknown, so no band is drawn. " + why_uncertainty_unknown(result);
     case BandSeen::narrower_than_the_line:
-      return force_known_to(errors)
-                 ? fmt::format("The reference's uncertainty, at most {} of its force, is narrower than its line.",
-                               percent_text(*force_known_to(errors)))
-                 : "The reference's uncertainty is narrower than its line.";
+      text = known ? fmt::format("The reference's uncertainty, at most {} of its force, is narrower than its line.",
+                                 percent_text(*known))
+                   : "The reference's uncertainty is narrower than its line.";
+      break;
     case BandSeen::area:
-      return "The blue band is the reference's uncertainty.";
+      text = "The blue band is the reference's uncertainty.";
+      break;
   }
-  return "";
+  const reference::Refinement& refinement = result.refinement;
+  const double asked = refinement.error_asked;
+  const bool missed =
+      asked > 0.0 && (known.value_or(0.0) > asked || errors.shape_rel_l2.uncertainty.value_or(0.0) > asked);
+  if (missed && !refinement.why_ended.empty()) {
+    text += fmt::format(" An uncertainty of {} was asked for and not reached: {}.", percent_text(asked),
+                        refinement.why_ended);
+  }
+  return text;
 }
 
 Drawing logarithmic(Plot plot, const Errors& errors) {
@@ -90,15 +101,6 @@ Drawing logarithmic(Plot plot, const Errors& errors) {
           to_svg(plot)};
 }
 
-/// Where each side begins to slide.
-std::string slip_note(const Errors& errors) {
-  const auto begins = [](const std::string& side, const std::optional<double>& path_m) {
-    return side + (path_m ? " slides from " + quantity_text(*path_m, "m") + " on" : " never slides");
-  };
-  return begins("The fast model", errors.slip_onset_fast_m) + ", " +
-         begins("the reference", errors.slip_onset_reference_m) + ".";
-}
-
 /// Friction of both sides over the path of the tool's point at the contact.
 Drawing friction_drawing(const Errors& errors) {
   const Abscissa path{"path", "path of the tool along the surface [mm]",
@@ -108,7 +110,7 @@ Drawing friction_drawing(const Errors& errors) {
                          series(errors, [](const InstantErrors& e) { return e.friction_reference_n; })});
   plot.curves.push_back({"fast model", Look::fast, path.values,
                          series(errors, [](const InstantErrors& e) { return e.friction_fast_n; })});
-  return {"friction", slip_note(errors), to_svg(plot)};
+  return {"friction", slip_text(errors), to_svg(plot)};
 }
 
 double largest(const std::vector<double>& values) {
@@ -171,6 +173,13 @@ std::vector<Drawing> ComparisonDrawings::all() const {
   return out;
 }
 
+const std::vector<std::string>& ComparisonDrawings::names() {
+  static const std::vector<std::string> all_names = {
+      "force-over-depth", "force-over-time", "force-logarithmic",   "friction", "force-error", "shape-error",
+      "section",          "section-contact", "shape-largest-error", "bodies"};
+  return all_names;
+}
+
 std::optional<double> force_known_to(const Errors& errors) {
   for (const InstantErrors& e : errors.instants) {
     if (e.in_contact && !std::isfinite(e.force_uncertainty_n)) return std::nullopt;
@@ -180,12 +189,26 @@ std::optional<double> force_known_to(const Errors& errors) {
 }
 
 std::string why_uncertainty_unknown(const reference::Result& result) {
+  const std::string& why = result.refinement.why_ended;
+  const std::string ended = why.empty() ? "" : "Refinement ended: " + why + ".";
+  if (why.find("uncertainty") != std::string::npos) return ended;
   const std::size_t meshes = result.levels.size();
-  if (meshes < 3) {
-    return fmt::format("It was solved on {} mesh{}, and an uncertainty needs three.", meshes == 1 ? "one" : "two",
-                       meshes == 1 ? "" : "es");
+  return (meshes < 3 ? fmt::format("It was solved on {} mesh{}, and an uncertainty needs three.",
+                                   meshes == 1 ? "one" : "two", meshes == 1 ? "" : "es")
+                     : "Its meshes do not show how far it is from the exact solution.") +
+         (ended.empty() ? "" : " " + ended);
+}
+
+std::string slip_text(const Errors& errors) {
+  const std::optional<double>&fast_m = errors.slip_onset_fast_m, &reference_m = errors.slip_onset_reference_m;
+  if (fast_m && reference_m) {
+    return fmt::format("Sliding begins after {} of the path in the fast model and after {} in the reference.",
+                       quantity_text(*fast_m, "m"), quantity_text(*reference_m, "m"));
   }
-  return "Its meshes do not show how far it is from the exact solution.";
+  const auto begins = [](const std::string& side, const std::optional<double>& path_m) {
+    return side + (path_m ? " slides after " + quantity_text(*path_m, "m") + " of the path" : " never slides");
+  };
+  return begins("The fast model", fast_m) + ", " + begins("the reference", reference_m) + ".";
 }
 
 ComparisonDrawings comparison_drawings(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
@@ -204,14 +227,15 @@ ComparisonDrawings comparison_drawings(const scene::Scene& scene, const fast::Ru
   if (only_deeper) out.forces.push_back(logarithmic(force_plot(errors, depth), errors));
   if (errors.friction) out.forces.push_back(friction_drawing(errors));
   out.forces.push_back(force_error(errors, first));
-  out.shapes = {{"section", "Where the cut plane of the rest body has gone; true scale.",
-                 section_svg(scene, run, result, errors.deepest, false)},
-                {"section-contact",
-                 "A surface should lie on the tool where they touch, and nowhere inside it. The reference is drawn on "
-                 "its own mesh, with dots at its nodes in this plane. The fast model is straight between its own points, "
-                 "the squares.",
-                 section_svg(scene, run, result, errors.deepest, true)},
-                largest_error(errors, first)};
+  out.shapes = {
+      {"section", "Where the cut plane of the rest body has gone; true scale.",
+       section_svg(scene, run, result, errors.deepest, false)},
+      {"section-contact",
+       "A surface should lie on the tool where they touch, and nowhere inside it. The reference is drawn on "
+       "its own mesh, with dots at its nodes in this plane. The fast model is straight between its own points, "
+       "the squares.",
+       section_svg(scene, run, result, errors.deepest, true)},
+      largest_error(errors, first)};
   const std::vector<std::string> bodies = half_cut_svgs(scene, run, result, errors.deepest);
   out.bodies = {{"reference", "", bodies[0]}, {"fast", "", bodies[1]}, {"error", "", bodies[2]}};
   out.bodies_in_a_row = half_cuts_in_a_row(bodies);

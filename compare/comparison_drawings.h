@@ -20,6 +20,9 @@ struct ComparisonDrawings {
 
   /// For files.
   [[nodiscard]] std::vector<Drawing> all() const;
+
+  /// Every name that a drawing of all() can have.
+  [[nodiscard]] static const std::vector<std::string>& names();
 };
 
 [[nodiscard]] ComparisonDrawings comparison_drawings(const scene::Scene& scene, const fast::Run& run,
@@ -28,7 +31,10 @@ struct ComparisonDrawings {
 /// Largest uncertainty of the reference's force relative to it; nothing where it is unknown at an instant of contact.
 [[nodiscard]] std::optional<double> force_known_to(const Errors& errors);
 
-/// Why the reference does not know its own uncertainty, a sentence.
+/// Why the reference's uncertainty is unknown and why its refinement ended, in sentences.
 [[nodiscard]] std::string why_uncertainty_unknown(const reference::Result& result);
+
+/// Where sliding begins on each side, a sentence.
+[[nodiscard]] std::string slip_text(const Errors& errors);
 
 }  // namespace touchstone::compare

@@ -140,11 +140,13 @@ class Finder {
     const bool unknown = !force || !errors_.shape_rel_l2.uncertainty;
     const bool hidden = !errors_.force_nrmse.distinguishable() || !errors_.shape_rel_l2.distinguishable();
     if (!unknown && !hidden) return;
+    const std::string& ended = result_.refinement.why_ended;
     if (scene_.reference.levels && *scene_.reference.levels < 3) {
-      add("Give the reference enough meshes to know its own uncertainty. Without it nobody can say how much of an "
-          "error "
-          "is the reference's.",
+      add("Solve the reference on three meshes. With fewer its uncertainty is unknown.",
           command_text(without_reference(), ""));
+    } else if ((unknown || *force > 0.002) && ended.find("of memory") != std::string::npos) {
+      add("A finer mesh needs more memory than is allowed. On a machine that has it, allow it with --memory-gib; "
+          "otherwise make the first mesh coarser with reference.element_size_m.");
     } else if (!unknown && *force > 0.002) {
       const double half = 0.5 * std::max(*force, *errors_.shape_rel_l2.uncertainty);
       add("Refine the reference: an error is no larger than its uncertainty.",
@@ -194,8 +196,8 @@ class Finder {
     untuned.parameters = call_.folder / name;
     steps_.push_back(
         {fmt::format(
-             "Take the area-aware law with the material's own modulus, where nothing is tuned. Tried: the force "
-             "error goes from {} to {} of the peak.",
+             "Take the area-aware law with the material's modulus; nothing is tuned. Tried: the force error goes "
+             "from {} to {} of the peak.",
              percent_text(before), percent_text(trial.force_nrmse)),
          command_text(untuned, " --out " + fast::shell_word(call_.folder.string() + "-area-aware")), name,
          fmt::format("# The area-aware law F = k1 D. Its constant follows from the material: nothing is tuned.\n"
@@ -209,12 +211,11 @@ class Finder {
     };
     if (!call_.parameters.empty() || (!matters(errors_.force_nrmse) && !matters(errors_.shape_rel_l2))) return;
     if (const std::filesystem::path study = tuning_study_of(call_.scene_file); !study.empty()) {
-      add("Tune the constants to the reference. The study that trains on this scene also judges them on other "
-          "contacts.",
+      add("Tune the constants to the reference on this and other contacts.",
           "touchstone tune " + fast::shell_word(study.string()));
     } else {
-      add("Tune the constants to the reference: write a study with this scene as training contact, and give it to "
-          "touchstone tune. reports/tuning.md says how; meshes/studies/ball-on-cube.toml is one.");
+      add("Tune the constants to the reference with touchstone tune and a study of this scene, as reports/tuning.md "
+          "describes. meshes/studies/ball-on-cube.toml is an example.");
     }
   }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 
 namespace touchstone::compare {
@@ -20,7 +21,8 @@ constexpr const char* style = R"(
 * { box-sizing: border-box; }
 body { font: 16px/1.55 system-ui, "Segoe UI", Roboto, sans-serif; color: var(--ink); background: var(--page);
   max-width: 1240px; margin: 0 auto; padding: 1.6rem 1.5rem 4rem; }
-h1 { font-size: 1.7rem; line-height: 1.25; margin: 0 0 .2rem; }
+h1 { font-size: 1.7rem; line-height: 1.25; margin: 0 0 .2rem; text-wrap: balance; }
+.command { margin: .2rem 0 .6rem; max-width: none; }
 h2 { font-size: 1.25rem; margin: 0 0 .6rem; }
 body > h2 { margin: 2.2rem 0 .6rem; padding-top: 1.2rem; border-top: 1px solid var(--line); } h3 { font-size: 1.05rem; margin: 1.2rem 0 .4rem; }
 body > section { margin-top: 2.2rem; padding-top: 1.2rem; border-top: 1px solid var(--line); }
@@ -33,7 +35,7 @@ nav { display: flex; flex-wrap: wrap; gap: .2rem 1.1rem; margin: .5rem 0 1rem; f
 .tile b { display: block; font-size: 1.5rem; line-height: 1.35; font-weight: 600; font-variant-numeric: tabular-nums; }
 .tile span { color: var(--dim); font-size: .88rem; line-height: 1.4; display: block; }
 .first { display: grid; grid-template-columns: minmax(0, 5fr) minmax(0, 6fr); gap: 1.2rem; align-items: start; }
-.first > * > :first-child { margin-top: 0; }
+.first > * > :first-child, .first > * > .screen > :first-child { margin-top: 0; }
 .reference { color: var(--reference); } .fast { color: var(--fast); }
 .plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(480px, 100%), 1fr)); gap: .6rem 1.2rem; }
 .bodies { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(300px, 100%), 1fr)); gap: .8rem; }
@@ -55,6 +57,7 @@ table { border-collapse: collapse; width: 100%; font-size: .9rem; margin: .8rem 
 th, td { text-align: left; vertical-align: top; padding: .38rem .7rem .38rem 0; border-bottom: 1px solid var(--line); }
 th { font-weight: 600; } td.n, th.n { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 td.t { text-align: right; } th.wrap { text-align: right; vertical-align: bottom; } .under { display: block; color: var(--dim); }
+td.any { overflow-wrap: anywhere; }
 a { color: var(--reference); } img { max-width: 100%; height: auto; background: #fff; border-radius: 8px; }
 tr.group th { padding-top: 1.1rem; font-size: 1rem; }
 code { font: .82rem ui-monospace, "DejaVu Sans Mono", monospace; color: var(--dim); overflow-wrap: anywhere; }
@@ -66,6 +69,7 @@ summary { cursor: pointer; font-weight: 600; } summary h2 { display: inline; } d
 @media (max-width: 480px) {
   body { padding: 1rem .9rem 3rem; } h1 { font-size: 1.35rem; } .lead, .verdict p:first-child { font-size: 1.02rem; }
   .tiles { grid-template-columns: 1fr 1fr; gap: .5rem; } .tile { padding: .5rem .7rem; } .tile b { font-size: 1.2rem; }
+  .tile:last-child:nth-child(odd) { grid-column: 1 / -1; }
 }
 @media print {
   .screen, nav, .tip { display: none; } .first { grid-template-columns: 1fr; } .bodies { grid-template-columns: repeat(3, 1fr); }
@@ -183,11 +187,14 @@ std::string in_order(const std::vector<Section>& sections) {
 Section origin(const scene::Manifest& manifest, const std::string& beside) {
   std::string out = "<div class=\"scroll\"><table>\n";
   const auto row = [&](const std::string& name, const std::string& value) {
-    out += "<tr>" + tag("th", name) + cell(value) + "</tr>\n";
+    out += "<tr>" + tag("th", name) + tag("td", value, "class=\"any\"") + "</tr>\n";
   };
   row("command", manifest.command);
   row("scene hash", manifest.scene_hash);
-  for (const auto& [name, value] : manifest.entries) row(name, value);
+  for (auto [name, value] : manifest.entries) {
+    std::replace(name.begin(), name.end(), '_', ' ');
+    row(name, value);
+  }
   for (const scene::StageTime& time : manifest.times) {
     row("time, " + time.stage,
         fmt::format("{}, of processors {}", quantity_text(time.wall_s, "s"), quantity_text(time.cpu_s, "s")));
@@ -196,7 +203,10 @@ Section origin(const scene::Manifest& manifest, const std::string& beside) {
 }
 
 Section resolved_scene(const scene::Manifest& manifest) {
-  return {"The scene, every value in force", tag("pre", manifest.resolved_scene) + "\n", true};
+  return {"Settings",
+          tag("p", "The scene with every value in force, as a scene file.", "class=\"dim\"") + "\n" +
+              tag("pre", manifest.resolved_scene) + "\n",
+          true};
 }
 
 std::string manifest_section(const scene::Manifest& manifest, const std::string& beside) {

@@ -1,5 +1,6 @@
 #include "compare/plot_files.h"
 
+#include "compare/comparison_drawings.h"
 #include "compare/svg_plot.h"
 #include "scene/files.h"
 
@@ -67,6 +68,10 @@ std::string pdf_of(const std::string&) { throw std::logic_error("this build has 
 
 void write_plots(const std::filesystem::path& folder, const std::vector<Drawing>& drawings) {
   std::filesystem::create_directories(folder);
+  // An earlier comparison may have had plots that this one has not.
+  for (const std::string& name : ComparisonDrawings::names()) {
+    for (const char* ending : {".svg", ".pdf"}) std::filesystem::remove(folder / (name + ending));
+  }
   for (const Drawing& drawing : drawings) {
     const std::string svg = as_file(drawing.svg);
     scene::write_file(folder / (drawing.name + ".svg"), svg);

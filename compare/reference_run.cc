@@ -1,6 +1,7 @@
 #include "compare/reference_run.h"
 
 #include "compare/reference_quality.h"
+#include "compare/text.h"
 #include "fast/command_line.h"
 #include "fast/progress_line.h"
 #include "reference/run/cost.h"
@@ -155,9 +156,10 @@ std::string refinement_text(const reference::Result& result) {
     if (!rel) return std::string("none");
     return std::isfinite(*rel) ? fmt::format("{:.2g} %", 100.0 * *rel) : std::string("unknown");
   };
-  return fmt::format("Uncertainty of the reference: force {}, shape {}, from {} mesh{}\nRefinement ended: {}\n",
+  return fmt::format("Uncertainty of the reference: force {}, shape {}, from {} mesh{}\n{}\n",
                      text_of(result.force_uncertainty_rel), text_of(result.shape_uncertainty_rel), result.levels.size(),
-                     result.levels.size() == 1 ? "" : "es", result.refinement.why_ended);
+                     result.levels.size() == 1 ? "" : "es",
+                     wrapped("Refinement ended: " + result.refinement.why_ended, 80));
 }
 
 int exit_of(const reference::Result& result, const ReferenceOptions& options) {

@@ -28,11 +28,10 @@ std::string measure_text(const Measure& measure) { return quantity_text(measure.
 
 std::string tiles(const ReportContent& c) {
   const InstantErrors& deepest = c.errors.instants[c.errors.deepest];
-  const std::optional<double> known = force_known_to(c.errors);
   std::string out = "<div class=\"tiles\">\n";
   out += tile(fmt::format("Force at {} depth", quantity_text(deepest.depth_m, "m")),
-              fmt::format("{} : {}", number_text(deepest.force_fast_n), quantity_text(deepest.force_reference_n, "N")),
-              "fast model : reference");
+              quantity_text(deepest.force_fast_n, "N"),
+              "fast model; reference " + quantity_text(deepest.force_reference_n, "N"));
   out += tile("Force error, of the peak", measure_text(c.errors.force_nrmse), measure_note(c.errors.force_nrmse));
   out += tile("Shape error, of the displacement", measure_text(c.errors.shape_rel_l2),
               c.errors.shape_rel_l2.value.value_or(0.0) > 1.0 ? "worse than no deformation, which is 100 %"
@@ -40,10 +39,20 @@ std::string tiles(const ReportContent& c) {
   out += tile("One step of the fast model", quantity_text(c.run.step.p50_us, "us"),
               fmt::format("median; longest {}", quantity_text(c.run.step.max_us, "us")));
   const std::size_t meshes = c.result.levels.size();
-  out += tile("Reference's force known to", quantity_text(known, "", "unknown"),
-              fmt::format("{} mesh{}, {} unknowns", meshes, meshes == 1 ? "" : "es",
-                          number_text(meshes == 0 ? 0.0 : c.result.levels.back().unknowns)));
+  const std::optional<double> force = force_known_to(c.errors), shape = c.errors.shape_rel_l2.uncertainty;
+  out += tile("Reference's uncertainty", quantity_text(force, "", "unknown"),
+              fmt::format("{}{} mesh{}, {} unknowns",
+                          force ? "of the force; shape " + quantity_text(shape, "", "unknown") + "; " : "", meshes,
+                          meshes == 1 ? "" : "es", number_text(meshes == 0 ? 0.0 : c.result.levels.back().unknowns)));
   return out + "</div>\n";
+}
+
+/// What was typed to make the page; nothing where the manifest does not say.
+std::string command_line(const scene::Manifest& manifest) {
+  const auto typed = std::find_if(manifest.entries.begin(), manifest.entries.end(),
+                                  [](const auto& entry) { return entry.first == "command_line"; });
+  if (typed == manifest.entries.end()) return "";
+  return "<p class=\"command\">" + tag("code", typed->second) + "</p>\n";
 }
 
 std::string figures_of(const std::vector<Drawing>& drawings) {
@@ -57,8 +66,8 @@ std::string first_screen(const ReportContent& c) {
   std::string out = tiles(c);
   if (!c.models.empty()) out += model_table_html(c.models);
   out += tag("p", c.verdict.force + (c.verdict.shape.empty() ? "" : " " + c.verdict.shape), "class=\"lead\"") + "\n";
-  out += "<div class=\"first\">\n<div>\n" + figures_of({c.drawings.force, c.drawings.shape_error}) +
-         "</div>\n<div>\n" + viewer_section(c.scene, c.run, c.result, c.errors) + "</div>\n</div>\n";
+  out += "<div class=\"first\">\n<div>\n" + figures_of({c.drawings.force, c.drawings.shape_error}) + "</div>\n<div>\n" +
+         viewer_section(c.scene, c.run, c.result, c.errors) + "</div>\n</div>\n";
   const InstantErrors& deepest = c.errors.instants[c.errors.deepest];
   out += "<figure>\n<div class=\"bodies\">\n";
   for (const Drawing& body : c.drawings.bodies) out += body.svg;
@@ -72,10 +81,8 @@ std::string first_screen(const ReportContent& c) {
 
 Section why_section(const ReportContent& c) {
   std::string out;
-  for (const std::string& paragraph : c.verdict.reasons) {
-    // "Force. ...": the first word says what the paragraph is about.
-    const std::size_t end = paragraph.find_first_of(".:");
-    out += "<p>" + tag("b", paragraph.substr(0, end + 1)) + escape_xml(paragraph.substr(end + 1)) + "</p>\n";
+  for (const Reason& reason : c.verdict.reasons) {
+    out += "<p>" + tag("b", reason.about + ":") + " " + escape_xml(reason.text()) + "</p>\n";
   }
   return {"Why", out};
 }
@@ -90,7 +97,7 @@ Section next_section(const ReportContent& c) {
 }
 
 Section words_section() {
-  return {"Words used on this page", R"(<dl>
+  return {"Words", R"(<dl>
 <dt>Tool, body, depth</dt><dd>A rigid tool is moved along a given track into an elastic body. Depth is how far the
 tool reaches below the body's undeformed surface; it is the same for both sides at every instant.</dd>
 <dt class="fast">Fast model</dt><dd>The real-time model of a haptic display: a contact law for the force and a skeleton
@@ -110,7 +117,8 @@ Section instants_section(const ReportContent& c) {
   std::string out =
       "<div class=\"scroll\"><table>\n<tr><th class=\"n\">time"
       "</th><th class=\"n\">depth</th><th class=\"n\">force, fast</th><th class=\"n\">force, reference</th><th "
-      "class=\"n\">± </th><th class=\"n\">error</th><th class=\"n\">shape error</th><th class=\"n\">largest</th><th "
+      "class=\"n\">uncertainty</th><th class=\"n\">error</th><th class=\"n\">shape error</th><th "
+      "class=\"n\">largest</th><th "
       "class=\"n\">area in common</th></tr>\n";
   for (const InstantErrors& e : c.errors.instants) {
     out += "<tr>" + number_cell(number_text(e.time_s) + " s") + number_cell(quantity_text(e.depth_m, "m")) +
@@ -120,7 +128,7 @@ Section instants_section(const ReportContent& c) {
            number_cell(quantity_text(e.shape_rel_l2.value, "", "–")) + number_cell(quantity_text(e.shape_max_m, "m")) +
            number_cell(quantity_text(e.contact_area_iou, "", "–")) + "</tr>\n";
   }
-  return {"Every instant in numbers", out + "</table></div>\n", true};
+  return {"Every instant", out + "</table></div>\n", true};
 }
 
 /// What a reader should know about an error beside its number.
@@ -190,13 +198,12 @@ Section reference_section(const ReportContent& c) {
            number_cell(quantity_text(level.wall_s, "s")) + "</tr>\n";
     before_n = force_n;
   }
-  return {"How the reference was refined", out + "</table></div>\n"};
+  return {"Reference", out + "</table></div>\n"};
 }
 
 Section plans_section(const ReportContent& c) {
-  return {"What each side models of the scene", tag("h3", "Fast model", "class=\"fast\"") + plan_table(c.plans.fast) +
-                                                    tag("h3", "Reference", "class=\"reference\"") +
-                                                    plan_table(c.plans.reference)};
+  return {"What is modelled", tag("h3", "Fast model", "class=\"fast\"") + plan_table(c.plans.fast) +
+                                  tag("h3", "Reference", "class=\"reference\"") + plan_table(c.plans.reference)};
 }
 
 }  // namespace
@@ -220,8 +227,8 @@ std::string report_html(const ReportContent& c) {
              "surface.pvd for ParaView, where the filter Warp By Vector with displacement_fast_m or "
              "displacement_reference_m shows a side."),
       words_section()};
-  return page(scene_title(c.scene),
-              tag("h1", scene_title(c.scene)) + "\n" + contents(sections) + first_screen(c) + in_order(sections));
+  return page(scene_title(c.scene), tag("h1", scene_title(c.scene)) + "\n" + command_line(c.manifest) +
+                                        contents(sections) + first_screen(c) + in_order(sections));
 }
 
 void write_report(const std::filesystem::path& path, const ReportContent& content) {

@@ -68,6 +68,11 @@ std::string number_text(double value, int digits) {
     return fmt::format("{}{:.{}g} × 10{}", value < 0.0 ? minus : "", std::abs(value) * std::pow(10.0, -exponent),
                        digits, power);
   }
+  // A count is printed whole, a measured value with four digits at most.
+  if (const int most = std::max(4, digits); exponent >= most && value != std::round(value)) {
+    const double unit = std::pow(10.0, exponent + 1 - most);
+    value = unit * std::round(value / unit);
+  }
   std::string text = fmt::format("{:.{}f}", value, std::max(0, digits - 1 - exponent));
   if (text.find('.') != std::string::npos) {
     text.erase(text.find_last_not_of('0') + 1);

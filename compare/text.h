@@ -10,7 +10,8 @@ namespace touchstone::compare {
 /// Between a number and its unit, so that no line ends there.
 inline constexpr std::string_view no_break = "\u00a0";
 
-/// Three significant digits: "0.34", "170", "21 600", "3 × 10⁸"; "not finite" for NaN and infinity.
+/// Three significant digits: "0.34", "170", "3 × 10⁸"; before the point four, and a count whole: "3952", "21 600".
+/// "not finite" for NaN and infinity.
 [[nodiscard]] std::string number_text(double value, int digits = 3);
 
 /// A ratio as a percentage, "99.6 %"; "below 0.0001 %" where it is smaller than anything here is known to.

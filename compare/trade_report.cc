@@ -46,7 +46,7 @@ std::string number(double value, std::string_view unit) {
 std::string error_text(const Measure& error) {
   if (!error.value) return std::string(nothing);
   std::string text = percent_text(*error.value);
-  if (error.uncertainty) text += " ± " + percent_text(*error.uncertainty);
+  text += " ± " + quantity_text(error.uncertainty, "", "unknown");
   return error.distinguishable() ? text : text + ", not distinguishable";
 }
 

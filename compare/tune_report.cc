@@ -20,7 +20,7 @@ std::string measure_cell(const Measure& measure, const std::string& unit) {
   if (!measure.value) return number_cell("–");
   const auto under = [](const std::string& text) { return tag("span", text, "class=\"under\""); };
   std::string out = escape_xml(quantity_text(*measure.value, unit));
-  if (measure.uncertainty) out += under("± " + quantity_text(*measure.uncertainty, unit));
+  out += under("± " + quantity_text(measure.uncertainty, unit, "unknown"));
   if (!measure.distinguishable()) out += under("not distinguishable");
   return "<td class=\"n\">" + out + "</td>";
 }

@@ -62,9 +62,9 @@ std::string force_sentence(const Errors& errors) {
 }
 
 /// The force over the whole track, and its direction.
-std::string force_paragraph(const Errors& errors) {
-  if (!errors.force_nrmse.value) return "";
-  std::string text = fmt::format("Force. Over the whole track the error is {} of the peak force (root mean square)",
+Reason force_paragraph(const Errors& errors) {
+  if (!errors.force_nrmse.value) return {};
+  std::string text = fmt::format("Over the whole track the error is {} of the peak force (root mean square)",
                                  percent_text(*errors.force_nrmse.value));
   if (errors.force_rel_deep.value) {
     text += fmt::format(". It is {} of the force itself where the depth exceeds {} of its largest",
@@ -78,35 +78,37 @@ std::string force_paragraph(const Errors& errors) {
     text += fmt::format(" At the deepest instant mostly the direction is wrong: the two force vectors are {} apart.",
                         newtons(deepest.force_error_n));
   }
-  return text;
+  return {.about = "Force", .detail = text};
 }
 
 /// Why the force is off, as far as the scene's own numbers show; empty when they do not.
-std::string reason_paragraph(const scene::Scene& scene, const Errors& errors) {
+Reason cause_paragraph(const scene::Scene& scene, const Errors& errors) {
   const InstantErrors& deepest = errors.instants[errors.deepest];
-  if (!errors.force_peak_rel.distinguishable() || !(deepest.force_fast_n > 0.0)) return "";
+  if (!errors.force_peak_rel.distinguishable() || !(deepest.force_fast_n > 0.0)) return {};
   const double d = deepest.depth_m;
   const double law_n = scene.contact.k1_n_per_m * d + scene.contact.k3_n_per_m3 * d * d * d;
   const std::optional<double> hertz_n = hertz_force_n(scene, d);
-  std::string text;
+  Reason out{.about = "Likely cause"};
   const bool too_low = hertz_n && law_n * mismatch < *hertz_n && deepest.force_fast_n < deepest.force_reference_n;
   const bool too_high = hertz_n && law_n > mismatch * *hertz_n && deepest.force_fast_n > deepest.force_reference_n;
   if (too_low || too_high) {
-    text = fmt::format(
-        "Reason: the contact constants do not describe the material. Nothing ties k1 and k3 to Young's modulus: they "
-        "are inputs that must be tuned. F\u00a0=\u00a0k1\u00a0D\u00a0+\u00a0k3\u00a0D³ with k1 = {} N/m and k3 = {} "
-        "N/m³ gives "
-        "{} at D = {}. Hertz's formula with E = {} MPa and ν = {} gives about {}.",
-        number_text(scene.contact.k1_n_per_m), number_text(scene.contact.k3_n_per_m3), newtons(law_n),
-        quantity_text(d, "m"), number_text(1e-6 * scene.body.material.youngs_modulus_pa),
-        number_text(scene.body.material.poissons_ratio), newtons(*hertz_n));
+    out.brief = fmt::format(
+        "The contact constants do not describe the material: the contact law gives {} at D = {}, Hertz's formula "
+        "about {}.",
+        newtons(law_n), quantity_text(d, "m"), newtons(*hertz_n));
+    out.detail = fmt::format(
+        "The law is F\u00a0=\u00a0k1\u00a0D\u00a0+\u00a0k3\u00a0D³ with k1 = {} N/m and k3 = {} N/m³; Hertz's formula "
+        "takes "
+        "E = {} MPa and ν = {}. Nothing ties k1 and k3 to Young's modulus: they must be tuned.",
+        number_text(scene.contact.k1_n_per_m), number_text(scene.contact.k3_n_per_m3),
+        number_text(1e-6 * scene.body.material.youngs_modulus_pa), number_text(scene.body.material.poissons_ratio));
     if (scene.contact.k1_n_per_m == table1_k1_n_per_m && scene.contact.k3_n_per_m3 == table1_k3_n_per_m3) {
-      text += " These constants are the paper's Table I for rubber, read in millimetres and newtons.";
+      out.detail += " These constants are the paper's Table I for rubber, read in millimetres and newtons.";
     }
     if (deepest.force_fast_n < 0.95 * law_n) {
-      text +=
-          fmt::format(" The model's {} are less than the law's, because it takes a mean depth of the contact region.",
-                      newtons(deepest.force_fast_n));
+      out.detail += fmt::format(
+          " The model's force of {} is less than the law's, because it takes a mean depth of the contact region.",
+          newtons(deepest.force_fast_n));
     }
   }
   // A constant factor could be scaled away; a factor that runs with the depth cannot.
@@ -124,25 +126,28 @@ std::string reason_paragraph(const scene::Scene& scene, const Errors& errors) {
     }
   }
   if (most > 1.3 * least) {
-    text += fmt::format(
-        "{} the fast model gives {} of the reference's force at {} and {} at {}. No single factor would put it right.",
-        text.empty() ? "Reason: the law's form. At different depths the factor differs:"
-                     : " The law's form matters too:",
+    const std::string form = fmt::format(
+        "the fast model gives {} of the reference's force at {} and {} at {}, so no single factor would put it right.",
         percent_text(least), quantity_text(at_least_m, "m"), percent_text(most), quantity_text(at_most_m, "m"));
-  } else if (text.empty() && least < most * (1.0 + 1e-12) && std::isfinite(least) && std::abs(most - 1.0) > 0.05) {
-    text = fmt::format(
-        "Reason: the contact constants are not tuned to this contact. The fast model gives {} to {} of the reference's "
-        "force at every depth, so another constant would put it right.",
+    if (out.brief.empty()) {
+      out.brief = "The form of the contact law: " + form;
+    } else {
+      out.detail += " The law's form matters too: " + form;
+    }
+  } else if (out.brief.empty() && least < most * (1.0 + 1e-12) && std::isfinite(least) && std::abs(most - 1.0) > 0.05) {
+    out.brief = fmt::format(
+        "The contact constants are not tuned to this contact. The fast model gives {} to {} of the reference's force "
+        "at every depth, so another constant would put it right.",
         percent_text(least), percent_text(most));
   }
-  return text;
+  return out;
 }
 
 /// What the fast model says of its own steps.
-std::vector<std::string> status_paragraphs(const scene::Scene& scene, const fast::Run& run) {
-  std::vector<std::string> out;
+std::vector<Reason> status_paragraphs(const scene::Scene& scene, const fast::Run& run) {
+  std::vector<Reason> out;
   const auto add = [&](fast::StepStatus bit, std::string text) {
-    if ((run.status & static_cast<std::uint32_t>(bit)) != 0) out.push_back("Status. " + std::move(text));
+    if ((run.status & static_cast<std::uint32_t>(bit)) != 0) out.push_back({"Status", std::move(text)});
   };
   add(fast::StepStatus::not_finite,
       "Some poses of the tool were not finite numbers; the fast model held its last good answer there.");
@@ -160,20 +165,16 @@ std::vector<std::string> status_paragraphs(const scene::Scene& scene, const fast
   return out;
 }
 
-std::string friction_paragraph(const Errors& errors) {
-  if (!errors.friction || !errors.force_friction_nrmse.value) return "";
-  std::string text = fmt::format("Friction. The error is {} of the reference's peak friction (root mean square)",
+Reason friction_paragraph(const Errors& errors) {
+  if (!errors.friction || !errors.force_friction_nrmse.value) return {};
+  std::string text = fmt::format("The error is {} of the reference's peak friction (root mean square)",
                                  percent_text(*errors.force_friction_nrmse.value));
   if (errors.force_friction_work_rel.value) {
     const double work = *errors.force_friction_work_rel.value;
     text += fmt::format(", and the work against it is {} too {}", percent_text(std::abs(work)),
                         work < 0.0 ? "low" : "high");
   }
-  const auto begins = [](const std::string& side, const std::optional<double>& path_m) {
-    return side + (path_m ? " slides from " + quantity_text(*path_m, "m") + " of its path on" : " never slides");
-  };
-  return text + ". " + begins("The fast model", errors.slip_onset_fast_m) + ", " +
-         begins("the reference", errors.slip_onset_reference_m) + ".";
+  return {"Friction", text + ".", slip_text(errors)};
 }
 
 std::string shape_sentence(const Errors& errors) {
@@ -214,10 +215,10 @@ double moved_share(const fast::Run& run, const reference::Result& result) {
   return along / scale;
 }
 
-std::string shape_paragraph(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
-                            const Errors& errors) {
-  if (!errors.shape_rel_l2.value) return "";
-  std::string text = "Shape.";
+Reason shape_paragraph(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
+                       const Errors& errors) {
+  if (!errors.shape_rel_l2.value) return {};
+  std::string text;
   const double share = moved_share(run, result);
   if (errors.shape_rel_l2.distinguishable() && std::isfinite(share) && (share < 0.8 || share > 1.25)) {
     text += fmt::format(" In the mean the surface moves {} times as far as the reference's.", number_text(share, 2));
@@ -245,18 +246,19 @@ std::string shape_paragraph(const scene::Scene& scene, const fast::Run& run, con
         " The fast model's surface does not follow the tool: it is left inside it by up to {} of the depth.",
         percent_text(*errors.penetration_fast_rel));
   }
-  return text == "Shape." ? "" : text;
+  return {.about = "Shape", .detail = text.empty() ? text : text.substr(1)};
 }
 
-std::string cost_paragraph(const fast::Run& run, const reference::Result& result) {
+Reason cost_paragraph(const fast::Run& run, const reference::Result& result) {
   const double wall_s =
       std::accumulate(result.levels.begin(), result.levels.end(), 0.0,
                       [](double sum, const reference::LevelRecord& level) { return sum + level.wall_s; });
-  return fmt::format(
-      "Cost. One step of the fast model takes {} (median; 99.9 % of the steps below {}). The reference took {} for {} "
-      "instants on {} mesh{}.",
-      quantity_text(run.step.p50_us, "us"), quantity_text(run.step.p999_us, "us"), quantity_text(wall_s, "s"),
-      result.instants.size(), result.levels.size(), result.levels.size() == 1 ? "" : "es");
+  return {.about = "Cost",
+          .detail = fmt::format("One step of the fast model takes {} (median; 99.9{}% of the steps below {}). The "
+                                "reference took {} for {} instants on {} mesh{}.",
+                                quantity_text(run.step.p50_us, "us"), no_break, quantity_text(run.step.p999_us, "us"),
+                                quantity_text(wall_s, "s"), result.instants.size(), result.levels.size(),
+                                result.levels.size() == 1 ? "" : "es")};
 }
 
 }  // namespace
@@ -276,22 +278,27 @@ std::optional<double> hertz_force_n(const scene::Scene& scene, double depth_m) {
 std::string reference_sentence(const reference::Result& result, const Errors& errors) {
   const std::optional<double> force = force_known_to(errors);
   const auto& shape = errors.shape_rel_l2.uncertainty;
-  std::string text = force && shape ? fmt::format("The reference knows its force to {} and its shape to {}.",
-                                                  percent_text(*force), percent_text(*shape))
-                     : errors.force_peak_reference_n == 0.0
-                         ? std::string()
-                         : "The reference's uncertainty is unknown. " + why_uncertainty_unknown(result);
-  if (!result.refinement.why_ended.empty()) {
-    text += fmt::format("{}Refinement ended: {}.", text.empty() ? "" : " ", result.refinement.why_ended);
+  if (errors.force_peak_reference_n > 0.0 && !(force && shape)) {
+    return "The reference's uncertainty is unknown. " + why_uncertainty_unknown(result);
+  }
+  std::string text;
+  if (force && shape) {
+    text = fmt::format("The reference's force is known to {}, its shape to {}.", percent_text(*force),
+                       percent_text(*shape));
+  }
+  if (const std::string& why = result.refinement.why_ended; !why.empty()) {
+    text += fmt::format("{}Refinement ended: {}.", text.empty() ? "" : " ", why);
   }
   return text;
 }
 
+std::string Reason::text() const { return brief + (brief.empty() || detail.empty() ? "" : " ") + detail; }
+
 Verdict verdict(const scene::Scene& scene, const fast::Run& run, const reference::Result& result, const Errors& errors,
                 const Call& call) {
   Verdict out;
-  const auto add = [&](std::string paragraph) {
-    if (!paragraph.empty()) out.reasons.push_back(std::move(paragraph));
+  const auto add = [&](Reason reason) {
+    if (!reason.text().empty()) out.reasons.push_back(std::move(reason));
   };
   if (errors.force_peak_reference_n == 0.0) {
     out.force = errors.depth_max_m == 0.0
@@ -304,13 +311,12 @@ Verdict verdict(const scene::Scene& scene, const fast::Run& run, const reference
   } else {
     out.force = force_sentence(errors);
     out.shape = shape_sentence(errors);
-    for (std::string& paragraph : status_paragraphs(scene, run)) add(std::move(paragraph));
-    add(reason_paragraph(scene, errors));
+    for (Reason& status : status_paragraphs(scene, run)) add(std::move(status));
+    add(cause_paragraph(scene, errors));
     add(force_paragraph(errors));
     add(friction_paragraph(errors));
     add(shape_paragraph(scene, run, result, errors));
-    const std::string known = reference_sentence(result, errors);
-    add(known.empty() ? known : "Reference. " + known);
+    add({.about = "Reference", .detail = reference_sentence(result, errors)});
     add(cost_paragraph(run, result));
   }
   out.next = next_steps(scene, run, result, errors, call);
@@ -318,16 +324,19 @@ Verdict verdict(const scene::Scene& scene, const fast::Run& run, const reference
 }
 
 std::string Verdict::text() const {
-  constexpr std::size_t columns = 80;
-  std::string out = wrapped(force, columns) + "\n\n";
-  if (!shape.empty()) out += wrapped(shape, columns) + "\n\n";
-  for (const std::string& paragraph : reasons) out += wrapped(paragraph, columns) + "\n\n";
-  for (const NextStep& step : next) {
-    out += wrapped("Next: " + step.why, columns) + "\n";
-    if (!step.command.empty()) out += "  " + step.command + "\n";
-    out += "\n";
+  constexpr std::size_t columns = 80, most_steps = 2;
+  std::string out = wrapped(force, columns) + "\n";
+  if (!shape.empty()) out += wrapped(shape, columns) + "\n";
+  for (const Reason& reason : reasons) {
+    if (!reason.brief.empty()) out += wrapped(reason.about + ": " + reason.brief, columns) + "\n";
   }
-  return out;
+  out += "\n";
+  for (std::size_t k = 0; k < std::min(most_steps, next.size()); ++k) {
+    out += wrapped("Next: " + next[k].why, columns) + "\n";
+    if (!next[k].command.empty()) out += "  " + next[k].command + "\n";
+  }
+  if (next.size() > most_steps) out += "More to do next is in the report.\n";
+  return next.empty() ? out : out + "\n";
 }
 
 }  // namespace touchstone::compare

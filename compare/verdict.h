@@ -15,12 +15,21 @@ namespace touchstone::compare {
 /// order of magnitude for the scene's material, not a reference.
 [[nodiscard]] std::optional<double> hertz_force_n(const scene::Scene& scene, double depth_m);
 
+/// One paragraph of an explanation.
+struct Reason {
+  std::string about;        ///< what it is about, "Force"
+  std::string brief = {};   ///< for terminal and page; may be empty
+  std::string detail = {};  ///< for the page alone; may be empty
+
+  [[nodiscard]] std::string text() const;  ///< brief and detail
+};
+
 struct Verdict {
-  std::string force, shape;          ///< with numbers, for who reads no further
-  std::vector<std::string> reasons;  ///< paragraphs: what limits each side, the most important first
+  std::string force, shape;     ///< with numbers, for who reads no further
+  std::vector<Reason> reasons;  ///< what limits each side, the most important first
   std::vector<NextStep> next;
 
-  /// For a terminal: wrapped, commands on lines of their own.
+  /// For a terminal of 80 columns: what is brief, and the first two of the next steps.
   [[nodiscard]] std::string text() const;
 };
 
@@ -28,7 +37,7 @@ struct Verdict {
 [[nodiscard]] Verdict verdict(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
                               const Errors& errors, const Call& call);
 
-/// How well the reference knows its own force and shape, a sentence; why, where it does not.
+/// How well the reference's force and shape are known, and why its refinement ended.
 [[nodiscard]] std::string reference_sentence(const reference::Result& result, const Errors& errors);
 
 }  // namespace touchstone::compare

@@ -89,14 +89,29 @@ TEST(NextSteps, AskForThreeMeshesWhereTheUncertaintyIsUnknown) {
   sides.call.reference = " --level 1";
   sides.result.levels.resize(1);
   sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
-  EXPECT_EQ(find(steps_of(sides), "enough meshes").command, "touchstone compare meshes/scenes/ball-on-cube-press.toml");
+  EXPECT_EQ(find(steps_of(sides), "three meshes").command, "touchstone compare meshes/scenes/ball-on-cube-press.toml");
+}
+
+TEST(NextSteps, DoNotAskForTimeWhereMemoryIsShort) {
+  testing::Sides sides = testing::pressed(5, 200);
+  sides.scene.reference.levels.reset();
+  sides.call.reference.clear();
+  sides.result.levels.resize(2);
+  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
+  sides.result.refinement.why_ended =
+      "there is no mesh 3: its 90000 unknowns would take about 2 h, more than the 1 h left";
+  EXPECT_THAT(find(steps_of(sides), "third mesh").command, HasSubstr(" --minutes "));
+  sides.result.refinement.why_ended =
+      "there is no mesh 3: its 90000 unknowns would take about 31 GiB of memory, more than 19 GiB";
+  EXPECT_EQ(find(steps_of(sides), "--minutes").command, "");
+  EXPECT_THAT(find(steps_of(sides), "--memory-gib").why, HasSubstr("reference.element_size_m"));
 }
 
 TEST(NextSteps, NameTheStudyThatTrainsOnTheScene) {
   const testing::TemporaryFolder folder;
   testing::Sides sides = really_run();
   sides.call.scene_file = folder.path() / "ball-on-cube-press.toml";
-  EXPECT_THAT(find(steps_of(sides), "Tune").why, HasSubstr("write a study"));
+  EXPECT_THAT(find(steps_of(sides), "Tune").why, HasSubstr("a study of this scene"));
   sides.call.scene_file = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/ball-on-cube-press.toml";
   EXPECT_THAT(find(steps_of(sides), "Tune").command, ::testing::EndsWith("/meshes/studies/ball-on-cube.toml"));
   sides.call.parameters = "tuned.toml";

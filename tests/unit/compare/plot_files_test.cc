@@ -1,6 +1,7 @@
 #include "compare/plot_files.h"
 
 #include "compare/compare.h"
+#include "compare/comparison_drawings.h"
 #include "scene/files.h"
 #include "synthetic.h"
 #include "temporary_folder.h"
@@ -8,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 namespace touchstone::compare {
@@ -37,6 +39,33 @@ TEST(PlotFiles, EveryPlotOfTheReportIsSavedWhenAsked) {
             (std::set<std::string>{"bodies", "force-error", "force-logarithmic", "force-over-depth", "force-over-time",
                                    "section", "section-contact", "shape-error", "shape-largest-error"}));
   EXPECT_EQ(pdf, has_pdf() ? svg : std::set<std::string>{});
+}
+
+TEST(PlotFiles, OldOnesGoAndOtherFilesStay) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path plots = folder.path() / "plots";
+  std::filesystem::create_directories(plots);
+  for (const char* name : {"friction.svg", "friction.pdf", "my-own.svg"}) scene::write_file(plots / name, "old");
+  const testing::Sides sides = testing::pressed(4, 200);
+  (void)write_comparison(folder.path(), sides.scene, sides.run, sides.result, sides.manifest, {}, true);
+  EXPECT_FALSE(std::filesystem::exists(plots / "friction.svg"));
+  EXPECT_FALSE(std::filesystem::exists(plots / "friction.pdf"));
+  EXPECT_TRUE(std::filesystem::exists(plots / "force-over-depth.svg"));
+  EXPECT_EQ(scene::read_file(plots / "my-own.svg"), "old");
+}
+
+TEST(PlotFiles, EveryNameOfADrawingIsKnown) {
+  testing::Sides sides = testing::pressed(4, 200);
+  sides.scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
+  const Errors errors = compute_errors(sides.scene, sides.run, sides.result);
+  std::vector<std::string> found;
+  for (const Drawing& drawing : comparison_drawings(sides.scene, sides.run, sides.result, errors).all()) {
+    found.push_back(drawing.name);
+  }
+  std::vector<std::string> known = ComparisonDrawings::names();
+  std::sort(found.begin(), found.end());
+  std::sort(known.begin(), known.end());
+  EXPECT_EQ(found, known);
 }
 
 TEST(PlotFiles, PdfIsVectorsWithEmbeddedFontsInTheDrawingsSize) {

@@ -113,6 +113,33 @@ TEST(Report, OfOneMeshSaysThatAnUncertaintyNeedsThree) {
   EXPECT_TRUE(has(report_of(sides), "It was solved on one mesh, and an uncertainty needs three."));
 }
 
+/// The text below the first plot of this title.
+std::string caption_of(const std::string& html, const std::string& title) {
+  const std::size_t from = html.find("<figcaption>", html.find("<title>" + title + "</title>"));
+  return html.substr(from, html.find("</figcaption>", from) - from);
+}
+
+TEST(Report, CaptionOfTheForceSaysWhyAnUncertaintyIsUnknown) {
+  testing::Sides sides = testing::pressed(5, 600);
+  sides.result.levels.resize(2);
+  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
+  sides.result.refinement.why_ended = "there is no mesh 3: it would take about 31 GiB of memory";
+  EXPECT_EQ(caption_of(report_of(sides), "Force over depth"),
+            "<figcaption>The reference's uncertainty is unknown, so no band is drawn. It was solved on two meshes, and "
+            "an uncertainty needs three. Refinement ended: there is no mesh 3: it would take about 31 GiB of memory.");
+}
+
+TEST(Report, CaptionOfTheForceSaysWhyTheErrorAskedForWasNotReached) {
+  testing::Sides sides = testing::pressed(5, 600);
+  sides.result.refinement.error_asked = 0.001;
+  sides.result.refinement.why_ended = "there is no mesh 4: it would take 3 h";
+  EXPECT_TRUE(
+      has(caption_of(report_of(sides), "Force over depth"),
+          "An uncertainty of 0.1\u00a0% was asked for and not reached: there is no mesh 4: it would take 3 h."));
+  sides.result.refinement.error_asked = 0.5;
+  EXPECT_FALSE(has(report_of(sides), "not reached"));
+}
+
 TEST(Report, CaptionOfTheForceFollowsTheBand) {
   testing::Sides sides = testing::pressed(5, 600);
   sides.result.force_uncertainty_n.assign(5, 20.0);
@@ -136,7 +163,7 @@ TEST(Report, BeginsWithCardsTwoSentencesForceAndBodiesAndFoldsTheRest) {
     from = html.find(part, from);
     ASSERT_NE(from, std::string::npos) << part;
   }
-  for (const char* folded : {"All figures", "Every instant in numbers", "The scene, every value in force"}) {
+  for (const char* folded : {"All figures", "Every instant", "Settings"}) {
     EXPECT_TRUE(has(html, std::string("<summary><h2>") + folded + "</h2></summary>")) << folded;
     EXPECT_EQ(html.find(std::string("<h2>") + folded), html.rfind(std::string("<h2>") + folded));
   }
@@ -147,6 +174,22 @@ TEST(Report, BeginsWithCardsTwoSentencesForceAndBodiesAndFoldsTheRest) {
     EXPECT_TRUE(has(html, "id=\"" + (*it)[1].str() + "\"")) << (*it)[1];
   }
   EXPECT_GE(links, 8);
+}
+
+TEST(Report, ShowsItsOwnCommandAboveTheContents) {
+  testing::Sides sides = testing::pressed(5, 600);
+  EXPECT_FALSE(has(markup_of(report_of(sides)), "class=\"command\""));
+  sides.manifest.entries.emplace_back("command_line", "touchstone compare a.toml --level 2");
+  const std::string html = report_of(sides);
+  EXPECT_LT(html.find("<code>touchstone compare a.toml --level 2</code>"), html.find("<nav>"));
+}
+
+TEST(Report, CardOfTheReferenceGivesTheUncertaintyOfForceAndShape) {
+  const testing::Sides sides = testing::pressed(5, 600);
+  const std::string html = report_of(sides);
+  const std::size_t card = html.find("<span>Reference's uncertainty</span><b>2\u00a0%</b><span>of the force; shape ");
+  ASSERT_NE(card, std::string::npos);
+  EXPECT_LT(card, html.find("class=\"lead\""));
 }
 
 TEST(Report, GivesTheCommandToTypeNext) {

@@ -23,6 +23,14 @@ TEST(Text, NumbersHaveThreeDigits) {
   EXPECT_EQ(number_text(169.74, 5), "169.74");
 }
 
+TEST(Text, MeasuredNumbersHaveFourDigitsAtMostAndCountsAll) {
+  EXPECT_EQ(number_text(23208.0), "23\u2009208");
+  EXPECT_EQ(number_text(23208.4), "23\u2009210");
+  EXPECT_EQ(number_text(-123456.7), "−123\u2009500");
+  EXPECT_EQ(percent_text(456.7891), "45\u2009680" + gap + "%");
+  EXPECT_EQ(number_text(1234.5), "1234");
+}
+
 TEST(Text, WhatIsNotFiniteIsSaid) {
   EXPECT_EQ(number_text(std::numeric_limits<double>::quiet_NaN()), "not finite");
   EXPECT_EQ(percent_text(std::numeric_limits<double>::infinity()), "not finite");

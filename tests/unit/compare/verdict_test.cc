@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -18,7 +19,7 @@ std::string told(const testing::Sides& sides) {
   const Errors errors = compute_errors(sides.scene, sides.run, sides.result);
   const Verdict all = verdict(sides.scene, sides.run, sides.result, errors, {});
   std::string text = all.force + "\n" + all.shape + "\n";
-  for (const std::string& paragraph : all.reasons) text += paragraph + "\n";
+  for (const Reason& reason : all.reasons) text += reason.about + ": " + reason.text() + "\n";
   for (std::size_t at = text.find("\u00a0"); at != std::string::npos; at = text.find("\u00a0"))
     text.replace(at, 2, " ");
   return text;
@@ -56,11 +57,11 @@ TEST(Verdict, SaysHowWrongTheForceIsAndWhy) {
                    "The fast model's force at the deepest instant (5 mm deep) is 77.8 % too low: 37.7 N against the "
                    "reference's 170 N ± 3 N."))
       << text;
-  EXPECT_TRUE(says(text, "the contact constants do not describe the material")) << text;
+  EXPECT_TRUE(says(text, "Likely cause: The contact constants do not describe the material")) << text;
   EXPECT_TRUE(says(text, "gives 37.7 N at D = 5 mm")) << text;
-  EXPECT_TRUE(says(text, "gives about 189 N")) << text;
+  EXPECT_TRUE(says(text, "Hertz's formula about 189 N.")) << text;
   EXPECT_TRUE(says(text, "the paper's Table I for rubber")) << text;
-  EXPECT_TRUE(says(text, "No single factor would put it right")) << text;
+  EXPECT_TRUE(says(text, "no single factor would put it right")) << text;
   EXPECT_TRUE(says(text, "The reference took 5.32 min for 23 instants on 3 meshes")) << text;
 }
 
@@ -86,7 +87,7 @@ TEST(Verdict, OtherConstantsAreNotCalledThePapers) {
   testing::Sides sides = testing::pressed(5, 200);
   sides.scene.contact.k1_n_per_m = 41.0;
   const std::string text = told(sides);
-  EXPECT_TRUE(says(text, "Reason")) << text;
+  EXPECT_TRUE(says(text, "Likely cause")) << text;
   EXPECT_FALSE(says(text, "Table I")) << text;
 }
 
@@ -101,7 +102,7 @@ TEST(Verdict, CallsAnErrorWithinTheBandNotDistinguishable) {
   EXPECT_TRUE(says(text, "is not distinguishable from the reference's")) << text;
   EXPECT_TRUE(says(text, "The deformed shapes are not distinguishable")) << text;
   EXPECT_FALSE(says(text, "too high")) << text;
-  EXPECT_FALSE(says(text, "Reason")) << text;
+  EXPECT_FALSE(says(text, "Likely cause")) << text;
 }
 
 TEST(Verdict, DoesNotTakeAnUnknownBandForAnExcuse) {
@@ -143,7 +144,7 @@ TEST(Verdict, SaysWhenTheForceIsLessThanTheLawAtTheDepth) {
   testing::Sides sides = testing::pressed(5, 200);
   EXPECT_FALSE(says(told(sides), "mean depth")) << told(sides);
   set_force(sides.run.instants[4], scene::Vec3(0.0, 0.0, 17.5));
-  EXPECT_TRUE(says(told(sides), "The model's 17.5 N are less than the law's")) << told(sides);
+  EXPECT_TRUE(says(told(sides), "The model's force of 17.5 N is less than the law's")) << told(sides);
 }
 
 TEST(Verdict, SaysWhenTheShapeIsWorseThanNoDeformation) {
@@ -161,7 +162,7 @@ TEST(Verdict, SaysWhenTheShapeIsWorseThanNoDeformation) {
 
 TEST(Verdict, PassesOnWhatTheFastModelSaysOfItsSteps) {
   testing::Sides sides = testing::pressed(5, 200);
-  EXPECT_FALSE(says(told(sides), "Status.")) << told(sides);
+  EXPECT_FALSE(says(told(sides), "Status:")) << told(sides);
   for (const auto& [bit, words] : {std::pair(fast::StepStatus::not_finite, "were not finite numbers"),
                                    std::pair(fast::StepStatus::depth_limited, "half of the body's thickness"),
                                    std::pair(fast::StepStatus::law_saturated, "past its peak"),
@@ -174,7 +175,7 @@ TEST(Verdict, PassesOnWhatTheFastModelSaysOfItsSteps) {
 
 TEST(Verdict, TellsOfFrictionWhereThereIsSome) {
   testing::Sides sides = testing::pressed(5, 200);
-  EXPECT_FALSE(says(told(sides), "Friction.")) << told(sides);
+  EXPECT_FALSE(says(told(sides), "Friction:")) << told(sides);
   sides.scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
   for (std::size_t t = 1; t < 5; ++t) {
     if (sides.result.instants[t].regions.empty()) continue;
@@ -183,16 +184,31 @@ TEST(Verdict, TellsOfFrictionWhereThereIsSome) {
     sides.run.instants[t].regions[0].friction_n = scene::Vec3(-5.0, 0.0, 0.0);
   }
   const std::string text = told(sides);
-  EXPECT_TRUE(says(text, "Friction. The error is ")) << text;
+  EXPECT_TRUE(says(text, "Friction: The error is ")) << text;
   EXPECT_TRUE(says(text, "of the reference's peak friction")) << text;
-  EXPECT_TRUE(says(text, "The fast model never slides, the reference slides from ")) << text;
+  EXPECT_TRUE(says(text, "The fast model never slides, the reference slides after ")) << text;
+  for (std::size_t t = 1; t < 5; ++t) {
+    if (!sides.run.instants[t].regions.empty()) sides.run.instants[t].regions[0].sliding = true;
+  }
+  EXPECT_TRUE(says(told(sides), "Sliding begins after ")) << told(sides);
 }
 
 TEST(Verdict, SaysWhyRefinementEnded) {
   testing::Sides sides = testing::pressed(5, 200);
   sides.result.refinement.why_ended = "there is no level 4: the time was up";
-  EXPECT_TRUE(says(told(sides), "The reference knows its force to 2 %")) << told(sides);
+  EXPECT_TRUE(says(told(sides), "The reference's force is known to 2 %, its shape to ")) << told(sides);
   EXPECT_TRUE(says(told(sides), "Refinement ended: there is no level 4: the time was up.")) << told(sides);
+}
+
+TEST(Verdict, SaysOnceThatAnUncertaintyNeedsThreeMeshes) {
+  testing::Sides sides = testing::pressed(5, 200);
+  sides.result.levels.resize(1);
+  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
+  sides.result.refinement.why_ended = "1 mesh was asked for; an uncertainty needs 3";
+  EXPECT_TRUE(says(told(sides),
+                   "Reference: The reference's uncertainty is unknown. Refinement ended: 1 mesh was asked for; an "
+                   "uncertainty needs 3.\n"))
+      << told(sides);
 }
 
 TEST(Verdict, GivesABandOneDigitAndTheForceFourAtMost) {
@@ -206,9 +222,29 @@ TEST(Verdict, GivesABandOneDigitAndTheForceFourAtMost) {
 TEST(Verdict, IsWrappedForATerminalWithCommandsOnLinesOfTheirOwn) {
   Verdict all;
   all.force = std::string(50, 'a') + " " + std::string(50, 'b');
+  all.reasons = {{"Status", "Held.", "At length."}, {.about = "Cost", .detail = "Much."}};
   all.next = {{"Tune it.", "touchstone tune " + std::string(90, 'c')}};
-  EXPECT_EQ(all.text(), std::string(50, 'a') + "\n" + std::string(50, 'b') + "\n\nNext: Tune it.\n  touchstone tune " +
-                            std::string(90, 'c') + "\n\n");
+  EXPECT_EQ(all.text(), std::string(50, 'a') + "\n" + std::string(50, 'b') +
+                            "\nStatus: Held.\n\nNext: Tune it.\n  touchstone tune " + std::string(90, 'c') + "\n\n");
+  all.next.resize(3, all.next.front());
+  EXPECT_TRUE(all.text().ends_with("\nMore to do next is in the report.\n\n"));
+}
+
+TEST(Verdict, IsShortOnATerminal) {
+  testing::Sides sides = testing::pressed(23, 200);
+  sides.run.status = static_cast<std::uint32_t>(fast::StepStatus::anchors_limited);
+  sides.result.force_uncertainty_n.assign(23, std::numeric_limits<double>::quiet_NaN());
+  sides.scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
+  for (std::size_t t = 1; t < 23; ++t) {
+    if (!sides.result.instants[t].regions.empty())
+      sides.result.instants[t].regions[0].friction_n = scene::Vec3(-10.0, 0.0, 0.0);
+  }
+  const Verdict all =
+      verdict(sides.scene, sides.run, sides.result, compute_errors(sides.scene, sides.run, sides.result), sides.call);
+  const std::string text = all.text();
+  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 20) << text;
+  for (const char* part : {"Status: ", "Likely cause: ", "Friction: ", "Next: "}) EXPECT_TRUE(says(text, part)) << part;
+  EXPECT_FALSE(says(text, "Cost: ")) << text;
 }
 
 TEST(Verdict, WithoutContactSaysSo) {
