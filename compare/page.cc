@@ -167,13 +167,16 @@ std::string plan_table(const scene::Plan& plan) {
 
 std::string contents(const std::vector<Section>& sections) {
   std::string out = "<nav>";
-  for (const Section& one : sections) out += tag("a", one.title, fmt::format("href=\"#{}\"", slug(one.title))) + " ";
+  for (const Section& one : sections) {
+    if (!one.body.empty()) out += tag("a", one.title, fmt::format("href=\"#{}\"", slug(one.title))) + " ";
+  }
   return out + "</nav>\n";
 }
 
 std::string in_order(const std::vector<Section>& sections) {
   std::string out;
   for (const Section& one : sections) {
+    if (one.body.empty()) continue;
     // The link of a folded part leads to what is folded, so that a browser opens it.
     out += one.folded
                ? fmt::format("<section>\n<details>\n<summary>{}</summary>\n<div id=\"{}\">\n{}</div>\n</details>\n",

@@ -34,8 +34,9 @@ struct Section {
   bool folded = false;  ///< the reader opens it
 };
 
-/// Links to all parts, one line.
+/// Links to all parts, one line. A part without a body is left out, here and in in_order().
 [[nodiscard]] std::string contents(const std::vector<Section>& sections);
+/// The parts themselves.
 [[nodiscard]] std::string in_order(const std::vector<Section>& sections);
 
 /// @param beside  what else the folder holds, a sentence

@@ -1,3 +1,4 @@
+#include "compare/page.h"
 #include "compare/report.h"
 
 #include "compare/figures.h"
@@ -217,6 +218,13 @@ TEST(Report, OfATrackWithoutContactIsStillWhole) {
   EXPECT_FALSE(testing::shows_not_a_number(markup_of(html)));
   EXPECT_TRUE(has(html, "never touches the body"));
   EXPECT_TRUE(has(html, "Figures that have no meaning in this scene are left out"));
+}
+
+TEST(Page, LeavesOutAPartWithoutContent) {
+  const std::vector<Section> sections = {{"Why", "<p>x</p>"}, {"What to do next", ""}};
+  EXPECT_EQ(contents(sections).find("What to do next"), std::string::npos);
+  EXPECT_EQ(in_order(sections).find("What to do next"), std::string::npos);
+  EXPECT_NE(in_order(sections).find("Why"), std::string::npos);
 }
 
 }  // namespace
