@@ -246,7 +246,6 @@ TEST(SvgPlot, HiddenMarkersTellTheirValuesAndAreNotSeen) {
   Plot plot = line({0, 1, 2}, {0, 10, 40});
   plot.curves[0].hidden_markers = true;
   const std::string svg = to_svg(plot);
-  EXPECT_TRUE(circles(svg).size() == 3);
   EXPECT_EQ(count(svg, "fill=\"none\" pointer-events=\"all\"><title>one | "), 3u);
   EXPECT_EQ(count(svg, "<circle"), 3u);  // none in the legend
 }
