@@ -167,7 +167,6 @@ Sides pressed_by_mallet(const std::filesystem::path& folder, int instants) {
   sides.scene.compare.instants = ball.compare.instants;
   sides.scene.fast.triangles = ball.fast.triangles;
   sides.scene.fast.rate_hz = 50.0;
-  sides.manifest = scene::make_manifest(sides.scene, "touchstone compare");
   // The ball's centre is 10 mm above its lowest point, the mallet's 23.566 mm.
   constexpr double higher_m = 0.013566;
   for (scene::Waypoint& waypoint : sides.scene.track) waypoint.pose.position_m.z() += higher_m;
@@ -176,6 +175,7 @@ Sides pressed_by_mallet(const std::filesystem::path& folder, int instants) {
       record->tool.position_m.z() += higher_m;
     }
   }
+  sides.manifest = scene::make_manifest(sides.scene, "touchstone compare");
   return sides;
 }
 
