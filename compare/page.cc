@@ -56,7 +56,7 @@ svg [stroke="#2e8b57"] { stroke: var(--third); } svg [fill="#2e8b57"] { fill: va
 table { border-collapse: collapse; width: 100%; font-size: .9rem; margin: .8rem 0; }
 th, td { text-align: left; vertical-align: top; padding: .38rem .7rem .38rem 0; border-bottom: 1px solid var(--line); }
 th { font-weight: 600; } td.n, th.n { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
-td.t { text-align: right; } th.wrap { text-align: right; vertical-align: bottom; } .under { display: block; color: var(--dim); }
+th.n { white-space: normal; vertical-align: bottom; } td.t { text-align: right; } th.wrap { text-align: right; vertical-align: bottom; } .under { display: block; color: var(--dim); }
 td.any { overflow-wrap: anywhere; }
 a { color: var(--reference); } img { max-width: 100%; height: auto; background: #fff; border-radius: 8px; }
 tr.group th { padding-top: 1.1rem; font-size: 1rem; }
@@ -75,6 +75,8 @@ summary { cursor: pointer; font-weight: 600; } summary h2 { display: inline; } d
   .screen, nav, .tip { display: none; } .first { grid-template-columns: 1fr; } .bodies { grid-template-columns: repeat(3, 1fr); }
   body { max-width: none; padding: 0; font-size: 10.5pt; } figure, tr, .tile, .bodies svg { break-inside: avoid; }
   .plots { grid-template-columns: 1fr 1fr; } .tiles { grid-template-columns: repeat(auto-fit, minmax(120px, 1fr)); }
+  .tile { padding: .5rem .7rem; } .tile b { font-size: 1.15rem; } table { font-size: .8rem; } .scroll { overflow: visible; }
+  section:has(> details:not([open])) { display: none; }
   h2, h3 { break-after: avoid; } body > section { margin-top: 1.2rem; padding-top: .6rem; }
 }
 )";

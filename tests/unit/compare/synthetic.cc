@@ -154,15 +154,6 @@ Sides pressed(int instants, int triangles) {
   return sides;
 }
 
-std::string report_of(const Sides& sides) {
-  const Errors errors = compute_errors(sides.scene, sides.run, sides.result);
-  const scene::Figures figures = make_figures(errors, sides.run, sides.result);
-  const Verdict told = verdict(sides.scene, sides.run, sides.result, errors, sides.call);
-  const ComparisonDrawings drawings = comparison_drawings(sides.scene, sides.run, sides.result, errors);
-  return report_html(
-      {sides.scene, sides.run, sides.result, errors, figures, told, drawings, sides.plans, sides.manifest});
-}
-
 Sides pressed_by_mallet(const std::filesystem::path& folder, int instants) {
   const std::filesystem::path source = TOUCHSTONE_SOURCE_DIR "/meshes";
   std::filesystem::create_directories(folder / "scenes");
