@@ -70,6 +70,9 @@ summary { cursor: pointer; font-weight: 600; } summary h2 { display: inline; } d
   body { padding: 1rem .9rem 3rem; } h1 { font-size: 1.35rem; } .lead, .verdict p:first-child { font-size: 1.02rem; }
   .tiles { grid-template-columns: 1fr 1fr; gap: .5rem; } .tile { padding: .5rem .7rem; } .tile b { font-size: 1.2rem; }
   .tile:last-child:nth-child(odd) { grid-column: 1 / -1; }
+  .plan tr { display: grid; grid-template-columns: 1fr auto; padding: .4rem 0; border-bottom: 1px solid var(--line); }
+  .plan tr:first-child { display: none; } .plan td { border: 0; padding: .1rem 0; }
+  .plan td:first-child { font-weight: 600; } .plan td:nth-child(n+3) { grid-column: 1 / -1; } .plan td:nth-child(4) { color: var(--dim); }
 }
 @media print {
   .screen, nav, .tip { display: none; } .first { grid-template-columns: 1fr; } .bodies { grid-template-columns: repeat(3, 1fr); }
@@ -157,7 +160,8 @@ std::string tile(const std::string& what, const std::string& number, const std::
 std::string scene_title(const scene::Scene& scene) { return scene.title.empty() ? scene.name : scene.title; }
 
 std::string plan_table(const scene::Plan& plan) {
-  std::string out = "<div class=\"scroll\"><table>\n<tr><th>Part</th><th></th><th>Why</th><th>Cost</th></tr>\n";
+  std::string out =
+      "<div class=\"scroll\"><table class=\"plan\">\n<tr><th>Part</th><th></th><th>Why</th><th>Cost</th></tr>\n";
   for (const scene::PlanLine& line : plan) {
     out += "<tr>" + cell(line.part) + cell(line.modelled ? "modelled" : "left out") + cell(line.reason) +
            cell(line.cost) + "</tr>\n";
