@@ -214,7 +214,10 @@ std::string slip_text(const Errors& errors) {
 ComparisonDrawings comparison_drawings(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
                                        const Errors& errors) {
   const Abscissa depth = depth_of(errors), time = time_of(errors);
-  const bool only_deeper = std::is_sorted(depth.values.begin(), depth.values.end());
+  // Instants at one depth would stand above each other.
+  const bool only_deeper = std::adjacent_find(depth.values.begin(), depth.values.end(), [](double before, double now) {
+                             return now > 0.0 ? now < before * (1.0 + 1e-6) : now < before;
+                           }) == depth.values.end();
   const Abscissa &first = only_deeper ? depth : time, &second = only_deeper ? time : depth;
   const auto force_over = [&](const Abscissa& x) {
     const Plot plot = force_plot(errors, x);

@@ -56,7 +56,7 @@ svg [stroke="#2e8b57"] { stroke: var(--third); } svg [fill="#2e8b57"] { fill: va
 table { border-collapse: collapse; width: 100%; font-size: .9rem; margin: .8rem 0; }
 th, td { text-align: left; vertical-align: top; padding: .38rem .7rem .38rem 0; border-bottom: 1px solid var(--line); }
 th { font-weight: 600; } td.n, th.n { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
-td.t { text-align: right; } th.wrap { text-align: right; vertical-align: bottom; } .under { display: block; color: var(--dim); }
+th.n { white-space: normal; vertical-align: bottom; } td.t { text-align: right; } th.wrap { text-align: right; vertical-align: bottom; } .under { display: block; color: var(--dim); }
 td.any { overflow-wrap: anywhere; }
 a { color: var(--reference); } img { max-width: 100%; height: auto; background: #fff; border-radius: 8px; }
 tr.group th { padding-top: 1.1rem; font-size: 1rem; }
@@ -70,11 +70,16 @@ summary { cursor: pointer; font-weight: 600; } summary h2 { display: inline; } d
   body { padding: 1rem .9rem 3rem; } h1 { font-size: 1.35rem; } .lead, .verdict p:first-child { font-size: 1.02rem; }
   .tiles { grid-template-columns: 1fr 1fr; gap: .5rem; } .tile { padding: .5rem .7rem; } .tile b { font-size: 1.2rem; }
   .tile:last-child:nth-child(odd) { grid-column: 1 / -1; }
+  .plan tr { display: grid; grid-template-columns: 1fr auto; padding: .4rem 0; border-bottom: 1px solid var(--line); }
+  .plan tr:first-child { display: none; } .plan td { border: 0; padding: .1rem 0; }
+  .plan td:first-child { font-weight: 600; } .plan td:nth-child(n+3) { grid-column: 1 / -1; } .plan td:nth-child(4) { color: var(--dim); }
 }
 @media print {
   .screen, nav, .tip { display: none; } .first { grid-template-columns: 1fr; } .bodies { grid-template-columns: repeat(3, 1fr); }
   body { max-width: none; padding: 0; font-size: 10.5pt; } figure, tr, .tile, .bodies svg { break-inside: avoid; }
   .plots { grid-template-columns: 1fr 1fr; } .tiles { grid-template-columns: repeat(auto-fit, minmax(120px, 1fr)); }
+  .tile { padding: .5rem .7rem; } .tile b { font-size: 1.15rem; } table { font-size: .8rem; } .scroll { overflow: visible; }
+  section:has(> details:not([open])) { display: none; }
   h2, h3 { break-after: avoid; } body > section { margin-top: 1.2rem; padding-top: .6rem; }
 }
 )";
@@ -157,7 +162,8 @@ std::string tile(const std::string& what, const std::string& number, const std::
 std::string scene_title(const scene::Scene& scene) { return scene.title.empty() ? scene.name : scene.title; }
 
 std::string plan_table(const scene::Plan& plan) {
-  std::string out = "<div class=\"scroll\"><table>\n<tr><th>Part</th><th></th><th>Why</th><th>Cost</th></tr>\n";
+  std::string out =
+      "<div class=\"scroll\"><table class=\"plan\">\n<tr><th>Part</th><th></th><th>Why</th><th>Cost</th></tr>\n";
   for (const scene::PlanLine& line : plan) {
     out += "<tr>" + cell(line.part) + cell(line.modelled ? "modelled" : "left out") + cell(line.reason) +
            cell(line.cost) + "</tr>\n";

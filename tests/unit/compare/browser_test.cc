@@ -500,6 +500,9 @@ TEST(ReportInChromium, LeavesPaperToTheStillPicture) {
   EXPECT_FALSE(print["sentence"]);
   EXPECT_THAT(print["headings"].get<std::vector<std::string>>(),
               ::testing::Not(::testing::Contains("Both bodies in space")));
+  // What is folded would be a heading without a body.
+  EXPECT_THAT(print["headings"].get<std::vector<std::string>>(),
+              ::testing::AllOf(::testing::Contains("Why"), ::testing::Not(::testing::Contains("All figures"))));
   EXPECT_THAT(print["stills"].get<std::vector<std::string>>(), ::testing::Contains(still));
 }
 

@@ -149,6 +149,15 @@ TEST(Report, CaptionOfTheForceFollowsTheBand) {
   EXPECT_TRUE(has(report_of(sides), "is narrower than its line."));
 }
 
+TEST(Report, DrawsOverTimeWhereADepthIsHeld) {
+  testing::Sides sides = testing::pressed(5, 600);
+  EXPECT_LT(report_of(sides).find("<title>Force over depth</title>"),
+            report_of(sides).find("<title>Force over time</title>"));
+  sides.result.instants[4].depth_m = sides.result.instants[3].depth_m;
+  EXPECT_LT(report_of(sides).find("<title>Force over time</title>"),
+            report_of(sides).find("<title>Force over depth</title>"));
+}
+
 TEST(Report, SaysAboveTheFoldWhyRefinementEnded) {
   testing::Sides sides = testing::pressed(5, 600);
   sides.result.refinement.why_ended = "there is no level 4: the time was up";
