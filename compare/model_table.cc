@@ -132,17 +132,18 @@ std::string model_table_html(const std::vector<JudgedModel>& models) {
 }
 
 scene::Figures model_figures(const std::vector<JudgedModel>& models) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   scene::Figures out;
   for (const JudgedModel& model : models) {
-    const auto add = [&](const char* key, double value, const char* unit) {
-      out.push_back({"model." + model.key + "." + key, value, "", unit});
+    const auto add = [&](const char* key, const std::optional<double>& value, const char* why_not) {
+      const double number = value.value_or(std::numeric_limits<double>::quiet_NaN());
+      out.push_back({"model." + model.key + "." + key, number, value ? "" : why_not, ""});
     };
-    add("force.nrmse", model.force_nrmse.value.value_or(unknown), "");
-    add("force.nrmse_uncertainty", model.force_nrmse.uncertainty.value_or(unknown), "");
-    add("shape.rel_l2", model.shape_rel_l2.value.value_or(unknown), "");
-    add("shape.rel_l2_uncertainty", model.shape_rel_l2.uncertainty.value_or(unknown), "");
-    add("step_us.p50", model.step_p50_us, "us");
+    const char* none = "undefined: the reference is never in contact";
+    add("force.nrmse", model.force_nrmse.value, none);
+    add("force.nrmse_uncertainty", model.force_nrmse.uncertainty, "unknown");
+    add("shape.rel_l2", model.shape_rel_l2.value, none);
+    add("shape.rel_l2_uncertainty", model.shape_rel_l2.uncertainty, "unknown");
+    out.push_back({"model." + model.key + ".step_us.p50", model.step_p50_us, "", "us"});
   }
   return out;
 }

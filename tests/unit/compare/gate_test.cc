@@ -247,7 +247,9 @@ TEST(GateReport, SaysWhyAndCounts) {
   EXPECT_THAT(text, HasSubstr("there is no figure force.nrmse"));
   EXPECT_THAT(text, HasSubstr("40 %"));
   for (const scene::Figure& figure : gate_report_figures(records, {})) {
-    if (figure.key == "gate.red") EXPECT_EQ(figure.number, 2.0);
+    if (figure.key == "gate.red") {
+      EXPECT_EQ(figure.number, 2.0);
+    }
   }
 }
 

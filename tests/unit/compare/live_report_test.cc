@@ -166,7 +166,7 @@ TEST(LiveReport, NamesDeviceRateLimitsAndCommand) {
   EXPECT_THAT(page, HasSubstr("1000\u00a0Hz, a period of 1\u00a0ms"));
   EXPECT_THAT(page, HasSubstr("<th>fastest change of force</th><td>500\u00a0N/s</td>"));
   EXPECT_THAT(page, HasSubstr("falls to zero in 50\u00a0ms"));
-  EXPECT_THAT(page, HasSubstr("<td>touchstone live ball.toml --device hand</td>"));
+  EXPECT_THAT(page, HasSubstr(">touchstone live ball.toml --device hand</td>"));
   options.device = live::DeviceKind::replay;
   options.log = "earlier/live.csv";
   EXPECT_THAT(html(two_seconds(), options), HasSubstr("<th>log played</th><td>earlier/live.csv</td>"));

@@ -94,6 +94,7 @@ TEST(ModelFigures, HaveAKeyPerModel) {
   EXPECT_EQ(figures[0].key, "model.paper.force.nrmse");
   EXPECT_EQ(figures[0].number, 0.482);
   EXPECT_TRUE(std::isnan(figures[3].number)) << "an unknown uncertainty";
+  EXPECT_EQ(figures[3].text, "unknown");
   EXPECT_EQ(figures[4].unit, "us");
 }
 
