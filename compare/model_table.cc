@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view reading_note =
     "Force error: root mean square over the track, relative to the largest force. Shape error: relative to the "
-    "displacement; a body that never moves would have 100 %.";
+    "displacement; a body that never moves would have 100 %. <: below the reference's uncertainty.";
 
 bool same_model(const scene::Scene& a, const scene::Scene& b) {
   return a.fast.formulation == b.fast.formulation && a.contact.law == b.contact.law &&
@@ -24,21 +24,22 @@ bool same_model(const scene::Scene& a, const scene::Scene& b) {
          a.contact.k1_per_radius_n_per_m2 == b.contact.k1_per_radius_n_per_m2;
 }
 
-std::string name_of(const scene::Scene& scene) {
-  return fmt::format("{} law, {} skeleton", scene.contact.law == scene::ContactLaw::duffing ? "Duffing" : "area-aware",
+std::string method_of(const scene::Scene& scene) {
+  return fmt::format("{}, {}", scene.contact.law == scene::ContactLaw::duffing ? "Duffing" : "area-aware",
                      scene.fast.formulation == scene::Formulation::published ? "published" : "corrected");
 }
 
+/// What lies below the reference's uncertainty is not known any better than that.
 std::string error_text(const Measure& error) {
   if (!error.value) return "–";
-  return percent_text(*error.value) + (error.distinguishable() ? "" : ", within the uncertainty");
+  return error.distinguishable() ? percent_text(*error.value) : "< " + percent_text(*error.uncertainty);
 }
 
-JudgedModel judged_model(std::string key, const scene::Scene& scene, std::string constants, const fast::Run& run,
+JudgedModel judged_model(std::string key, std::string name, const scene::Scene& scene, const fast::Run& run,
                          const Errors& errors) {
   return {.key = std::move(key),
-          .name = name_of(scene),
-          .constants = std::move(constants),
+          .name = std::move(name),
+          .method = method_of(scene),
           .force_nrmse = errors.force_nrmse,
           .shape_rel_l2 = errors.shape_rel_l2,
           .step_p50_us = run.step.p50_us,
@@ -74,15 +75,14 @@ std::vector<JudgedModel> judge_models(const scene::Scene& given, const scene::Sc
                                       const Errors& errors, const reference::Result& result, const std::string& tuned) {
   const bool duffing = given.contact.law == scene::ContactLaw::duffing;
   struct Candidate {
-    std::string key;
+    std::string key, name;
     scene::Scene scene;
-    std::string constants;
   };
   std::vector<Candidate> candidates;
-  if (duffing) candidates.push_back({"paper", as_printed(given), "of the scene"});
-  candidates.push_back({"area_aware", with_untuned_area_law(as_printed(given)), "of the material, nothing tuned"});
-  candidates.push_back({"scene", given, "of the scene"});
-  if (!tuned.empty()) candidates.push_back({"tuned", judged, "tuned (" + tuned + ")"});
+  if (duffing) candidates.push_back({"paper", "paper as printed", as_printed(given)});
+  candidates.push_back({"area_aware", "untuned, from the material", with_untuned_area_law(as_printed(given))});
+  candidates.push_back({"scene", "scene's own constants", given});
+  if (!tuned.empty()) candidates.push_back({"tuned", "tuned: " + tuned, judged});
 
   std::vector<JudgedModel> models;
   for (auto one = candidates.begin(); one != candidates.end(); ++one) {
@@ -91,20 +91,19 @@ std::vector<JudgedModel> judge_models(const scene::Scene& given, const scene::Sc
                                     [&](const Candidate& other) { return same_model(other.scene, one->scene); });
     if (listed && !is_tuned) continue;
     if (tuned.empty() ? same_model(one->scene, judged) : is_tuned) {
-      models.push_back(judged_model(one->key, one->scene, one->constants, run, errors));
+      models.push_back(judged_model(one->key, one->name, one->scene, run, errors));
       continue;
     }
     const fast::Run other = fast::run(one->scene);
-    models.push_back(
-        judged_model(one->key, one->scene, one->constants, other, compute_errors(one->scene, other, result)));
+    models.push_back(judged_model(one->key, one->name, one->scene, other, compute_errors(one->scene, other, result)));
   }
   return models;
 }
 
 std::string model_table_text(const std::vector<JudgedModel>& models) {
-  std::vector<std::vector<std::string>> rows{{"model", "constants", "force error", "shape error", "step"}};
+  std::vector<std::vector<std::string>> rows{{"model", "law, skeleton", "force", "shape", "step"}};
   for (const JudgedModel& model : models) {
-    rows.push_back({model.name, model.constants, error_text(model.force_nrmse), error_text(model.shape_rel_l2),
+    rows.push_back({model.name, model.method, error_text(model.force_nrmse), error_text(model.shape_rel_l2),
                     quantity_text(model.step_p50_us, "us")});
   }
   std::vector<std::size_t> widths(rows.front().size(), 0);
@@ -116,17 +115,18 @@ std::string model_table_text(const std::vector<JudgedModel>& models) {
     for (std::size_t c = 0; c < row.size(); ++c) text += "  " + padded(row[c], widths[c], c >= 2);
     text += '\n';
   }
-  return text + wrapped(reading_note) + "\n";
+  return "Models on this contact, and their errors:\n" + text + wrapped(reading_note, 80) + "\n";
 }
 
 std::string model_table_html(const std::vector<JudgedModel>& models) {
   std::string out =
-      "<div class=\"scroll\"><table>\n<tr><th>Model</th><th>Constants</th><th class=\"n\">Force error</th>"
-      "<th class=\"n\">Shape error</th><th class=\"n\">Step, median</th><th>Status</th></tr>\n";
+      "<div class=\"scroll\"><table>\n<tr><th>Model</th><th>Law, skeleton</th><th class=\"n\">Force error</th>"
+      "<th class=\"n\">Shape error</th><th class=\"n\">Step, median</th></tr>\n";
   for (const JudgedModel& model : models) {
-    out += "<tr>" + cell(model.name) + cell(model.constants) + number_cell(error_text(model.force_nrmse)) +
+    out += "<tr>" + cell(model.name + (model.status == 0 ? "" : " (" + fast::status_text(model.status) + ")")) +
+           cell(model.method) + number_cell(error_text(model.force_nrmse)) +
            number_cell(error_text(model.shape_rel_l2)) + number_cell(quantity_text(model.step_p50_us, "us")) +
-           cell(fast::status_text(model.status)) + "</tr>\n";
+           "</tr>\n";
   }
   return out + "</table></div>\n" + tag("p", std::string(reading_note), "class=\"dim\"") + "\n";
 }

@@ -17,9 +17,9 @@ namespace touchstone::compare {
 
 /// One model's row. Errors are those of Errors, with the reference's uncertainty.
 struct JudgedModel {
-  std::string key;   ///< in summary.json: model.<key>.force.nrmse and so on
-  std::string name;  ///< "Duffing law, published skeleton"
-  std::string constants;
+  std::string key;     ///< in summary.json: model.<key>.force.nrmse and so on
+  std::string name;    ///< "paper as printed"
+  std::string method;  ///< law and skeleton, "Duffing, published"
   Measure force_nrmse, shape_rel_l2;
   double step_p50_us = 0.0;  ///< whole step, over all ticks of the track
   std::uint32_t status = 0;  ///< OR of all StepStatus bits
