@@ -331,7 +331,8 @@ Drawing sections(const scene::Scene& scene, const fast::Run& run, const std::vec
   std::vector<std::string> panels;
   for (std::size_t i = 0; i < instants.size(); ++i) {
     const InstantRecord& record = run.instants[instants[i]];
-    Plot plot = section_plot(scene, run.surface, record.tool, {{"deformed", Look::first, run.surface, record.displacement_m}});
+    Plot plot =
+        section_plot(scene, run.surface, record.tool, {{"deformed", Look::first, run.surface, record.displacement_m}});
     plot.title = instant_text(scene, run, instants[i]);
     show(plot, i);
     panels.push_back(to_svg(plot, width_px, height_px));

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "compare/compare.h"
-#include "compare/model_table.h"
 #include "compare/comparison_drawings.h"
+#include "compare/model_table.h"
 #include "compare/verdict.h"
 
 #include <filesystem>

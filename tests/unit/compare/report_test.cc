@@ -1,5 +1,5 @@
-#include "compare/page.h"
 #include "compare/report.h"
+#include "compare/page.h"
 
 #include "compare/figures.h"
 #include "fast/state.h"
