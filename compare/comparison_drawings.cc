@@ -37,6 +37,13 @@ Abscissa time_of(const Errors& errors) {
   return {"time", "time [s]", series(errors, [](const InstantErrors& e) { return e.time_s; })};
 }
 
+/// Depth where it only grows: instants at one depth would stand above each other.
+bool only_deeper(const Abscissa& depth) {
+  return std::adjacent_find(depth.values.begin(), depth.values.end(), [](double before, double now) {
+           return now > 0.0 ? now < before * (1.0 + 1e-6) : now < before;
+         }) == depth.values.end();
+}
+
 Plot plot_over(const Abscissa& x, const std::string& title, const std::string& y_label) {
   Plot plot;
   plot.title = title;
@@ -46,7 +53,7 @@ Plot plot_over(const Abscissa& x, const std::string& title, const std::string& y
 }
 
 /// Force of both sides with the reference's band.
-Plot force_plot(const Errors& errors, const Abscissa& x) {
+Plot force_over(const Errors& errors, const Abscissa& x) {
   Plot plot = plot_over(x, "Force over " + x.name, "force on the tool [N]");
   Band band{band_name, Look::reference, x.values, {}, {}};
   for (const InstantErrors& e : errors.instants) {
@@ -211,23 +218,25 @@ std::string slip_text(const Errors& errors) {
   return begins("The fast model", fast_m) + ", " + begins("the reference", reference_m) + ".";
 }
 
+Plot force_plot(const Errors& errors) {
+  const Abscissa depth = depth_of(errors);
+  return force_over(errors, only_deeper(depth) ? depth : time_of(errors));
+}
+
 ComparisonDrawings comparison_drawings(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
                                        const Errors& errors) {
   const Abscissa depth = depth_of(errors), time = time_of(errors);
-  // Instants at one depth would stand above each other.
-  const bool only_deeper = std::adjacent_find(depth.values.begin(), depth.values.end(), [](double before, double now) {
-                             return now > 0.0 ? now < before * (1.0 + 1e-6) : now < before;
-                           }) == depth.values.end();
-  const Abscissa &first = only_deeper ? depth : time, &second = only_deeper ? time : depth;
-  const auto force_over = [&](const Abscissa& x) {
-    const Plot plot = force_plot(errors, x);
+  const bool deeper = only_deeper(depth);
+  const Abscissa &first = deeper ? depth : time, &second = deeper ? time : depth;
+  const auto force_drawing = [&](const Abscissa& x) {
+    const Plot plot = force_over(errors, x);
     return Drawing{"force-over-" + x.name, band_caption(plot, errors, result), to_svg(plot)};
   };
   ComparisonDrawings out;
-  out.force = force_over(first);
+  out.force = force_drawing(first);
   out.shape_error = shape_error(errors, first);
-  out.forces.push_back(force_over(second));
-  if (only_deeper) out.forces.push_back(logarithmic(force_plot(errors, depth), errors));
+  out.forces.push_back(force_drawing(second));
+  if (deeper) out.forces.push_back(logarithmic(force_over(errors, depth), errors));
   if (errors.friction) out.forces.push_back(friction_drawing(errors));
   out.forces.push_back(force_error(errors, first));
   out.shapes = {

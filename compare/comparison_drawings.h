@@ -3,6 +3,7 @@
 
 #include "compare/errors.h"
 #include "compare/fast_drawings.h"
+#include "compare/svg_plot.h"
 
 #include <optional>
 #include <string>
@@ -27,6 +28,9 @@ struct ComparisonDrawings {
 
 [[nodiscard]] ComparisonDrawings comparison_drawings(const scene::Scene& scene, const fast::Run& run,
                                                      const reference::Result& result, const Errors& errors);
+
+/// Force of both sides with the reference's band, over depth or, where that does not only grow, over time.
+[[nodiscard]] Plot force_plot(const Errors& errors);
 
 /// Largest uncertainty of the reference's force relative to it; nothing where it is unknown at an instant of contact.
 [[nodiscard]] std::optional<double> force_known_to(const Errors& errors);

@@ -26,7 +26,10 @@ constexpr const char* style = R"(<style>
 /// A number in the gate's unit; four digits, so that it can be told from its limit.
 std::string in_unit(double value, const std::string& unit) {
   if (!std::isfinite(value)) return "no number";
-  if (unit.empty()) return fmt::format("{:.4g}{}%", 100.0 * value, no_break);
+  if (unit.empty()) {
+    const bool round_off = std::abs(value) < least_ratio;
+    return round_off ? percent_text(value) : fmt::format("{:.4g}{}%", 100.0 * value, no_break);
+  }
   return fmt::format("{:.4g}{}{}", value, no_break, unit);
 }
 

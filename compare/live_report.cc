@@ -315,7 +315,7 @@ Section settings_section(const scene::Scene& scene, const live::LiveOptions& opt
                                           quantity_text(live.hand_damping_n_s_per_m, "N s/m"),
                                           quantity_text(live.hand_stiffness_n_per_m, "N/m")));
   }
-  return {"Settings", out + "</table></div>\n"};
+  return {"Settings of the loop", out + "</table></div>\n"};
 }
 
 }  // namespace

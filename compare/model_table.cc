@@ -21,7 +21,7 @@ constexpr std::string_view reading_note =
 bool same_model(const scene::Scene& a, const scene::Scene& b) {
   return a.fast.formulation == b.fast.formulation && a.contact.law == b.contact.law &&
          a.contact.k1_n_per_m == b.contact.k1_n_per_m && a.contact.k3_n_per_m3 == b.contact.k3_n_per_m3 &&
-         a.contact.k1_per_radius_n_per_m2 == b.contact.k1_per_radius_n_per_m2;
+         a.contact.k1_per_radius_n_per_m2 == b.contact.k1_per_radius_n_per_m2 && a.fast.s_c_m2 == b.fast.s_c_m2;
 }
 
 std::string method_of(const scene::Scene& scene) {
@@ -63,11 +63,17 @@ scene::Scene as_printed(scene::Scene scene) {
   return scene;
 }
 
+scene::Scene corrected(scene::Scene scene) {
+  scene.fast.formulation = scene::Formulation::corrected;
+  return scene;
+}
+
 scene::Scene with_untuned_area_law(scene::Scene scene) {
   scene.contact.law = scene::ContactLaw::area_aware;
   scene.contact.k1_per_radius_n_per_m2 =
       scene::area_law_constant_n_per_m2(scene.body.material, scene.tool, scene.fast.formulation);
   scene.contact.k1_n_per_m = scene.contact.k3_n_per_m3 = 0.0;
+  scene.fast.s_c_m2 = scene::stiff_beam_area_m2(scene.body);
   return scene;
 }
 
@@ -80,7 +86,7 @@ std::vector<JudgedModel> judge_models(const scene::Scene& given, const scene::Sc
   };
   std::vector<Candidate> candidates;
   if (duffing) candidates.push_back({"paper", "paper as printed", as_printed(given)});
-  candidates.push_back({"area_aware", "untuned, from the material", with_untuned_area_law(as_printed(given))});
+  candidates.push_back({"area_aware", "untuned, from the material", with_untuned_area_law(corrected(given))});
   candidates.push_back({"scene", "scene's own constants", given});
   if (!tuned.empty()) candidates.push_back({"tuned", "tuned: " + tuned, judged});
 

@@ -140,19 +140,23 @@ class Finder {
     const bool unknown = !force || !errors_.shape_rel_l2.uncertainty;
     const bool hidden = !errors_.force_nrmse.distinguishable() || !errors_.shape_rel_l2.distinguishable();
     if (!unknown && !hidden) return;
-    const std::string& ended = result_.refinement.why_ended;
+    const reference::EndedBy ended_by = result_.refinement.ended_by;
+    Call more = call_;
+    more.reference.levels.reset();
     if (scene_.reference.levels && *scene_.reference.levels < 3) {
-      add("Solve the reference on three meshes. With fewer its uncertainty is unknown.",
-          command_text(without_reference(), ""));
-    } else if ((unknown || *force > 0.002) && ended.find("of memory") != std::string::npos) {
+      add("Solve the reference on three meshes. With fewer its uncertainty is unknown.", command_text(more, ""));
+    } else if (ended_by == reference::EndedBy::sensitivity || ended_by == reference::EndedBy::convergence) {
+      return;  // the verdict says why no mesh helps
+    } else if ((unknown || *force > 0.002) && ended_by == reference::EndedBy::memory) {
       add("A finer mesh needs more memory than is allowed. On a machine that has it, allow it with --memory-gib; "
           "otherwise make the first mesh coarser with reference.element_size_m.");
+    } else if ((unknown || *force > 0.002) && ended_by == reference::EndedBy::time) {
+      more.reference.minutes = 4.0 * call_.reference.minutes.value_or(default_minutes);
+      add("Give the reference more time. What it has solved is kept.", command_text(more, ""));
     } else if (!unknown && *force > 0.002) {
       const double half = 0.5 * std::max(*force, *errors_.shape_rel_l2.uncertainty);
-      add("Refine the reference: an error is no larger than its uncertainty.",
-          command_text(without_reference(), " --error " + typed(std::clamp(half, 1e-4, 0.5))));
-    } else if (unknown && !scene_.reference.levels) {
-      add("Give the reference more time for a third mesh.", command_text(without_reference(), " --minutes 240"));
+      more.reference.error = std::stod(typed(std::clamp(half, 1e-4, 0.5)));
+      add("Refine the reference: an error is no larger than its uncertainty.", command_text(more, ""));
     }
   }
 
@@ -196,13 +200,17 @@ class Finder {
     untuned.parameters = call_.folder / name;
     steps_.push_back(
         {fmt::format(
-             "Take the area-aware law with the material's modulus; nothing is tuned. Tried: the force error goes "
-             "from {} to {} of the peak.",
-             percent_text(before), percent_text(trial.force_nrmse)),
+             "Take the area-aware law with the material's modulus and stiff beams. Tried: force error from {} to {}, "
+             "shape error from {} to {}.",
+             percent_text(before), percent_text(trial.force_nrmse),
+             percent_text(errors_.shape_rel_l2.value.value_or(0.0)), percent_text(trial.shape_rel_l2)),
          command_text(untuned, " --out " + fast::shell_word(call_.folder.string() + "-area-aware")), name,
-         fmt::format("# The area-aware law F = k1 D. Its constant follows from the material: nothing is tuned.\n"
-                     "[contact]\nlaw = \"area_aware\"\nk1_per_radius_n_per_m2 = {:.6g}\nk3_n_per_m3 = 0.0\n",
-                     changed.contact.k1_per_radius_n_per_m2)});
+         fmt::format(
+             "# The area-aware law F = k1 D. Its constant follows from the material, s_c from the body's size:\n"
+             "# nothing is tuned.\n"
+             "[contact]\nlaw = \"area_aware\"\nk1_per_radius_n_per_m2 = {:.6g}\nk3_n_per_m3 = 0.0\n\n"
+             "[fast]\ns_c_m2 = {:.6g}\n",
+             changed.contact.k1_per_radius_n_per_m2, changed.fast.s_c_m2)});
   }
 
   void tuning() {
@@ -221,12 +229,6 @@ class Finder {
 
   [[nodiscard]] std::string again(const std::string& options) const { return command_text(call_, options); }
 
-  [[nodiscard]] Call without_reference() const {
-    Call out = call_;
-    out.reference.clear();
-    return out;
-  }
-
   [[nodiscard]] bool time_left() const { return watch_.read("").wall_s < trial_time_s; }
 
   const scene::Scene& scene_;
@@ -244,7 +246,7 @@ std::string command_text(const Call& call, const std::string& options) {
   std::string text = "touchstone compare " + fast::shell_word(call.scene_file.string());
   for (const std::string& setting : call.overrides) text += " --set " + fast::shell_word(setting);
   if (!call.parameters.empty()) text += " --parameters " + fast::shell_word(call.parameters.string());
-  return text + call.reference + options;
+  return text + options_text(call.reference) + options;
 }
 
 std::vector<NextStep> next_steps(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,

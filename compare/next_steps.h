@@ -3,6 +3,7 @@
 #pragma once
 
 #include "compare/errors.h"
+#include "compare/reference_run.h"
 
 #include <filesystem>
 #include <string>
@@ -14,9 +15,9 @@ namespace touchstone::compare {
 struct Call {
   std::filesystem::path scene_file;
   std::vector<std::string> overrides;  ///< of --set
-  std::string reference;               ///< options of the reference, " --level 3"
-  std::filesystem::path parameters;    ///< of --parameters; empty: none
-  std::filesystem::path folder;        ///< of the results
+  ReferenceOptions reference;
+  std::filesystem::path parameters;  ///< of --parameters; empty: none
+  std::filesystem::path folder;      ///< of the results
 };
 
 /// The command with its words quoted for a shell where they need it. @param options  more, with a space before

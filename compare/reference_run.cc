@@ -55,6 +55,8 @@ std::string options_text(const ReferenceOptions& options) {
   std::string text;
   if (options.levels) text += fmt::format(" --level {}", *options.levels);
   if (options.error) text += fmt::format(" --error {}", *options.error);
+  if (options.memory_gib) text += fmt::format(" --memory-gib {}", *options.memory_gib);
+  if (options.minutes) text += fmt::format(" --minutes {}", *options.minutes);
   return text;
 }
 
@@ -85,7 +87,7 @@ std::string progress_text(const reference::Progress& p) {
 
 reference::Result solve_with_progress(const scene::Scene& scene, const scene::Surface& surface,
                                       const ReferenceOptions& options, bool quiet) {
-  constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0, default_minutes = 60.0;
+  constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0;
   const StopOnSignal stop;
   fast::ProgressLine line(quiet);
   reference::Options solve_options;

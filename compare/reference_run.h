@@ -11,17 +11,20 @@
 
 namespace touchstone::compare {
 
+/// Limit of one solve that refines until an error is reached.
+constexpr double default_minutes = 60.0;
+
 /// What the command line says about a solve.
 struct ReferenceOptions {
   std::filesystem::path store = "out/reference-store";  ///< content-addressed results, shared by all runs
-  std::optional<int> levels;                            ///< in place of the scene's levels or error
-  std::optional<double> error;                          ///< in place of the scene's levels or error
-  std::optional<double> memory_gib;                     ///< limit of one solve, as the next
-  std::optional<double> minutes;        ///< absent: an hour, and no limit where a number of meshes is asked for
-  std::optional<double> require_error;  ///< uncertainty of force and shape that the exit code depends on
+  std::optional<int> levels = {};                       ///< in place of the scene's levels or error
+  std::optional<double> error = {};                     ///< in place of the scene's levels or error
+  std::optional<double> memory_gib = {};                ///< limit of one solve, as the next
+  std::optional<double> minutes = {};  ///< absent: default_minutes, and no limit where a number of meshes is asked for
+  std::optional<double> require_error = {};  ///< uncertainty of force and shape that the exit code depends on
 };
 
-/// What of it was said, as it is typed, " --level 3"; without the limits of memory and time, which may be another's.
+/// What of it was said and bears on the answer, as it is typed, " --level 3 --minutes 20".
 [[nodiscard]] std::string options_text(const ReferenceOptions& options);
 
 /// The scene with the levels or the error that the command line asks for.

@@ -336,8 +336,8 @@ Legend legend(const Plot& plot, double left_px, double right_px, double top_px) 
   return out;
 }
 
-/// Each name at the first of some places about its point where it covers no point and no other name; a thin line leads
-/// to those further off.
+/// Each name at the first of some places about its point where it covers no point, line or other name; a thin line
+/// leads to those further off.
 std::string point_names(const Plot& plot, const Axis& x, const Axis& y) {
   struct Box {
     double left, top, right, bottom;
@@ -347,11 +347,28 @@ std::string point_names(const Plot& plot, const Axis& x, const Axis& y) {
   };
   constexpr double height_px = 13.0, gap_px = 6.0;
   std::vector<Box> taken;
+  constexpr double marker_px = 3.0, line_px = 1.0;
+  const auto take = [&taken](double px, double py, double half_px) {
+    taken.push_back({px - half_px, py - half_px, px + half_px, py + half_px});
+  };
   for (const Curve& curve : plot.curves) {
-    for (std::size_t i = 0; curve.markers && i < curve.x.size(); ++i) {
-      if (!x.can_show(curve.x[i]) || !y.can_show(curve.y[i])) continue;
-      const double px = x.px(curve.x[i]), py = y.px(curve.y[i]);
-      taken.push_back({px - 3.0, py - 3.0, px + 3.0, py + 3.0});
+    std::optional<std::pair<double, double>> before;
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+      if (!x.can_show(curve.x[i]) || !y.can_show(curve.y[i])) {
+        before.reset();
+        continue;
+      }
+      const std::pair now(x.px(curve.x[i]), y.px(curve.y[i]));
+      if (curve.markers) take(now.first, now.second, marker_px);
+      if (before && !curve.points_only) {
+        const int pieces = 1 + static_cast<int>(std::hypot(now.first - before->first, now.second - before->second) /
+                                                (2.0 * marker_px));
+        for (int k = 0; k <= pieces; ++k) {
+          const double share = static_cast<double>(k) / pieces;
+          take(std::lerp(before->first, now.first, share), std::lerp(before->second, now.second, share), line_px);
+        }
+      }
+      before = now;
     }
   }
   std::string out;

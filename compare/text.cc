@@ -15,9 +15,6 @@ const std::string minus = "−";
 /// A quantity in SI units smaller than this is what rounding leaves of zero.
 constexpr double rounding = 1e-15;
 
-/// A ratio smaller than this is round-off or the tolerance of a solver.
-constexpr double least_ratio = 1e-6;
-
 struct Scale {
   double factor;  ///< of the scaled unit in the given one
   std::string_view name;

@@ -14,6 +14,9 @@ inline constexpr std::string_view no_break = "\u00a0";
 /// "not finite" for NaN and infinity.
 [[nodiscard]] std::string number_text(double value, int digits = 3);
 
+/// A ratio smaller than this is round-off or the tolerance of a solver.
+inline constexpr double least_ratio = 1e-6;
+
 /// A ratio as a percentage, "99.6 %"; "below 0.0001 %" where it is smaller than anything here is known to.
 [[nodiscard]] std::string percent_text(double ratio);
 

@@ -234,7 +234,7 @@ class Ladder {
                "the scene's law is the area-aware one");
       }
       // Without a constant of the scene's own, the material's, which nothing has to be tuned for.
-      const std::string from = duffing ? "k1 of the material" : "of the scene";
+      const std::string from = duffing ? "k1 and s_c of material and size" : "of the scene";
       add_skeleton({.name = name + " skeleton, area-aware law, " + from,
                     .key = name + "-area-aware",
                     .label = name + ", area-aware",

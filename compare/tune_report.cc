@@ -1,5 +1,6 @@
 #include "compare/tune_report.h"
 
+#include "compare/comparison_drawings.h"
 #include "compare/page.h"
 #include "compare/svg_plot.h"
 #include "compare/text.h"
@@ -220,30 +221,6 @@ std::string stage_section(const StageFit& stage) {
   return out + correlation_table(stage) + profile_plots(stage) + starts_table(stage);
 }
 
-/// Over depth where the tool only goes in, over time elsewhere.
-Plot force_plot(const TuningData& data, const TuningOutcome& outcome) {
-  const std::vector<InstantErrors>& instants = outcome.errors.instants;
-  const bool way_in =
-      std::is_sorted(instants.begin(), instants.end(),
-                     [](const InstantErrors& a, const InstantErrors& b) { return a.depth_m < b.depth_m; });
-  Plot plot;
-  plot.title = data.contact.name + (data.held_out() ? " (held out)" : " (training)");
-  plot.x_label = way_in ? "depth [mm]" : "time [s]";
-  plot.y_label = "force on the tool [N]";
-  std::vector<double> x, fast_n, reference_n, low_n, high_n;
-  for (const InstantErrors& e : instants) {
-    x.push_back(way_in ? 1e3 * e.depth_m : e.time_s);
-    fast_n.push_back(e.force_fast_n);
-    reference_n.push_back(e.force_reference_n);
-    low_n.push_back(std::max(0.0, e.force_reference_n - e.force_uncertainty_n));
-    high_n.push_back(e.force_reference_n + e.force_uncertainty_n);
-  }
-  plot.bands.push_back({"reference's uncertainty", Look::reference, x, low_n, high_n});
-  plot.curves.push_back({"reference", Look::reference, x, reference_n});
-  plot.curves.push_back({"tuned model", Look::fast, x, fast_n});
-  return plot;
-}
-
 Plot residual_plot(const Tuning& tuning, const TunedModel& model) {
   Plot plot;
   plot.title = "What is left on the training contacts";
@@ -358,7 +335,10 @@ std::string model_section(const Tuning& tuning, const TunedModel& model) {
   out += tag("h3", "Fit and held-out forces") + "\n<div class=\"plots\">\n";
   out += figure(to_svg(residual_plot(tuning, model)), "A pattern here is the law's form, not noise.");
   for (const TuningOutcome& outcome : model.outcomes) {
-    out += figure(to_svg(force_plot(tuning.data[outcome.data], outcome)), "");
+    const TuningData& data = tuning.data[outcome.data];
+    Plot force = force_plot(outcome.errors);
+    force.title = data.contact.name + (data.held_out() ? " (held out)" : " (training)");
+    out += figure(to_svg(force), "");
   }
   return out + "</div>\n" + regime_section(tuning, model);
 }

@@ -77,7 +77,7 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
   const scene::Scene scene = parameters.empty() ? given : scene::with_parameters(given, parameters);
   const std::filesystem::path folder = options.folder(scene, "compare");
   scene::prepare_result_folder(folder);
-  const Call call{options.scene_file, options.overrides, options_text(reference), parameters, folder};
+  const Call call{options.scene_file, options.overrides, reference, parameters, folder};
   return with_reference_exits([&] {
     scene::Manifest manifest = scene::make_manifest(scene, "touchstone compare");
     const scene::Stopwatch fast_watch;

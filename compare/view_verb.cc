@@ -5,8 +5,10 @@
 #include "compare/virtual_display.h"
 #include "fast/command_line.h"
 #include "scene/error.h"
+#include "scene/nearest_name.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <iostream>
 #include <optional>
@@ -19,13 +21,14 @@ template <class Says>
 void press_until(ResultView& view, const std::string& key, const std::string& wanted, const char* option, Says says) {
   if (wanted.empty()) return;
   const std::string first = says();
-  std::string known = first;
+  std::vector<std::string> known{first};
   while (says() != wanted) {
     view.press(key);
     if (says() == first) {
-      throw scene::InputError(fmt::format("{} {}: this result has {}", option, wanted, known));
+      throw scene::InputError(fmt::format("{} {}: this result has {}{}", option, wanted, fmt::join(known, ", "),
+                                          scene::did_you_mean(wanted, known)));
     }
-    known += ", " + says();
+    known.push_back(says());
   }
 }
 

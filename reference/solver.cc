@@ -154,7 +154,8 @@ scene::Plan plan(const Scene& scene) {
   const int levels = scene.reference.levels.value_or(3);
   std::ostringstream uncertainty;
   if (!scene.reference.levels) {
-    uncertainty << "from 3 meshes or more, until force and shape are known to " << scene.reference.error;
+    uncertainty << "from 3 meshes or more, until force and shape are known to " << 100.0 * scene.reference.error
+                << " %";
   } else if (levels >= 3) {
     uncertainty << "from " << levels << " meshes";
   } else {

@@ -77,11 +77,15 @@ struct Sensitivity {
   Carries carries = Carries::wholly;
 };
 
+/// What kept a reference from being refined further.
+enum class EndedBy { done, time, memory, convergence, sensitivity };
+
 /// How far the refinement came.
 struct Refinement {
   double error_asked = 0.0;  ///< of force and shape, relative; 0: the scene asks for a number of levels
   bool reached = false;      ///< both uncertainties are at most that
-  std::string why_ended;     ///< never empty: "there is no mesh 4: it would take about 31 GiB of memory, more than ..."
+  EndedBy ended_by = EndedBy::done;
+  std::string why_ended;  ///< never empty: "there is no mesh 4: it would take about 31 GiB of memory, more than ..."
 };
 
 /// Answer for one scene; `instants` is the finest level's.

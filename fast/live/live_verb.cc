@@ -3,6 +3,7 @@
 #include "fast/progress_line.h"
 #include "fast/run.h"
 #include "scene/error.h"
+#include "scene/nearest_name.h"
 
 #include <csignal>
 #include <iostream>
@@ -87,11 +88,14 @@ void add_live_verb(CLI::App& app, fast::VerbOptions& options, LiveOptions& live,
   verb->add_option_function<std::string>(
           "--device",
           [&live](const std::string& name) {
+            std::vector<std::string> names;
             for (const DeviceKind kind : {DeviceKind::scripted, DeviceKind::replay, DeviceKind::hand}) {
               live.device = kind;
               if (name == name_of(kind)) return;
+              names.emplace_back(name_of(kind));
             }
-            throw CLI::ValidationError("--device", "expected scripted, replay or hand, found " + name);
+            throw CLI::ValidationError("--device", "expected scripted, replay or hand, found \"" + name + '"' +
+                                                       scene::did_you_mean(name, names));
           },
           "scripted (default): the track; replay: a log; hand: a virtual hand on the track")
       ->type_name("scripted|replay|hand");

@@ -1,5 +1,8 @@
 #include "scene/area_law.h"
 
+#include "scene/fields.h"
+
+#include <cmath>
 #include <numbers>
 
 namespace touchstone::scene {
@@ -16,5 +19,7 @@ double area_law_constant_n_per_m2(const Material& material, const Tool& tool, Fo
   return 2.0 * material.contact_modulus_pa() *
          (flat || formulation == Formulation::published ? 1.0 : rounded_tool_factor);
 }
+
+double stiff_beam_area_m2(const Body& body) { return 10.0 * std::pow(body_size_m(body), 2); }
 
 }  // namespace touchstone::scene

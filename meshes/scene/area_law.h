@@ -1,4 +1,4 @@
-// The constant of the area-aware contact law that follows from the material, with nothing to tune.
+// The constants of the fast model that follow from the material and the body's size, with nothing to tune.
 #pragma once
 
 #include "scene/scene.h"
@@ -9,5 +9,8 @@ namespace touchstone::scene {
 /// formulations. A rounded tool, corrected formulation: 2 E* / sqrt(2), with which the force of a ball is Hertz's. A
 /// rounded tool, published formulation: 2 E*, which its own weights bring near Hertz's. A mesh counts as rounded.
 [[nodiscard]] double area_law_constant_n_per_m2(const Material& material, const Tool& tool, Formulation formulation);
+
+/// s_c = 10 L^2, L the body's size: beams so stiff that the contact moves further than they do.
+[[nodiscard]] double stiff_beam_area_m2(const Body& body);
 
 }  // namespace touchstone::scene

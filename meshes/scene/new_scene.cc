@@ -171,7 +171,7 @@ std::string new_scene_toml(const NewScene& scene, const std::string& name) {
          mark + line("mu_D = " + mu, "sliding at mu_D F_n");
 
   out += "\n[fast]\n" +
-         line("s_c_m2 = " + plain(rounded(10.0 * std::pow(body_size_m(body), 2), 2)),
+         line("s_c_m2 = " + plain(rounded(stiff_beam_area_m2(body), 2)),
               "beams so thick that the contact moves further than they do") +
          "# Its other lengths follow the body's size where they are not given; touchstone plan shows them.\n"
          "\n[compare]\n" +

@@ -44,7 +44,7 @@ struct InstantRecord {
 struct Figure {
   std::string key;
   double number = 0.0;
-  std::string text;  ///< when not empty, the figure is this text
+  std::string text;  ///< not empty: the figure is this text; beside a number that is NaN: why there is none
   std::string unit;
 };
 using Figures = std::vector<Figure>;

@@ -195,23 +195,24 @@ class Run {
   bool add_level(const Store& store) {
     const int level = solved_levels();
     if (!scene_.reference.levels && level >= most_levels) {
-      return stop_at(not_started(level) + "no scene is refined further");
+      return stop_at(EndedBy::done, not_started(level) + "no scene is refined further");
     }
     std::unique_ptr<Mesh<dim>> mesh;
     Level answer;
     try {
       mesh = std::make_unique<Mesh<dim>>(level_mesh<dim>(scene_, choice_, level));
-      if (const std::string why = limit_before(level, *mesh, store); !why.empty()) return end_before(level, why);
+      if (const std::optional<Limit> limit = limit_before(level, *mesh, store)) return end_before(level, *limit);
       solve_level(level, *mesh, store, answer);
     } catch (const TimeIsUp&) {
-      return end_before(level, time_up_text(level, *mesh, store, static_cast<int>(answer.steps.size())));
+      return end_before(level,
+                        {EndedBy::time, time_up_text(level, *mesh, store, static_cast<int>(answer.steps.size()))});
     } catch (const NotConverged& failure) {
       if (scene_.reference.levels || level < fewest_levels) throw;
-      return stop_at(not_started(level) + "it did not converge: " + failure.what());
+      return stop_at(EndedBy::convergence, not_started(level) + "it did not converge: " + failure.what());
     } catch (const MeshTooLarge& failure) {
-      return end_before(level, failure.what());
+      return end_before(level, {EndedBy::memory, failure.what()});
     } catch (const std::bad_alloc&) {
-      return end_before(level, "the memory did not suffice");
+      return end_before(level, {EndedBy::memory, "the memory did not suffice"});
     }
     take(level, answer);
     coarser_ = std::move(mesh);
@@ -220,9 +221,10 @@ class Run {
       unknown_uncertainty();
     } else {
       if (!sensitivities_known_) {
-        if (const std::string why = measure_sensitivities(store); !why.empty()) {
+        if (const std::optional<Limit> limit = measure_sensitivities(store)) {
           unknown_uncertainty();
-          return stop_at("the uncertainty is unknown after " + meshes_text(solved_levels()) + ": " + why);
+          return stop_at(limit->by,
+                         "the uncertainty is unknown after " + meshes_text(solved_levels()) + ": " + limit->why);
         }
       }
       estimate_uncertainty();
@@ -230,20 +232,22 @@ class Run {
     if (scene_.reference.levels) {
       if (solved_levels() < *scene_.reference.levels) return true;
       const std::string asked = meshes_text(solved_levels()) + (solved_levels() == 1 ? " was" : " were") + " asked for";
-      return stop_at(solved_levels() < fewest_levels ? asked + needs_more() : asked);
+      return stop_at(EndedBy::done, solved_levels() < fewest_levels ? asked + needs_more() : asked);
     }
     result_.refinement.reached = small_enough(result_.force_uncertainty_rel) &&
                                  small_enough(result_.shape_uncertainty_rel) && solved_levels() >= fewest_levels;
     std::ostringstream text;
     if (result_.refinement.reached) {
-      text << "force and shape are known to " << scene_.reference.error << " after " << meshes_text(solved_levels());
-      return stop_at(text.str());
+      text << "force and shape are known to " << 100.0 * scene_.reference.error << " % after "
+           << meshes_text(solved_levels());
+      return stop_at(EndedBy::done, text.str());
     }
     if (const Sensitivity* one = too_sensitive()) {
       text << not_started(solved_levels()) << "finer meshes do not help, since " << one->part << ' ' << one->change
-           << " changes the force by " << one->force_rel << " and the shape by " << one->shape_rel;
+           << " changes the force by " << number_text(100.0 * one->force_rel) << " % and the shape by "
+           << number_text(100.0 * one->shape_rel) << " %";
       if (one->carries == Carries::first_order) text << "; more instants would";
-      return stop_at(text.str());
+      return stop_at(EndedBy::sensitivity, text.str());
     }
     return true;
   }
@@ -267,7 +271,8 @@ class Run {
     return std::max(force_rel, shape_rel) > scene_.reference.error ? largest : nullptr;
   }
 
-  bool stop_at(std::string why) {
+  bool stop_at(EndedBy by, std::string why) {
+    result_.refinement.ended_by = by;
     result_.refinement.why_ended = std::move(why);
     return false;
   }
@@ -278,14 +283,20 @@ class Run {
 
   [[nodiscard]] static std::string needs_more() { return "; an uncertainty needs " + std::to_string(fewest_levels); }
 
+  /// A limit that forbids work, and the words for it.
+  struct Limit {
+    EndedBy by;
+    std::string why;
+  };
+
   /// Ends without a level for a limit's sake. @throws LimitReached when there is no coarser one, either
-  bool end_before(int level, const std::string& why) {
+  bool end_before(int level, const Limit& limit) {
     if (level == 0) {
-      throw LimitReached("no answer, since mesh 1 is not finished: " + why +
+      throw LimitReached("no answer, since mesh 1 is not finished: " + limit.why +
                          ". Allow more, or make the cells larger with reference.element_size_m (now " +
                          number_text(element_size_m(scene_, choice_, 0)) + " m).");
     }
-    return stop_at(not_started(level) + why + (level < fewest_levels ? needs_more() : ""));
+    return stop_at(limit.by, not_started(level) + limit.why + (level < fewest_levels ? needs_more() : ""));
   }
 
   [[nodiscard]] static std::string number_text(double value) {
@@ -307,25 +318,25 @@ class Run {
            (std::isfinite(all_s) ? " about " + duration_text(all_s) : " more than can be done");
   }
 
-  /// Why not to begin with a level, in words; empty when nothing speaks against it.
-  [[nodiscard]] std::string limit_before(int level, const Mesh<dim>& mesh, const Store& store) const {
+  /// What forbids to begin with a level, if anything does.
+  [[nodiscard]] std::optional<Limit> limit_before(int level, const Mesh<dim>& mesh, const Store& store) const {
     const int missing = missing_steps(store, level);
-    if (missing == 0) return {};
+    if (missing == 0) return std::nullopt;
     const Cost needed = cost(unknowns_of(mesh), missing);
     std::ostringstream text;
     text << "its " << std::lround(unknowns_of(mesh)) << " unknowns would take about ";
     if (needed.memory_bytes > memory_limit_bytes()) {
       text << memory_text(needed.memory_bytes) << " of memory, more than " << memory_text(memory_limit_bytes());
-      return text.str();
+      return Limit{EndedBy::memory, text.str()};
     }
     const double needed_s = pace_.factor() * needed.seconds;
     if (needed_s > seconds_to_go()) {
       text << duration_text(needed_s) << " for " << missing << (missing == 1 ? " load step" : " load steps")
            << ", more than the " << duration_text(std::max(0.0, seconds_to_go())) << " left"
            << all_meshes_text(level, needed_s, pace_.factor() * expected_after_s(level, mesh, store));
-      return text.str();
+      return Limit{EndedBy::time, text.str()};
     }
-    return {};
+    return std::nullopt;
   }
 
   /// That the time was up within a level, what is kept of it, and how long the rest probably takes.
@@ -522,12 +533,12 @@ class Run {
   }
 
   /// On the coarsest level at the deepest instant, from the store where they are known.
-  /// @returns why they are not known, in words; empty when they are
-  std::string measure_sensitivities(const Store& store) {
+  /// @returns why they are not known, if they are not
+  std::optional<Limit> measure_sensitivities(const Store& store) {
     const int instant = deepest();
-    if (result_.levels[0].force_n[instant] == 0.0) return {};
+    if (result_.levels[0].force_n[instant] == 0.0) return std::nullopt;
     const std::vector<SensitivityWork> missing = missing_sensitivities(coarsest_, store);
-    if (std::string why = limit_before(missing); !why.empty()) return why;
+    if (std::optional<Limit> limit = limit_before(missing)) return limit;
     const auto stored = [&](int which) {
       std::optional<Record> record = which < 0 ? std::nullopt : store.read(0, which);
       return record ? from_record<dim>(std::move(*record), coarsest_) : std::nullopt;
@@ -562,14 +573,15 @@ class Run {
                               at->second.seen.force_n, before ? &before->first : nullptr},
                              store, watch);
     } catch (const TimeIsUp&) {
-      return "the time was up before all sensitivities were measured, which it needs; the next run goes on from there, "
-             "and needs about " +
-             duration_text(pace_.factor() * expected_s(missing_sensitivities(coarsest_, store), 0));
+      return Limit{EndedBy::time,
+                   "the time was up before all sensitivities were measured, which it needs; the next run goes on from "
+                   "there, and needs about " +
+                       duration_text(pace_.factor() * expected_s(missing_sensitivities(coarsest_, store), 0))};
     } catch (const std::bad_alloc&) {
-      return "the memory did not suffice for the sensitivities, which it needs";
+      return Limit{EndedBy::memory, "the memory did not suffice for the sensitivities, which it needs"};
     }
     sensitivities_known_ = true;
-    return {};
+    return std::nullopt;
   }
 
   /// Expected time of these from the one at a place on, before the run's own pace [s].
@@ -579,22 +591,23 @@ class Run {
     return seconds;
   }
 
-  /// Why not to begin with the sensitivities, in words; empty when nothing speaks against it.
-  [[nodiscard]] std::string limit_before(const std::vector<SensitivityWork>& missing) const {
+  /// What forbids to begin with the sensitivities, if anything does.
+  [[nodiscard]] std::optional<Limit> limit_before(const std::vector<SensitivityWork>& missing) const {
     double memory_bytes = 0.0;
     for (const SensitivityWork& one : missing) {
       memory_bytes = std::max(memory_bytes, expected_memory_bytes(dim, one.work.unknowns));
     }
     const std::string needs = "the sensitivities, which it needs, would take about ";
     if (memory_bytes > memory_limit_bytes()) {
-      return needs + memory_text(memory_bytes) + " of memory, more than " + memory_text(memory_limit_bytes());
+      return Limit{EndedBy::memory,
+                   needs + memory_text(memory_bytes) + " of memory, more than " + memory_text(memory_limit_bytes())};
     }
     const double needed_s = pace_.factor() * expected_s(missing, 0);
     if (!missing.empty() && needed_s > seconds_to_go()) {
-      return needs + duration_text(needed_s) + ", more than the " + duration_text(std::max(0.0, seconds_to_go())) +
-             " left";
+      return Limit{EndedBy::time, needs + duration_text(needed_s) + ", more than the " +
+                                      duration_text(std::max(0.0, seconds_to_go())) + " left"};
     }
-    return {};
+    return std::nullopt;
   }
 
   /// What the differences of the levels do not show.

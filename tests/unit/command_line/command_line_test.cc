@@ -164,9 +164,10 @@ TEST(PlanVerb, WarnsOfATrackThatNeverTouches) {
 TEST(LiveVerb, AnUnknownDeviceIsRefusedWithThoseThereAre) {
   for (const std::string& verb : verbs()) {
     if (!verb.ends_with(" live")) continue;
-    const Answer answer = run(verb + " " + scene + " --device mouse");
+    const Answer answer = run(verb + " " + scene + " --device scriptd");
     EXPECT_EQ(answer.exit_code, 2);
-    EXPECT_THAT(answer.output, HasSubstr("expected scripted, replay or hand, found mouse"));
+    EXPECT_THAT(answer.output, HasSubstr("expected scripted, replay or hand, found \"scriptd\"; did you mean "
+                                         "\"scripted\"?"));
   }
 }
 

@@ -81,8 +81,8 @@ TEST_F(LimitsVerb, WhyRefinementEndedIsSaid) {
   EXPECT_EQ(summary()["reference.why_ended"], "1 mesh was asked for; an uncertainty needs 3");
   const Answer known = run("compare", "--error 0.1");
   EXPECT_EQ(known.exit_code, 0) << known.errors;
-  EXPECT_THAT(known.output, HasSubstr("Refinement ended: force and shape are known to 0.1 after 3 meshes\n"));
-  EXPECT_EQ(summary()["reference.why_ended"], "force and shape are known to 0.1 after 3 meshes");
+  EXPECT_THAT(known.output, HasSubstr("Refinement ended: force and shape are known to 10 % after 3 meshes\n"));
+  EXPECT_EQ(summary()["reference.why_ended"], "force and shape are known to 10 % after 3 meshes");
 }
 
 TEST_F(LimitsVerb, RequireErrorExitsThreeWithItsResultsWritten) {

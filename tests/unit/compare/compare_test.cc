@@ -100,10 +100,10 @@ TEST_F(WriteComparison, JudgesTheOtherModelsToo) {
     EXPECT_GT(summary.at(key).get<double>(), 0.0);
   }
   EXPECT_EQ(summary.at("model.scene.force.nrmse"), summary.at("force.nrmse")) << "the scene's own model";
-  EXPECT_NE(comparison_.text.find("area-aware, published"), std::string::npos) << comparison_.text;
+  EXPECT_NE(comparison_.text.find("area-aware, corrected"), std::string::npos) << comparison_.text;
   std::ifstream page(folder_.path() / "report.html");
   const std::string html{std::istreambuf_iterator<char>(page), {}};
-  EXPECT_NE(html.find("<td>area-aware, published</td>"), std::string::npos);
+  EXPECT_NE(html.find("<td>area-aware, corrected</td>"), std::string::npos);
 }
 
 TEST_F(WriteComparison, SummaryIsFlatWithAUnitForEveryKey) {

@@ -63,6 +63,10 @@ TEST(GatePage, ShowsValueUncertaintyLimitMarginAndBar) {
   EXPECT_THAT(page, HasSubstr("href=\"../../scenes/ball.toml\""));
 }
 
+TEST(GatePage, RoundOffIsSaidAsSuch) {
+  EXPECT_THAT(html({truth("force", 3e-15, 0.002)}), HasSubstr("below 0.0001\u00a0%, uncertain by 0.2\u00a0%"));
+}
+
 TEST(GatePage, AGateWithoutANumberHasNoBarAndSaysWhy) {
   GateRecord record = truth("force", 0.0, 0.0);
   record.value.reset();

@@ -10,6 +10,8 @@
 
 #include <cmath>
 #include <fstream>
+#include <regex>
+#include <set>
 #include <sstream>
 
 namespace touchstone::compare {
@@ -153,6 +155,16 @@ TEST(LiveReport, SaysFaultsInWords) {
   EXPECT_THAT(page, HasSubstr("ended by a signal (Ctrl-C)"));
   EXPECT_THAT(page, HasSubstr("(Operation not permitted): &lt;ask&gt;"));
   EXPECT_THAT(page, HasSubstr("3 of 2000\u00a0answers differ from the log's, the first on line 43 of the log"));
+}
+
+TEST(LiveReport, NoTwoPartsHaveOneName) {
+  const std::string page = html(two_seconds());
+  std::set<std::string> names;
+  const std::regex name("<h2>([^<]*)</h2>");
+  for (std::sregex_iterator at(page.begin(), page.end(), name), end; at != end; ++at) {
+    EXPECT_TRUE(names.insert((*at)[1]).second) << (*at)[1];
+  }
+  EXPECT_GT(names.size(), 4u);
 }
 
 TEST(LiveReport, NamesDeviceRateLimitsAndCommand) {

@@ -38,11 +38,12 @@ TEST_F(ModelTable, JudgesThePapersModelTheUntunedAreaLawAndTheScenesOwn) {
   const std::vector<JudgedModel> models = judge(sides_.scene);
   ASSERT_THAT(keys(models), ElementsAre("paper", "area_aware", "scene"));
   const Errors paper = errors_of(as_printed(sides_.scene));
-  const Errors area = errors_of(with_untuned_area_law(as_printed(sides_.scene)));
+  const Errors area = errors_of(with_untuned_area_law(sides_.scene));
   EXPECT_EQ(models[0].force_nrmse.value, paper.force_nrmse.value);
   EXPECT_EQ(models[0].shape_rel_l2.value, paper.shape_rel_l2.value);
   EXPECT_EQ(models[1].force_nrmse.value, area.force_nrmse.value);
   EXPECT_EQ(models[1].force_nrmse.uncertainty, area.force_nrmse.uncertainty);
+  EXPECT_EQ(models[1].shape_rel_l2.value, area.shape_rel_l2.value);
   EXPECT_NE(models[0].force_nrmse.value, models[1].force_nrmse.value);
   EXPECT_EQ(models[2].shape_rel_l2.value, errors_of(sides_.scene).shape_rel_l2.value);
   EXPECT_GT(models[1].step_p50_us, 0.0);
@@ -61,6 +62,7 @@ TEST_F(ModelTable, TunedConstantsAreARowBesideTheScenesOwn) {
 TEST_F(ModelTable, AModelAppearsOnce) {
   sides_.scene.fast.formulation = scene::Formulation::published;
   EXPECT_THAT(keys(judge(sides_.scene)), ElementsAre("paper", "area_aware"));
+  sides_.scene.fast.formulation = scene::Formulation::corrected;
   sides_.scene = with_untuned_area_law(sides_.scene);
   EXPECT_THAT(keys(judge(sides_.scene)), ElementsAre("area_aware"));
   sides_.scene.contact.k1_per_radius_n_per_m2 *= 0.9;
@@ -72,6 +74,7 @@ TEST_F(ModelTable, TheUntunedLawFollowsFromTheMaterial) {
   EXPECT_EQ(scene.contact.law, scene::ContactLaw::area_aware);
   EXPECT_DOUBLE_EQ(scene.contact.k1_per_radius_n_per_m2, 2.0 * 3.0e6 / 0.75);
   EXPECT_EQ(scene.contact.k3_n_per_m3, 0.0);
+  EXPECT_NEAR(scene.fast.s_c_m2, 10.0 * 0.06 * 0.06, 1e-12);
   EXPECT_DOUBLE_EQ(with_untuned_area_law(sides_.scene).contact.k1_per_radius_n_per_m2, std::sqrt(2.0) * 3.0e6 / 0.75);
 }
 

@@ -39,10 +39,11 @@ testing::Sides really_run() {
 }
 
 TEST(NextSteps, CommandsCanBeTypedAsTheyStand) {
-  const Call call{"a b/it's.toml", {"track[1].position_m[2]=0.06", "fast.C_n=0.1"}, " --level 3", {}, {}};
+  const Call call{
+      "a b/it's.toml", {"track[1].position_m[2]=0.06", "fast.C_n=0.1"}, {.levels = 3, .minutes = 20.0}, {}, {}};
   EXPECT_EQ(command_text(call, " --quiet"),
             "touchstone compare 'a b/it'\\''s.toml' --set 'track[1].position_m[2]=0.06' --set fast.C_n=0.1 --level 3 "
-            "--quiet");
+            "--minutes 20 --quiet");
 }
 
 TEST(NextSteps, OfferTheAreaAwareLawWhereItIsNearerAndSayByHowMuch) {
@@ -57,8 +58,10 @@ TEST(NextSteps, OfferTheAreaAwareLawWhereItIsNearerAndSayByHowMuch) {
   scene::write_file(folder.path() / step.file_name, step.file_text);
   const scene::Scene changed = scene::with_parameters(sides.scene, folder.path() / step.file_name);
   EXPECT_EQ(changed.contact.law, scene::ContactLaw::area_aware);
+  EXPECT_NEAR(changed.fast.s_c_m2, 0.036, 1e-9);
   const Errors after = compute_errors(changed, fast::run(changed), sides.result);
-  EXPECT_THAT(step.why, HasSubstr("to " + percent_text(*after.force_nrmse.value) + " of the peak"));
+  EXPECT_THAT(step.why, HasSubstr("to " + percent_text(*after.force_nrmse.value) + ", shape error from "));
+  EXPECT_THAT(step.why, HasSubstr("to " + percent_text(*after.shape_rel_l2.value) + "."));
 }
 
 TEST(NextSteps, DoNotOfferWhatIsNoBetter) {
@@ -86,25 +89,35 @@ TEST(NextSteps, AskForThreeMeshesWhereTheUncertaintyIsUnknown) {
   testing::Sides sides = testing::pressed(5, 200);
   EXPECT_EQ(find(steps_of(sides), "uncertainty").why, "");
   sides.scene.reference.levels = 1;
-  sides.call.reference = " --level 1";
+  sides.call.reference.levels = 1;
   sides.result.levels.resize(1);
   sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(find(steps_of(sides), "three meshes").command, "touchstone compare meshes/scenes/ball-on-cube-press.toml");
 }
 
-TEST(NextSteps, DoNotAskForTimeWhereMemoryIsShort) {
+TEST(NextSteps, AskForMoreOfWhatWasShort) {
   testing::Sides sides = testing::pressed(5, 200);
   sides.scene.reference.levels.reset();
-  sides.call.reference.clear();
+  sides.call.reference = {};
   sides.result.levels.resize(2);
   sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
-  sides.result.refinement.why_ended =
-      "there is no mesh 3: its 90000 unknowns would take about 2 h, more than the 1 h left";
-  EXPECT_THAT(find(steps_of(sides), "third mesh").command, HasSubstr(" --minutes "));
-  sides.result.refinement.why_ended =
-      "there is no mesh 3: its 90000 unknowns would take about 31 GiB of memory, more than 19 GiB";
-  EXPECT_EQ(find(steps_of(sides), "--minutes").command, "");
+  sides.result.refinement.ended_by = reference::EndedBy::time;
+  EXPECT_THAT(find(steps_of(sides), "more time").command, HasSubstr(" --minutes 240"));
+  sides.call.reference.minutes = 300.0;
+  EXPECT_THAT(find(steps_of(sides), "more time").command, HasSubstr(" --minutes 1200"));
+  sides.result.refinement.ended_by = reference::EndedBy::memory;
+  EXPECT_EQ(find(steps_of(sides), "more time").command, "");
   EXPECT_THAT(find(steps_of(sides), "--memory-gib").why, HasSubstr("reference.element_size_m"));
+}
+
+TEST(NextSteps, DoNotRefineWhereNoMeshHelps) {
+  testing::Sides sides = testing::pressed(5, 200);
+  sides.scene.reference.levels.reset();
+  sides.call.reference = {};
+  sides.run.instants = sides.result.instants;  // no error is larger than the uncertainty
+  EXPECT_THAT(find(steps_of(sides), "Refine the reference").command, HasSubstr(" --error "));
+  sides.result.refinement.ended_by = reference::EndedBy::sensitivity;
+  EXPECT_EQ(find(steps_of(sides), "Refine the reference").command, "");
 }
 
 TEST(NextSteps, NameTheStudyThatTrainsOnTheScene) {

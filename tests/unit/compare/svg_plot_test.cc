@@ -250,5 +250,18 @@ TEST(SvgPlot, HiddenMarkersTellTheirValuesAndAreNotSeen) {
   EXPECT_EQ(count(svg, "<circle"), 3u);  // none in the legend
 }
 
+TEST(SvgPlot, ThePointsNameStandsOnNoLine) {
+  Plot plot = line({0.0, 1.0}, {0.5, 0.5});
+  plot.curves[0].markers = false;
+  plot.y_range = {0.0, 1.0};
+  plot.names = {{"here", 0.5, 0.5}};
+  const std::string svg = to_svg(plot);
+  std::smatch level, name;
+  ASSERT_TRUE(std::regex_search(svg, level, std::regex("<path d=\"M[-0-9.]+[ ,]([-0-9.]+)"))) << svg;
+  ASSERT_TRUE(std::regex_search(svg, name, std::regex("y=\"([-0-9.]+)\"[^>]*>here</text>"))) << svg;
+  const double baseline_px = std::stod(name[1]), line_px = std::stod(level[1]);
+  EXPECT_TRUE(baseline_px < line_px || baseline_px > line_px + 10.0) << baseline_px << ' ' << line_px;
+}
+
 }  // namespace
 }  // namespace touchstone::compare

@@ -150,7 +150,7 @@ Sides pressed(int instants, int triangles) {
                     "title = \"A ball pressed on a rubber cube (paper, Fig. 13)\"\n\n[body]\nshape = \"box\"\n",
                     {{"version", "0.1.0"}, {"compiler", "GNU 12.2.0"}, {"date", "2026-01-01T00:00:00Z"}},
                     {{"fast", 1.2, 1.1}, {"reference", 317.0, 560.0}}};
-  sides.call = {"meshes/scenes/ball-on-cube-press.toml", {}, " --level 3", {}, "out/ball-on-cube-press-compare"};
+  sides.call = {"meshes/scenes/ball-on-cube-press.toml", {}, {.levels = 3}, {}, "out/ball-on-cube-press-compare"};
   return sides;
 }
 

@@ -233,9 +233,9 @@ TEST_F(ViewTest, WithoutADisplaySaysSoInOneLineAndWritesThePictureIfAsked) {
   EXPECT_EQ(written.code, 0) << written.text;
   const std::vector<Rgb> pixels = pixels_of(file);
   EXPECT_GT(std::set<Rgb>(pixels.begin(), pixels.end()).size(), 200u);
-  const Ended none = run(program + " --colour heat --screenshot " + file.string());
+  const Ended none = run(program + " --colour eror --screenshot " + file.string());
   EXPECT_EQ(none.code, 2);
-  EXPECT_THAT(none.text, HasSubstr("this result has displacement, error, uncertainty"));
+  EXPECT_THAT(none.text, HasSubstr("this result has displacement, error, uncertainty; did you mean \"error\"?"));
   EXPECT_EQ(run(program + " --instant 5 --screenshot " + file.string()).code, 2);
 }
 

@@ -135,6 +135,7 @@ TEST_F(RefinementTest, SaysThatTheMemoryEndedIt) {
   options.memory_limit_bytes = expected_memory_bytes(2, 6000.0);
   const Result result = run(options);
   EXPECT_FALSE(result.refinement.reached);
+  EXPECT_EQ(result.refinement.ended_by, EndedBy::memory);
   EXPECT_NE(result.refinement.why_ended.find("GiB of memory"), std::string::npos) << result.refinement.why_ended;
   EXPECT_LE(result.levels.back().unknowns, 6000);
   const std::string next = "no mesh " + std::to_string(result.levels.size() + 1) + ":";
@@ -349,6 +350,7 @@ TEST_F(RefinementTest, EndsWhereMeshesDoNotHelp) {
   const Result result = run_to(5e-4);
   EXPECT_FALSE(result.refinement.reached);
   EXPECT_EQ(result.levels.size(), 3u);
+  EXPECT_EQ(result.refinement.ended_by, EndedBy::sensitivity);
   EXPECT_NE(result.refinement.why_ended.find("finer meshes do not help"), std::string::npos)
       << result.refinement.why_ended;
   EXPECT_NE(result.refinement.why_ended.find("more instants would"), std::string::npos) << result.refinement.why_ended;
