@@ -111,7 +111,7 @@ TEST_P(Verb, RefusesAnUnreadableTrackFile) {
   std::string content = text.str();
   content.erase(content.find("[[track]]"), content.rfind("0.0650]") + 7 - content.find("[[track]]"));
   std::ofstream(file) << content;
-  expect_refused(file, "none.csv: cannot read the track");
+  expect_refused(file, "none.csv: there is no such file; expected a CSV file");
 }
 TEST_P(Verb, RefusesAMissingScene) { expect_refused((dir_ / "none.toml").string(), "cannot read the scene"); }
 

@@ -296,7 +296,7 @@ TEST_F(MeshFile, MissingFileIsNamed) {
   std::vector<Fault> faults;
   EXPECT_FALSE(read_triangle_mesh(folder_ / "none.stl", 1.0, faults).has_value());
   ASSERT_EQ(faults.size(), 1u);
-  EXPECT_THAT(faults[0].text(), HasSubstr("none.stl: cannot be read"));
+  EXPECT_THAT(faults[0].text(), HasSubstr("none.stl: cannot read the mesh: there is no such file"));
 }
 
 TEST_F(MeshFile, TakesTwentyThousandTriangles) {
