@@ -12,7 +12,7 @@ namespace touchstone::scene {
 
 /// A mesh tool is no larger than the other tools, and checking one is a matter of seconds.
 inline constexpr double mesh_reach_max_m = 10.0;  ///< of every coordinate
-inline constexpr std::size_t mesh_triangles_max = 4'000'000;
+inline constexpr std::size_t mesh_triangles_max = 500'000, mesh_pieces_max = 1000;
 
 /// As read_triangle_mesh(). @param file  the content is of; @returns null when there were faults
 [[nodiscard]] std::shared_ptr<const TriangleMesh> mesh_of_file(std::string content, const std::filesystem::path& file,

@@ -63,7 +63,7 @@ std::optional<TriangleMesh> checked_mesh(const std::string& content, const std::
                   std::to_string(mesh_triangles_max));
   }
   for (const Vec3& p : raw.points) {
-    if (p.cwiseAbs().maxCoeff() * unit_m > mesh_reach_max_m) {
+    if (!(p.cwiseAbs().maxCoeff() * unit_m <= mesh_reach_max_m)) {
       return refuse("the vertex at " + place_text(p) + " is " + number_text(p.cwiseAbs().maxCoeff() * unit_m) +
                     " m from the origin along an axis; expected at most " + number_text(mesh_reach_max_m) +
                     " m (tool.unit)");
@@ -73,8 +73,20 @@ std::optional<TriangleMesh> checked_mesh(const std::string& content, const std::
   // Places in faults are in the file's own unit, as its author sees them.
   std::vector<MeshPiece> pieces;
   if (const auto fault = orient_outwards(raw, pieces)) return refuse(*fault);
-  if (const auto place = self_intersection(raw)) {
-    return refuse("the surface cuts or touches itself near " + place_text(*place));
+  if (pieces.size() > mesh_pieces_max) {
+    return refuse("the mesh has " + std::to_string(pieces.size()) + " separate pieces; expected at most " +
+                  std::to_string(mesh_pieces_max));
+  }
+  try {
+    // A mesh of triangles as long as wide has some ten pairs for each.
+    const std::size_t pairs_max = 4'000'000 + 20 * raw.triangles.size();
+    if (const auto place = self_intersection(raw, pairs_max)) {
+      return refuse("the surface cuts or touches itself near " + place_text(*place));
+    }
+  } catch (const TooManyPairs&) {
+    return refuse(
+        "the mesh has too many long thin triangles side by side to tell whether it cuts itself; expected "
+        "triangles nearer to equal sides");
   }
   if (const auto place = nested_piece(raw, pieces)) {
     return refuse("the piece at " + place_text(*place) +
