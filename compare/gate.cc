@@ -2,8 +2,10 @@
 
 #include "compare/figures.h"
 #include "compare/stored_reference.h"
+#include "scene/json_text.h"
 #include "scene/nearest_name.h"
 #include "scene/scene_io.h"
+#include "scene/text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -33,9 +35,10 @@ std::map<std::string, AcceptedValue> read_accepted(const path& file) {
     for (const auto& [name, entry] : json.items()) {
       accepted[name] = {entry.at("value"), entry.at("unit"), entry.at("scene_hash")};
     }
-  } catch (const Json::exception& error) {
-    throw scene::InputError(
-        {{file.string(), 0, 0, std::string(error.what()) + "; expected what \"touchstone gate --accept\" writes"}});
+  } catch (const Json::exception&) {
+    throw scene::InputError({{file.string(), 0, 0,
+                              "is not JSON with value, unit and scene_hash of each gate; expected what \"touchstone "
+                              "gate --accept\" writes"}});
   }
   return accepted;
 }
@@ -46,7 +49,7 @@ void write_accepted(const path& file, const std::map<std::string, AcceptedValue>
     json[name] = {{"value", entry.value}, {"unit", entry.unit}, {"scene_hash", entry.scene_hash}};
   }
   std::filesystem::create_directories(file.parent_path());
-  scene::write_file(file, json.dump(2) + "\n");
+  scene::write_file(file, scene::json_text(json));
 }
 
 bool is_asked(const std::string& file, const std::string& gate, const GateNames& names) {
@@ -92,6 +95,32 @@ GateRecord judged(const GateFolder& folder, const scene::GateFile& file, const s
                   const std::string& scene_hash) {
   if (!answer.failure.empty()) return {file.name, gate, {}, {}, {}, answer.failure};
   return judge(file.name, gate, answer.figures, accepted_of(folder, file.name + "." + gate.name), scene_hash);
+}
+
+/// A gate on a figure that its run does not have, or against reference data that is not there, is a fault of its file.
+void require_answerable(const scene::GateFile& file, const GateNames& names, const Answer& answer) {
+  std::vector<scene::Fault> faults;
+  for (const scene::Gate& gate : file.gates) {
+    if (!is_asked(file.name, gate.name, names) || !answer.failure.empty()) continue;
+    if (find(answer.figures, gate.quantity) != nullptr) continue;
+    std::vector<std::string> keys;
+    for (const scene::Figure& figure : answer.figures) keys.push_back(figure.key);
+    scene::Fault fault = gate.place;
+    fault.message = "gate " + file.name + "." + gate.name + ": there is no figure " + scene::shortened(gate.quantity) +
+                    "; expected a key of summary.json of a " + name_of(file.run) + " run" +
+                    scene::did_you_mean(gate.quantity, keys);
+    faults.push_back(std::move(fault));
+  }
+  if (!faults.empty()) throw scene::InputError(std::move(faults));
+}
+
+void require_reference(const scene::GateFile& file) {
+  if (file.reference.empty() || std::filesystem::is_directory(file.reference)) return;
+  scene::Fault fault = file.gates.front().place;
+  fault.line = fault.column = 0;
+  fault.message = "reference: there is no folder " + file.reference.string() +
+                  "; expected reference data, which touchstone gate --regenerate " + file.name + " writes";
+  throw scene::InputError({fault});
 }
 
 std::string hash_of(const scene::GateFile& file) { return scene::scene_hash(scene_of(file)); }
@@ -245,8 +274,10 @@ std::vector<GateRecord> run_gates(const GateFolder& folder, const GateNames& nam
   std::vector<GateRecord> records;
   for (const scene::GateFile& file : folder.files) {
     if (!is_asked(file, names)) continue;
+    require_reference(file);
     if (working) working(file.name);
     const Answer own = answer(file, {});
+    require_answerable(file, names, own);
     const std::string hash = hash_of(file);
     for (const scene::Gate& gate : file.gates) {
       if (is_asked(file.name, gate.name, names)) records.push_back(judged(folder, file, gate, own, hash));

@@ -4,6 +4,7 @@
 #include "scene/build_info.h"
 #include "scene/files.h"
 #include "scene/hash.h"
+#include "scene/json_text.h"
 #include "scene/results.h"
 #include "scene/scene_io.h"
 
@@ -285,7 +286,7 @@ void store_reference(const path& folder, const scene::Scene& scene, const scene:
                       {"commit", scene::build_info.commit},
                       {"curve_checksum", scene::hash_text(*scene::read_file(folder / curve_name))},
                       {"surface_checksum", scene::hash_text(bytes)}};
-  scene::write_file(folder / about_name, about.dump(2) + "\n");
+  scene::write_file(folder / about_name, scene::json_text(about));
 }
 
 reference::Result stored_reference(const path& folder, const scene::Scene& scene, const scene::Surface& surface) {

@@ -5,6 +5,7 @@
 #include "scene/files.h"
 #include "scene/first_contact.h"
 #include "scene/hash.h"
+#include "scene/json_text.h"
 #include "scene/mesh_file.h"
 #include "scene/results.h"
 #include "scene/scene_io.h"
@@ -147,7 +148,7 @@ StudyManifest expand(const scene::Study& study, const std::filesystem::path& fol
                              {"set", pairs(one.settings)}});
   }
   scene::write_file(folder / "array.sbatch", batch_script(manifest, program, store));
-  scene::write_file(folder / "manifest.json", json.dump(2) + "\n");
+  scene::write_file(folder / "manifest.json", scene::json_text(json));
   return manifest;
 }
 

@@ -4,6 +4,7 @@
 #include "scene/build_info.h"
 #include "scene/files.h"
 #include "scene/hash.h"
+#include "scene/json_text.h"
 #include "scene/results.h"
 #include "scene/scene_io.h"
 
@@ -123,7 +124,7 @@ int run_case(const StudyManifest& manifest, const ManifestCase& one, const CaseR
   std::filesystem::remove(folder / "done.json");
   std::filesystem::remove(folder / "failed.json");
   const Json attempt = {{"id", one.id}, {"host", host_name()}, {"process", ::getpid()}, {"began", utc_now()}};
-  scene::write_file(folder / "attempt.json", attempt.dump(2) + "\n");
+  scene::write_file(folder / "attempt.json", scene::json_text(attempt));
   say(title);
   const scene::Stopwatch watch;
   std::string why;
@@ -133,7 +134,7 @@ int run_case(const StudyManifest& manifest, const ManifestCase& one, const CaseR
     Json failed = attempt;
     failed["exit_code"] = code;
     failed["why"] = why;
-    scene::write_file(folder / "failed.json", failed.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    scene::write_file(folder / "failed.json", scene::json_text(failed));
     say(title + " failed: " + why);
     return code;
   }
@@ -145,7 +146,7 @@ int run_case(const StudyManifest& manifest, const ManifestCase& one, const CaseR
   done["version"] = scene::build_info.version;
   done["commit"] = scene::build_info.commit;
   done["summary"] = scene::hash_text(*summary);
-  scene::write_file(folder / "done.json", done.dump(2) + "\n");
+  scene::write_file(folder / "done.json", scene::json_text(done));
   say(title + fmt::format(" done in {:.1f} s", watch.read("case").wall_s));
   return code;
 }

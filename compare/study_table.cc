@@ -5,7 +5,9 @@
 #include "compare/result_folder.h"
 #include "compare/study_page.h"
 #include "compare/study_parameters.h"
+#include "compare/text.h"
 #include "scene/files.h"
+#include "scene/json_text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -31,14 +33,6 @@ constexpr std::array short_figures = {"force.nrmse",
                                       "reference.shape_uncertainty_rel",
                                       "reference.wall_s",
                                       "fast.step_us.p50"};
-
-/// RFC 4180.
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
-}
 
 bool is_number(const scene::Figure& figure) { return figure.text.empty() || !std::isfinite(figure.number); }
 
@@ -84,7 +78,7 @@ std::string csv(const StudyManifest& manifest, const std::vector<StudyRow>& rows
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const StudyRow& row = rows[k];
     const bool done = row.status.state == CaseState::done;
-    text += fmt::format("{},{},{},{},{},{},{}", row.one->index, row.one->id, csv_cell(row.one->name),
+    text += fmt::format("{},{},{},{},{},{},{}", row.one->index, csv_cell(row.one->id), csv_cell(row.one->name),
                         state_name(row.status.state), csv_cell(row.status.why), csv_cell(row.status.version),
                         done ? fmt::format("{}", row.status.wall_s) : "");
     for (const std::string& axis : manifest.axes) text += "," + csv_cell(label_at(*row.one, axis));
@@ -205,7 +199,7 @@ StudyTable collect(const StudyManifest& manifest) {
   }
   const std::vector<StudyParameter> beside = keys_beside(manifest);
   scene::write_file(manifest.folder / "summary.csv", csv(manifest, rows, beside, keys));
-  scene::write_file(manifest.folder / "summary.json", json(manifest, rows, units).dump(2) + "\n");
+  scene::write_file(manifest.folder / "summary.json", scene::json_text(json(manifest, rows, units)));
   scene::write_file(manifest.folder / "summary.md", markdown(manifest, rows, beside, table.text));
   scene::write_file(manifest.folder / "report.html", study_page_html(manifest, rows));
   return table;

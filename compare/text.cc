@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <span>
 
@@ -131,6 +132,18 @@ std::string wrapped(std::string_view text, std::size_t width) {
     column += length;
   }
   return out;
+}
+
+std::string csv_cell(const std::string& text) {
+  double ignored = 0.0;
+  const char *begin = text.data() + (text.starts_with('+') ? 1 : 0), *end = text.data() + text.size();
+  const bool number = std::from_chars(begin, end, ignored).ptr == end;
+  const bool formula = !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos && !number;
+  const std::string told = formula ? "'" + text : text;
+  if (told.find_first_of(",\"\r\n") == std::string::npos) return told;
+  std::string out = "\"";
+  for (const char c : told) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + "\"";
 }
 
 std::string escape_xml(std::string_view text) {

@@ -31,6 +31,10 @@ inline constexpr double least_ratio = 1e-6;
 /// Broken into lines of at most `width` characters at spaces.
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t width = 100);
 
+/// A text as a cell of a CSV file (RFC 4180). One that a spreadsheet would take for a formula gets an apostrophe first,
+/// as spreadsheets write a text themselves; a number does not.
+[[nodiscard]] std::string csv_cell(const std::string& text);
+
 /// For text and attributes of HTML, SVG and XML.
 [[nodiscard]] std::string escape_xml(std::string_view text);
 

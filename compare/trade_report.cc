@@ -166,12 +166,6 @@ std::string html(const Trade& trade, const scene::Manifest& manifest) {
   return page(trade.title, out);
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 std::string csv(const Trade& trade) {
   std::string out =
       "key,name,size,step_p50_us,step_p999_us,steps,setup_s,memory_bytes,force_nrmse,force_nrmse_uncertainty,"
@@ -179,14 +173,14 @@ std::string csv(const Trade& trade) {
   const auto stands = standing(trade, &TradeRow::name);
   for (std::size_t i = 0; i < trade.rows.size(); ++i) {
     const TradeRow& row = trade.rows[i];
-    out += row.key + "," + quoted(row.name) + fmt::format(",{},", row.size);
+    out += row.key + "," + csv_cell(row.name) + fmt::format(",{},", row.size);
     for (const double value :
          {row.step_p50_us, row.step_p999_us, static_cast<double>(row.steps), row.setup_s, row.memory_bytes,
           row.force_nrmse.value.value_or(NAN), row.force_nrmse.uncertainty.value_or(NAN),
           row.shape_rel_l2.value.value_or(NAN), row.shape_rel_l2.uncertainty.value_or(NAN)}) {
       out += fmt::format("{},", value);
     }
-    out += quoted(stands[i][0]) + "," + quoted(stands[i][1]) + "," + quoted(row.absent) + "\n";
+    out += csv_cell(stands[i][0]) + "," + csv_cell(stands[i][1]) + "," + csv_cell(row.absent) + "\n";
   }
   return out;
 }

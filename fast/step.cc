@@ -3,8 +3,7 @@
 #include "fast/flush_tiny_numbers.h"
 #include "fast/press.h"
 #include "fast/several_regions.h"
-
-#include <cmath>
+#include "scene/fields.h"
 
 namespace touchstone::fast {
 namespace {
@@ -12,11 +11,8 @@ namespace {
 using scene::Pose;
 using scene::Vec3;
 
-bool finite(const Pose& pose) noexcept {
-  // The squares of a shorter quaternion have lost digits, and its direction with them.
-  constexpr double shortest = 1e-150;
-  const double length = pose.orientation.norm();
-  return pose.position_m.allFinite() && std::isfinite(length) && length > shortest;
+bool is_placement(const Pose& pose) noexcept {
+  return pose.position_m.allFinite() && scene::orientation_norm.contains(pose.orientation.norm());
 }
 
 /// The whole tool in one region.
@@ -28,7 +24,7 @@ StepStatus press_one_region(const FastModel& model, const Motion& motion, FastSt
 }  // namespace
 
 StepStatus step_force(const FastModel& model, const Pose& pose_asked, FastState& state) noexcept {
-  if (!finite(pose_asked)) return StepStatus::not_finite;
+  if (!is_placement(pose_asked)) return StepStatus::not_finite;
   const Pose pose{pose_asked.position_m, pose_asked.orientation.normalized()};
   const Motion motion{pose, placement(pose), state.placed ? state.pose : pose, !state.placed};
   const StepStatus status =

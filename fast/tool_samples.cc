@@ -160,10 +160,11 @@ ToolSamples sample_revolution(const scene::Revolution& tool, int count) {
   return in_tree_order(cloud, tool.area_m2());
 }
 
-void halve_until(double limit_m2, const std::array<Vec3, 3>& corners, Cloud& cloud) {
+/// @param halvings_left  an end whatever the numbers are; a tool's largest triangle needs 20 for the most samples
+void halve_until(double limit_m2, const std::array<Vec3, 3>& corners, Cloud& cloud, int halvings_left = 24) {
   const Vec3 twice_area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   const double area_m2 = 0.5 * twice_area.norm();
-  if (area_m2 <= limit_m2) {
+  if (!(area_m2 > limit_m2) || halvings_left == 0) {
     cloud.add((corners[0] + corners[1] + corners[2]) / 3.0, twice_area.normalized(), area_m2);
     return;
   }
@@ -178,8 +179,8 @@ void halve_until(double limit_m2, const std::array<Vec3, 3>& corners, Cloud& clo
   }
   const Vec3 &a = corners[longest], &b = corners[(longest + 1) % 3], &c = corners[(longest + 2) % 3];
   const Vec3 middle = 0.5 * (a + b);
-  halve_until(limit_m2, {a, middle, c}, cloud);
-  halve_until(limit_m2, {middle, b, c}, cloud);
+  halve_until(limit_m2, {a, middle, c}, cloud, halvings_left - 1);
+  halve_until(limit_m2, {middle, b, c}, cloud, halvings_left - 1);
 }
 
 /// One sample for each group of neighbours that look the same way.

@@ -1,12 +1,13 @@
 #include "fast/live/live_log.h"
 
 #include "scene/error.h"
+#include "scene/input.h"
+#include "scene/text.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <string_view>
 
 namespace touchstone::live {
@@ -76,7 +77,7 @@ double number_in(std::string_view cell, Column column, const Place& place) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   if (error != std::errc() || end != cell.data() + cell.size() || !(free || std::isfinite(value))) {
-    place.refuse(std::string(column_names[column]) + " = \"" + std::string(cell) + "\"; expected a " +
+    place.refuse(std::string(column_names[column]) + " = \"" + scene::shortened(cell, 40) + "\"; expected a " +
                  (free ? "number" : "finite number"));
   }
   return value;
@@ -86,7 +87,7 @@ std::int64_t count_in(std::string_view cell, Column column, std::int64_t largest
   std::int64_t value = -1;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   if (error != std::errc() || end != cell.data() + cell.size() || value < 0 || value > largest) {
-    place.refuse(std::string(column_names[column]) + " = \"" + std::string(cell) +
+    place.refuse(std::string(column_names[column]) + " = \"" + scene::shortened(cell, 40) +
                  "\"; expected a whole number in [0, " + std::to_string(largest) + "]");
   }
   return value;
@@ -131,18 +132,17 @@ void append_log_line(const TickRecord& record, std::string& text) {
 }
 
 LiveLog read_log(const std::filesystem::path& file) {
+  const std::string content = scene::require_input(file, scene::log_input, "the log");
+  std::string_view text = scene::without_mark(content);
   Place place{file};
-  std::ifstream in(file);
-  if (!in || std::filesystem::is_directory(file)) {
-    place.refuse("cannot read the log; expected the live.csv of a live run");
-  }
-  std::string line;
   std::array<std::size_t, column_count> at{};
   std::size_t width = 0;
   LiveLog log;
-  while (std::getline(in, line)) {
+  while (!text.empty()) {
     ++place.line;
-    if (!line.empty() && line.back() == '\r') line.pop_back();
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     const std::vector<std::string_view> cells = split(line);
     if (width == 0) {
       width = cells.size();
@@ -196,10 +196,10 @@ LiveLog read_log(const std::filesystem::path& file) {
       }
       const double time = static_cast<double>(record.tick.index) / log.rate_hz;
       if (std::abs(record.tick.time_s - time) > 1e-12 * time) {
-        std::string text = "time_s = " + std::string(cells[at[time_s]]) + " at tick " +
-                           std::to_string(record.tick.index) + "; expected ";
-        append(time, text);
-        place.refuse(text + ", as at " + std::to_string(log.rate_hz) + " Hz");
+        std::string message = "time_s = " + scene::shortened(cells[at[time_s]], 40) + " at tick " +
+                              std::to_string(record.tick.index) + "; expected ";
+        append(time, message);
+        place.refuse(message + ", as at " + std::to_string(log.rate_hz) + " Hz");
       }
     }
     log.ticks.push_back(record);

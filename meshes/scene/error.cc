@@ -1,5 +1,8 @@
 #include "scene/error.h"
 
+#include "scene/text.h"
+
+#include <algorithm>
 #include <utility>
 
 namespace touchstone::scene {
@@ -7,9 +10,13 @@ namespace {
 
 std::string join(const std::vector<Fault>& faults) {
   std::string text;
-  for (const Fault& fault : faults) {
-    if (!text.empty()) text += '\n';
-    text += fault.text();
+  for (std::size_t i = 0; i < std::min(faults.size(), faults_shown_max); ++i) {
+    if (i > 0) text += '\n';
+    text += faults[i].text();
+  }
+  if (faults.size() > faults_shown_max) {
+    const std::size_t more = faults.size() - faults_shown_max;
+    text += "\nand " + std::to_string(more) + (more == 1 ? " more fault" : " more faults");
   }
   return text;
 }
@@ -17,10 +24,12 @@ std::string join(const std::vector<Fault>& faults) {
 }  // namespace
 
 std::string Fault::text() const {
-  std::string place = file;
+  constexpr std::size_t message_bytes_max = 2000;
+  std::string place = visible(shortened(file, 1000));
   if (line > 0) place += ":" + std::to_string(line);
   if (line > 0 && column > 0) place += ":" + std::to_string(column);
-  return place.empty() ? message : place + ": " + message;
+  const std::string told = visible(shortened(message, message_bytes_max));
+  return place.empty() ? told : place + ": " + told;
 }
 
 InputError::InputError(std::vector<Fault> faults) : std::runtime_error(join(faults)), faults_(std::move(faults)) {}

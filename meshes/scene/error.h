@@ -14,11 +14,11 @@ struct Fault {
   int column = 0;    ///< 1-based; 0 when unknown
   std::string message;
 
-  /// "file:line:column: message", leaving out what is unknown.
+  /// "file:line:column: message" on one line, control characters visible; without what is unknown, cut if very long.
   [[nodiscard]] std::string text() const;
 };
 
-/// Bad input. Carries every fault found, not only the first; what() lists one per line.
+/// Bad input. Carries every fault found; what() lists one per line, the first faults_shown_max and how many more.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(std::vector<Fault> faults);

@@ -1,5 +1,7 @@
 #include "scene/fields.h"
 
+#include "scene/text.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -19,15 +21,6 @@ template <class Enum, class T = Scene>
 Choice<T> choice(std::vector<std::string_view> names, Enum& (*member)(T&)) {
   return {std::move(names), [member](const T& object) { return static_cast<int>(member(const_cast<T&>(object))); },
           [member](T& object, int value) { member(object) = static_cast<Enum>(value); }};
-}
-
-std::string toml_quoted(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "\"";
 }
 
 // A table reads best with one key per row.
@@ -208,7 +201,7 @@ std::vector<Field<Inclusion>> make_inclusion_fields() {
 std::vector<Field<TrackRow>> make_track_fields() {
   using R = TrackRow;
   return {
-      {"time_s", "s", between(-1e9, 1e9), {}, Side::shared, +[](R& r) -> double& { return r.time_s; }, {},
+      {"time_s", "s", between(-1e5, 1e5), {}, Side::shared, +[](R& r) -> double& { return r.time_s; }, {},
            "Time of the pose, increasing from row to row."},
       {"position_m", "m", between(-1e3, 1e3), {}, Side::shared, +[](R& r) -> OpenPosition& { return r.position; }, {},
            "Tool frame origin (mass centre) in the world."},
@@ -216,8 +209,8 @@ std::vector<Field<TrackRow>> make_track_fields() {
            "In place of the height: how far the tool has moved straight down since it first touched the undeformed body; negative: so far before that."},
       {"direction", "", between(-1e3, 1e3), {}, Side::shared, +[](R& r) -> std::optional<Vec3>& { return r.direction; }, {},
            "Only with `depth_m`: the direction to move in, of any non-zero length, along the line through `position_m` = [x, y, z]. Absent: straight down, [0, 0, -1]."},
-      {"orientation_wxyz", "", between(-1e3, 1e3), "[1.0, 0.0, 0.0, 0.0]", Side::shared, +[](R& r) -> Eigen::Quaterniond& { return r.orientation; }, {},
-           "Quaternion of the tool frame, of any non-zero length."},
+      {"orientation_wxyz", "", between(-orientation_norm_max, orientation_norm_max), "[1.0, 0.0, 0.0, 0.0]", Side::shared, +[](R& r) -> Eigen::Quaterniond& { return r.orientation; }, {},
+           "Quaternion of the tool frame; it is normalised."},
   };
 }
 // clang-format on
@@ -237,7 +230,8 @@ double body_size_m(const Body& body) {
   return std::cbrt((bounds.upper_m - bounds.lower_m).prod());
 }
 
-Eigen::Quaterniond unit(const Eigen::Quaterniond& q) {
+std::optional<Eigen::Quaterniond> orientation_of(const Eigen::Quaterniond& q) {
+  if (!orientation_norm.contains(q.norm())) return std::nullopt;
   // Dividing by a length that differs from one by rounding alone would change the last digits at every reading.
   constexpr double rounding = 2e-15;
   return std::abs(q.squaredNorm() - 1.0) < rounding ? q : q.normalized();
@@ -273,6 +267,10 @@ const std::vector<OptionalTable>& optional_tables() {
 const std::vector<Field<TrackRow>>& track_fields() {
   static const std::vector<Field<TrackRow>> fields = make_track_fields();
   return fields;
+}
+
+const Field<TrackRow>& track_field(std::string_view key) {
+  return *std::ranges::find(track_fields(), key, &Field<TrackRow>::key);
 }
 
 namespace {
@@ -328,7 +326,8 @@ std::string expected_text(const Field<T>& field) {
     }
     return out;
   }
-  if (std::holds_alternative<std::string& (*)(T&)>(field.access)) return "a text";
+  if (std::holds_alternative<std::string& (*)(T&)>(field.access))
+    return std::string("a text") + (field.default_value ? "" : ", not empty,") + " without control characters";
   std::string out = "a number in ";
   if (std::holds_alternative<Vec3& (*)(T&)>(field.access) ||
       std::holds_alternative<std::optional<Vec3>& (*)(T&)>(field.access)) {
@@ -336,7 +335,7 @@ std::string expected_text(const Field<T>& field) {
   } else if (std::holds_alternative<OpenPosition& (*)(T&)>(field.access)) {
     out = "three numbers [x, y, z], or two [x, y] with depth_m, each in ";
   } else if (std::holds_alternative<Eigen::Quaterniond& (*)(T&)>(field.access)) {
-    out = "four numbers, each in ";
+    out = "four numbers of a norm in " + orientation_norm.text() + ", each in ";
   } else if (std::holds_alternative<int& (*)(T&)>(field.access) ||
              std::holds_alternative<std::optional<int>& (*)(T&)>(field.access)) {
     out = "a whole number in ";

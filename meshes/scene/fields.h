@@ -45,8 +45,13 @@ struct TrackRow {
 /// Edge of the cube that holds as much as the body's bounding box [m]: what lengths without a value are fractions of.
 [[nodiscard]] double body_size_m(const Body& body);
 
-/// At unit length, and such that what is written out reads back bit for bit. @param q  of non-zero length
-[[nodiscard]] Eigen::Quaterniond unit(const Eigen::Quaterniond& q);
+/// How long a quaternion may be that is meant as an orientation. One far from 1 is a slip, and the squares of a very
+/// short or long one lose its digits.
+inline constexpr double orientation_norm_max = 2.0;
+inline constexpr Range orientation_norm{0.5, orientation_norm_max};
+
+/// At unit length, and such that what is written out reads back bit for bit; nothing for a norm out of range.
+[[nodiscard]] std::optional<Eigen::Quaterniond> orientation_of(const Eigen::Quaterniond& q);
 
 /// Where a key's value lives in a T (the Scene, one Inclusion or one TrackRow).
 template <class T>
@@ -96,6 +101,9 @@ struct Field {
 
 /// The keys of one [[track]] row.
 [[nodiscard]] const std::vector<Field<TrackRow>>& track_fields();
+
+/// One of them: its range holds for every source of a pose, a table's columns too.
+[[nodiscard]] const Field<TrackRow>& track_field(std::string_view key);
 
 /// The keys of one [[body.inclusion]] row.
 [[nodiscard]] const std::vector<Field<Inclusion>>& inclusion_fields();

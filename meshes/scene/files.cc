@@ -1,6 +1,8 @@
 #include "scene/files.h"
 
+#include "scene/descriptor.h"
 #include "scene/error.h"
+#include "scene/input.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -8,8 +10,6 @@
 
 #include <cerrno>
 #include <chrono>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 #include <thread>
 
@@ -21,21 +21,6 @@ constexpr std::string_view unfinished_mark = ".part-";
 [[noreturn]] void fail(const std::string& what, const std::filesystem::path& path, int error) {
   throw std::filesystem::filesystem_error(what, path, std::error_code(error, std::generic_category()));
 }
-
-/// An open file that is closed when the object ends.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  [[nodiscard]] int number() const noexcept { return number_; }
-
- private:
-  int number_;
-};
 
 /// A new file that no other process writes to; `temporary` becomes its name. Its number is -1 with errno set on
 /// failure.
@@ -101,10 +86,9 @@ void write_file(const std::filesystem::path& path, std::string_view content) {
 }
 
 std::optional<std::string> read_file(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string content{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in.is_open() || in.bad() || std::filesystem::is_directory(path)) return std::nullopt;
-  return content;
+  constexpr InputKind own{"a file of Touchstone's own", std::uintmax_t{16} << 30};
+  Input input = read_input(path, own);
+  return input.fault.empty() ? std::optional(std::move(input.bytes)) : std::nullopt;
 }
 
 void remove_unfinished(const std::filesystem::path& folder) {

@@ -14,7 +14,7 @@ namespace touchstone::scene {
 /// @throws std::filesystem::filesystem_error; the file is then what it was before
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-/// The bytes of a file, or nothing when there is none that can be read.
+/// The bytes of a file of our own, or nothing when there is none that can be read.
 [[nodiscard]] std::optional<std::string> read_file(const std::filesystem::path& path);
 
 /// Removes the temporary files that killed runs left in a folder, not in those below it. A live run holds a lock on its

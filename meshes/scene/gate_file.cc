@@ -1,6 +1,7 @@
 #include "scene/gate_file.h"
 
-#include "scene/files.h"
+#include "scene/input.h"
+#include "scene/text.h"
 #include "scene/toml_reader.h"
 
 #include <cmath>
@@ -91,8 +92,8 @@ class Reader : TomlReader {
                          bool may_be_empty = false) {
     const toml::node* node = table.get(key);
     const std::string value = node != nullptr ? node->value_or(std::string()) : std::string();
-    if (node != nullptr && node->is_string() && (may_be_empty || !value.empty())) return value;
-    add(node != nullptr ? *node : table, row + key + ": expected a text");
+    if (node != nullptr && node->is_string() && (may_be_empty || !value.empty()) && is_plain_text(value)) return value;
+    add(node != nullptr ? *node : table, row + key + ": expected a text without control characters");
     return "";
   }
 
@@ -204,21 +205,18 @@ const char* name_of(GateRun run) {
 }
 
 GateFile parse_gate_file(std::string_view text, const std::filesystem::path& file) {
-  const toml::table document = parse_document(text, file);
+  const toml::table document = parse_document(text, file.string());
   require_kind(document, file, FileKind::gates);
   return Reader(document, file).gates();
 }
 
 GateFile load_gate_file(const std::filesystem::path& file) {
-  const std::optional<std::string> text = read_file(file);
-  if (!text) throw InputError({{file.string(), 0, 0, "cannot read the gates; expected a readable TOML file"}});
-  return parse_gate_file(*text, file);
+  return parse_gate_file(require_input(file, toml_input, "the gates"), file);
 }
 
 std::vector<GateWaiver> load_gate_waivers(const std::filesystem::path& file) {
-  const std::optional<std::string> text = read_file(file);
-  if (!text) return {};
-  const toml::table document = parse_document(*text, file);
+  if (std::error_code error; !std::filesystem::exists(file, error) && !error) return {};
+  const toml::table document = read_document(file, "the waivers");
   return Reader(document, file).waivers();
 }
 

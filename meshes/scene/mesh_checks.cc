@@ -193,10 +193,24 @@ std::optional<std::string> orient_outwards(RawMesh& mesh, std::vector<MeshPiece>
 }
 
 std::optional<Vec3> nested_piece(const RawMesh& mesh, const std::vector<MeshPiece>& pieces) {
+  std::vector<Bounds> boxes;
+  for (const MeshPiece& piece : pieces) {
+    Bounds box{Vec3::Constant(INFINITY), Vec3::Constant(-INFINITY)};
+    for (const std::size_t t : piece.triangles) {
+      for (const std::int32_t i : mesh.triangles[t]) {
+        box.lower_m = box.lower_m.cwiseMin(point(mesh, i));
+        box.upper_m = box.upper_m.cwiseMax(point(mesh, i));
+      }
+    }
+    boxes.push_back(box);
+  }
   for (const MeshPiece& inner : pieces) {
     const Vec3 place = point(mesh, mesh.triangles[inner.triangles.front()][0]);
-    for (const MeshPiece& outer : pieces) {
-      if (&inner != &outer && inner.volume < outer.volume && winding(mesh, outer, place) > 0.5) return place;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const MeshPiece& outer = pieces[i];
+      const bool in_box =
+          (boxes[i].lower_m.array() <= place.array()).all() && (place.array() <= boxes[i].upper_m.array()).all();
+      if (in_box && inner.volume < outer.volume && winding(mesh, outer, place) > 0.5) return place;
     }
   }
   return std::nullopt;

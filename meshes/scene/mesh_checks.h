@@ -26,7 +26,11 @@ struct MeshPiece {
 [[nodiscard]] std::optional<Vec3> nested_piece(const RawMesh& mesh, const std::vector<MeshPiece>& pieces);
 
 /// Two triangles without a common vertex that cut or touch each other; a place where they do, in the mesh's unit.
-[[nodiscard]] std::optional<Vec3> self_intersection(const RawMesh& mesh);
+/// @param pairs_max  pairs of triangles looked at before it gives up: long thin triangles side by side have many.
+/// @throws TooManyPairs
+[[nodiscard]] std::optional<Vec3> self_intersection(const RawMesh& mesh, std::size_t pairs_max);
+
+struct TooManyPairs {};
 
 /// Whether the mesh bounds one convex solid but for dents no deeper than the tolerance: of every triangle some plane
 /// leaves all vertices on its inner side, or no further out than the tolerance, and no corner of the triangle further

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 namespace touchstone::scene {
 namespace {
@@ -123,11 +124,16 @@ std::optional<Vec3> outward_direction(const PointTree& tree, const Corners& corn
 /// The triangles of a mesh, and where they are.
 class Facets {
  public:
-  explicit Facets(const RawMesh& mesh) : triangles_(mesh.triangles), points_(mesh.points), at_(mesh.points.size()) {
+  explicit Facets(const RawMesh& mesh)
+      : triangles_(mesh.triangles), points_(mesh.points), at_(mesh.points.size()), turn_at_(mesh.points.size()) {
     // From one of the mesh's own points, so that far from the origin nothing is lost.
     for (Vec3& p : points_) p -= mesh.points.front();
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       for (const std::int32_t i : triangles_[t]) at_[static_cast<std::size_t>(i)].push_back(t);
+    }
+    twice_area_at_.assign(points_.size(), Vec3::Zero());
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      for (const std::int32_t i : triangles_[t]) twice_area_at_[static_cast<std::size_t>(i)] += twice_area(t);
     }
   }
   [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }
@@ -145,21 +151,22 @@ class Facets {
     Vec3 normal = twice_area(t);
     if (normal.norm() < thin * longest) {
       normal.setZero();
-      for (const std::int32_t i : triangles_[t]) {
-        for (const std::size_t near : at_[static_cast<std::size_t>(i)]) normal += twice_area(near);
-      }
+      for (const std::int32_t i : triangles_[t]) normal += twice_area_at_[static_cast<std::size_t>(i)];
     }
     return normal.normalized();
   }
 
   /// Marks the triangle and those joined to it as long as all their corners are at least `least` along the direction.
-  void mark_above(std::size_t first, const Vec3& along, double least, std::vector<bool>& marked) const {
+  void mark_above(std::size_t first, const Vec3& along, double least, std::vector<bool>& marked) {
     std::vector<std::size_t> next = {first};
     marked[first] = true;
+    ++turn_;
     while (!next.empty()) {
       const std::size_t t = next.back();
       next.pop_back();
       for (const std::int32_t i : triangles_[t]) {
+        // Once is enough: a vertex may have thousands of triangles.
+        if (std::exchange(turn_at_[static_cast<std::size_t>(i)], turn_) == turn_) continue;
         for (const std::size_t near : at_[static_cast<std::size_t>(i)]) {
           if (marked[near]) continue;
           const Corners c = corners(near);
@@ -180,12 +187,15 @@ class Facets {
   const std::vector<std::array<std::int32_t, 3>>& triangles_;
   std::vector<Vec3> points_;
   std::vector<std::vector<std::size_t>> at_;  ///< the triangles at every point
+  std::vector<Vec3> twice_area_at_;           ///< their sum
+  std::vector<std::size_t> turn_at_;          ///< when each point was last gone over
+  std::size_t turn_ = 0;
 };
 
 }  // namespace
 
 bool convex(const RawMesh& mesh, double tolerance) {
-  const Facets facets(mesh);
+  Facets facets(mesh);
   const PointTree tree(facets.points());
   std::vector<bool> seen(facets.size(), false);
   for (std::size_t t = 0; t < facets.size(); ++t) {

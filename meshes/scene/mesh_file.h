@@ -10,12 +10,16 @@
 
 namespace touchstone::scene {
 
-/// As read_triangle_mesh(). @returns null when there were faults
-[[nodiscard]] std::shared_ptr<const TriangleMesh> read_mesh_of_file(const std::filesystem::path& file, double unit_m,
-                                                                    std::vector<Fault>& faults);
+/// A mesh tool is no larger than the other tools, and checking one is a matter of seconds.
+inline constexpr double mesh_reach_max_m = 10.0;  ///< of every coordinate
+inline constexpr std::size_t mesh_triangles_max = 500'000, mesh_pieces_max = 1000;
+
+/// As read_triangle_mesh(). @param file  the content is of; @returns null when there were faults
+[[nodiscard]] std::shared_ptr<const TriangleMesh> mesh_of_file(std::string content, const std::filesystem::path& file,
+                                                               double unit_m, std::vector<Fault>& faults);
 
 /// The file's content as it was when the mesh was read, whatever became of the file; null for a mesh that
-/// read_mesh_of_file() did not read. It lives as long as the mesh.
+/// mesh_of_file() did not make. It lives as long as the mesh.
 [[nodiscard]] const std::string* content_of_file(const std::shared_ptr<const TriangleMesh>& mesh);
 
 }  // namespace touchstone::scene

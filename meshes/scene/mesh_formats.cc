@@ -1,8 +1,6 @@
 #include "scene/mesh_formats.h"
 
 #include "scene/error.h"
-#include "scene/files.h"
-#include "scene/nearest_name.h"
 #include "scene/triangle_mesh.h"
 
 #include <algorithm>
@@ -40,7 +38,7 @@ RawMesh read_stl_text(const std::string& bytes, const std::string& name) {
       corners = 0;
     } else if (words[0] != "solid" && words[0] != "facet" && words[0] != "outer" && words[0] != "endfacet" &&
                words[0] != "endsolid") {
-      lines.fail("'" + std::string(words[0]) + "' is not a word of STL text");
+      lines.fail("a line begins with a word " + name_or_nothing(words[0]) + "; expected one of STL text, as vertex");
     }
   }
   if (corners != 0) lines.fail("the file ends within a facet");
@@ -53,7 +51,7 @@ std::int32_t obj_index(const TextLines& lines, std::string_view word, std::size_
   long index = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
   if (error != std::errc() || end != digits.data() + digits.size()) {
-    lines.fail("'" + std::string(word) + "' is not a vertex index");
+    lines.fail("'" + shortened(word, 40) + "' is not a vertex index");
   }
   const long place = index < 0 ? static_cast<long>(points) + index : index - 1;
   if (index == 0 || place < 0 || place >= static_cast<long>(points)) {
@@ -91,9 +89,9 @@ double TextLines::number(std::size_t word) const {
   double value = 0.0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc() || end != digits.data() + digits.size()) {
-    fail("'" + std::string(words_[word]) + "' is not a number");
+    fail("'" + shortened(words_[word], 40) + "' is not a number");
   }
-  if (!std::isfinite(value)) fail("a coordinate is not finite: '" + std::string(words_[word]) + "'");
+  if (!std::isfinite(value)) fail("a coordinate is not finite: '" + shortened(words_[word], 40) + "'");
   return value;
 }
 
@@ -133,9 +131,10 @@ RawMesh read_stl(const std::string& bytes, const std::string& name) {
     expected += stl_facet * static_cast<std::size_t>(count.take<std::uint32_t>());
   }
   if (bytes.size() != expected) {
-    const bool text =
-        bytes.find('\0') == std::string::npos && bytes.find("solid") < bytes.find_first_not_of(" \t\r\n") + 1;
-    if (text) return read_stl_text(bytes, name);
+    const std::string_view text = without_mark(bytes);
+    const bool is_text =
+        text.find('\0') == std::string::npos && text.find("solid") < text.find_first_not_of(" \t\r\n") + 1;
+    if (is_text) return read_stl_text(bytes, name);
     fail(name, "byte " + std::to_string(bytes.size()) + ": the file ends here; its count of triangles asks for " +
                    std::to_string(expected) + " bytes");
   }
@@ -174,12 +173,6 @@ RawMesh read_obj(const std::string& bytes, const std::string& name) {
     }
   }
   return mesh;
-}
-
-std::string read_mesh_bytes(const std::filesystem::path& file) {
-  std::optional<std::string> bytes = read_file(file);
-  if (!bytes) fail(file.string(), "cannot be read" + did_you_mean_file(file));
-  return *std::move(bytes);
 }
 
 RawMesh read_mesh(const std::string& bytes, const std::filesystem::path& file) {

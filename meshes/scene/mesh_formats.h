@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/frames.h"
+#include "scene/text.h"
 
 #include <array>
 #include <cstdint>
@@ -19,9 +20,6 @@ struct RawMesh {
   std::vector<std::array<std::int32_t, 3>> triangles;
 };
 
-/// @throws InputError when the file cannot be read
-[[nodiscard]] std::string read_mesh_bytes(const std::filesystem::path& file);
-
 /// By the file's ending: .stl, .obj or .ply, in any case of letters.
 /// @throws InputError with the line, or with the byte of a binary file
 [[nodiscard]] RawMesh read_mesh(const std::string& bytes, const std::filesystem::path& file);
@@ -34,7 +32,8 @@ struct RawMesh {
 /// Lines of a text and the words on them.
 class TextLines {
  public:
-  TextLines(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {}
+  TextLines(std::string_view text, std::string name)
+      : text_(text), name_(std::move(name)), at_(text.size() - without_mark(text).size()) {}
   /// Steps to the next line that holds words. @returns false at the end
   bool next();
   [[nodiscard]] const std::vector<std::string_view>& words() const noexcept { return words_; }
@@ -51,7 +50,7 @@ class TextLines {
  private:
   std::string_view text_;
   std::string name_;
-  std::size_t at_ = 0;
+  std::size_t at_;
   int line_ = 0;
   std::vector<std::string_view> words_;
 };

@@ -22,11 +22,12 @@ struct Node {
 /// Boxes around boxes around triangles.
 class Tree {
  public:
-  explicit Tree(const RawMesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
+  Tree(const RawMesh& mesh, std::size_t pairs_max)
+      : mesh_(mesh), pairs_left_(pairs_max), order_(mesh.triangles.size()) {
     std::iota(order_.begin(), order_.end(), 0);
     build(0, static_cast<int>(order_.size()));
   }
-  [[nodiscard]] std::optional<Vec3> find() const { return within(0); }
+  [[nodiscard]] std::optional<Vec3> find() { return within(0); }
 
  private:
   Corners corners(int t) const {
@@ -35,11 +36,12 @@ class Tree {
             mesh_.points[static_cast<std::size_t>(c)]};
   }
   int build(int begin, int end);
-  std::optional<Vec3> within(int node) const;
-  std::optional<Vec3> between(int a, int b) const;
-  std::optional<Vec3> between_triangles(int s, int t) const;
+  std::optional<Vec3> within(int node);
+  std::optional<Vec3> between(int a, int b);
+  std::optional<Vec3> between_triangles(int s, int t);
 
   const RawMesh& mesh_;
+  std::size_t pairs_left_;
   std::vector<int> order_;
   std::vector<Node> nodes_;
 };
@@ -107,7 +109,8 @@ bool apart(const Corners& a, const Corners& b) {
   return false;
 }
 
-std::optional<Vec3> Tree::between_triangles(int s, int t) const {
+std::optional<Vec3> Tree::between_triangles(int s, int t) {
+  if (pairs_left_-- == 0) throw TooManyPairs{};
   for (const std::int32_t i : mesh_.triangles[static_cast<std::size_t>(s)]) {
     for (const std::int32_t j : mesh_.triangles[static_cast<std::size_t>(t)]) {
       if (i == j) return std::nullopt;
@@ -126,7 +129,7 @@ std::optional<Vec3> Tree::between_triangles(int s, int t) const {
   return Vec3(0.5 * (lower_a.cwiseMax(lower_b) + upper_a.cwiseMin(upper_b)));
 }
 
-std::optional<Vec3> Tree::between(int a, int b) const {
+std::optional<Vec3> Tree::between(int a, int b) {
   const Node &na = nodes_[static_cast<std::size_t>(a)], &nb = nodes_[static_cast<std::size_t>(b)];
   if (!na.meets(nb)) return std::nullopt;
   if (na.leaf() && nb.leaf()) {
@@ -148,7 +151,7 @@ std::optional<Vec3> Tree::between(int a, int b) const {
   return place ? place : between(a, nb.right);
 }
 
-std::optional<Vec3> Tree::within(int index) const {
+std::optional<Vec3> Tree::within(int index) {
   const Node& node = nodes_[static_cast<std::size_t>(index)];
   if (node.leaf()) {
     for (int i = node.begin; i < node.end; ++i) {
@@ -168,9 +171,9 @@ std::optional<Vec3> Tree::within(int index) const {
 
 }  // namespace
 
-std::optional<Vec3> self_intersection(const RawMesh& mesh) {
+std::optional<Vec3> self_intersection(const RawMesh& mesh, std::size_t pairs_max) {
   if (mesh.triangles.empty()) return std::nullopt;
-  return Tree(mesh).find();
+  return Tree(mesh, pairs_max).find();
 }
 
 }  // namespace touchstone::scene

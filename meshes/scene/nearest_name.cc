@@ -1,9 +1,14 @@
 #include "scene/nearest_name.h"
 
+#include "scene/text.h"
+
 #include <algorithm>
 
 namespace touchstone::scene {
 namespace {
+
+/// No key is nearly as long, and the effort grows with the length.
+constexpr std::size_t name_size_max = 100;
 
 /// Edit distance with transpositions, to suggest the key that was meant.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -22,6 +27,14 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::string unknown_key(const std::string& shown, std::string_view name, const std::vector<std::string>& known,
+                        std::size_t told) {
+  const std::string message = "unknown key \"" + shortened(shown) + "\"";
+  if (name.size() > name_size_max) return message + "; no key is that long";
+  if (told >= faults_shown_max) return message;
+  return message + "; did you mean \"" + nearest_name(name, known) + "\"?";
+}
+
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
   const auto best = std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
     return edit_distance(name, a) < edit_distance(name, b);
@@ -30,7 +43,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 }
 
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& known) {
-  if (known.empty()) return "";
+  if (known.empty() || name.size() > name_size_max) return "";
   const std::string nearest = nearest_name(name, known);
   if (2 * edit_distance(name, nearest) > std::max(name.size(), nearest.size())) return "";
   return "; did you mean \"" + nearest + "\"?";

@@ -41,13 +41,18 @@ Header read_header(TextLines& lines) {
     const auto& words = lines.words();
     if (words[0] == "end_header") {
       if (!format) lines.fail("the header names no format");
+      for (const Element& element : header.elements) {
+        // Its rows hold nothing, however many it says there are.
+        if (element.properties.empty())
+          lines.fail("element " + name_or_nothing(element.name) + " has no property; expected at least one");
+      }
       return header;
     }
     if (words[0] == "format" && words.size() > 1) {
       header.text = words[1] == "ascii";
       header.big_endian = words[1] == "binary_big_endian";
       if (!header.text && !header.big_endian && words[1] != "binary_little_endian") {
-        lines.fail("format '" + std::string(words[1]) +
+        lines.fail("format '" + shortened(words[1], 40) +
                    "' is not known; expected ascii, binary_little_endian or binary_big_endian");
       }
       format = true;
@@ -62,7 +67,7 @@ Header read_header(TextLines& lines) {
       const Property property = list ? Property{std::string(words[4]), std::string(words[3]), std::string(words[2])}
                                      : Property{std::string(words[2]), std::string(words[1]), ""};
       for (const std::string& type : {property.type, list ? property.count_type : property.type}) {
-        if (!known_type(type)) lines.fail("type '" + type + "' is not known");
+        if (!known_type(type)) lines.fail("type '" + shortened(type, 40) + "' is not known");
       }
       header.elements.back().properties.push_back(property);
     }

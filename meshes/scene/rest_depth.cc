@@ -106,9 +106,9 @@ double least_over_mesh(const Shape& body, const TriangleMesh& mesh, const Pose& 
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.bound_m < b.bound_m; });
-  for (const auto& [bound_m, triangle] : candidates) {
-    if (bound_m >= best - tolerance_m) break;
-    const auto corner = [&](std::size_t k) { return Vec3(points_m.col(triangle[k])); };
+  for (const Candidate& candidate : candidates) {
+    if (candidate.bound_m >= best - tolerance_m) break;
+    const auto corner = [&](std::size_t k) { return Vec3(points_m.col(candidate.triangle[k])); };
     best = std::min(best, least_over_triangle(body, {corner(0), corner(1), corner(2)}, tolerance_m));
   }
   return best;
@@ -205,13 +205,13 @@ std::optional<double> first_contact_of_mesh_m(const Shape& body, const TriangleM
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.free_m < b.free_m; });
   std::optional<double> first_m;
-  for (const auto& [free_m, triangle] : candidates) {
+  for (const Candidate& candidate : candidates) {
     const double last_m = first_m.value_or(end_m);
-    if (moved_m + free_m >= last_m - tolerance_m) break;
+    if (moved_m + candidate.free_m >= last_m - tolerance_m) break;
     const auto corner = [&](std::size_t k, double along_m) {
-      return Vec3(points_m.col(triangle[k]) + along_m * direction);
+      return Vec3(points_m.col(candidate.triangle[k]) + along_m * direction);
     };
-    const auto touch_m = first_zero_m(moved_m + free_m, last_m, 4.0 * tolerance_m, [&](double along_m) {
+    const auto touch_m = first_zero_m(moved_m + candidate.free_m, last_m, 4.0 * tolerance_m, [&](double along_m) {
       return least_over_triangle(body, {corner(0, along_m), corner(1, along_m), corner(2, along_m)}, tolerance_m);
     });
     if (touch_m) first_m = touch_m;

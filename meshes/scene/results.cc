@@ -2,6 +2,7 @@
 
 #include "scene/build_info.h"
 #include "scene/first_contact.h"
+#include "scene/json_text.h"
 #include "scene/mesh_file.h"
 #include "scene/scene_io.h"
 
@@ -146,7 +147,7 @@ void write_summary(const std::filesystem::path& path, const Figures& figures) {
   }
   json["units"] = units;
   if (!reasons.is_null()) json["reasons"] = reasons;
-  write_file(path, json.dump(2) + "\n");
+  write_file(path, json_text(json));
 }
 
 StageTime Stopwatch::read(const std::string& stage) const {
@@ -198,7 +199,7 @@ void write_manifest(const std::filesystem::path& path, const Manifest& manifest)
     json["times"][time.stage] = {{"wall_s", number_or_null(time.wall_s)}, {"cpu_s", number_or_null(time.cpu_s)}};
   }
   json["resolved_scene"] = manifest.resolved_scene;
-  write_file(path, json.dump(2) + "\n");
+  write_file(path, json_text(json));
 }
 
 void prepare_result_folder(const std::filesystem::path& folder) {

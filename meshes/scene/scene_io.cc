@@ -1,12 +1,13 @@
 #include "scene/scene_io.h"
 
 #include "scene/fields.h"
-#include "scene/files.h"
 #include "scene/first_contact.h"
 #include "scene/hash.h"
+#include "scene/input.h"
 #include "scene/mesh_file.h"
 #include "scene/nearest_name.h"
 #include "scene/rules.h"
+#include "scene/text.h"
 #include "scene/toml_reader.h"
 #include "scene/track_csv.h"
 
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
@@ -32,13 +32,13 @@ std::string written(const toml::node& node) {
   if (const auto* array = node.as_array()) {
     std::string out;
     for (const toml::node& element : *array) out += (out.empty() ? "" : ", ") + written(element);
-    return "[" + out + "]";
+    return shortened("[" + out + "]");
   }
   if (node.is_table()) return "a table";
   std::ostringstream out;
   node.visit([&](const auto& n) {
     if constexpr (toml::is_string<decltype(n)>)
-      out << quoted(n.get());
+      out << toml_quoted(shortened(n.get()));
     else if constexpr (!toml::is_table<decltype(n)> && !toml::is_array<decltype(n)>)
       out << n;
   });
@@ -97,6 +97,11 @@ class Reader {
       faults_.push_back(std::move(fault));
       return;
     }
+    if (!csv_lines_.empty() && key.starts_with("track[")) {
+      const auto row = static_cast<std::size_t>(std::stoul(key.substr(6)));
+      faults_.push_back({places_.at("track").file, csv_lines_[row], 1, key + ": " + message});
+      return;
+    }
     const toml::node* above = nullptr;
     for (std::size_t dot = key.rfind('.'); above == nullptr && dot != std::string::npos;
          dot = key.rfind('.', dot - 1)) {
@@ -126,10 +131,11 @@ class Reader {
     for (const auto& [key, node] : table) {
       const std::string here = path + std::string(key.str());
       if (here == "track" || here == inclusion_key) continue;
+      const std::string above = here + ".";
       const bool is_section =
-          std::any_of(known.begin(), known.end(), [&](const std::string& k) { return k.starts_with(here + "."); });
+          std::any_of(known.begin(), known.end(), [&](const std::string& k) { return k.starts_with(above); });
       if (is_section && node.is_table()) {
-        find_unknown(*node.as_table(), here + ".", known, row);
+        find_unknown(*node.as_table(), above, known, row);
       } else if (is_section) {
         faults_.push_back(at(node.source(), row + here + ": expected a table, [" + row + here + "]"));
       } else if (std::find(known.begin(), known.end(), here) == known.end()) {
@@ -138,16 +144,16 @@ class Reader {
     }
   }
 
-  static std::string unknown_key_message(const std::string& path, const std::vector<std::string>& known,
-                                         const std::string& row) {
+  [[nodiscard]] std::string unknown_key_message(const std::string& path, const std::vector<std::string>& known,
+                                                const std::string& row) const {
+    if (faults_.size() >= faults_shown_max) return unknown_key(row + path, path, known, faults_.size());
     // Sections are keys too: [boddy] should lead to [body], not to a long key below it.
     std::set<std::string> names(known.begin(), known.end());
     for (const std::string& key : known) {
       for (std::size_t dot = key.find('.'); dot != std::string::npos; dot = key.find('.', dot + 1))
         names.insert(key.substr(0, dot));
     }
-    return "unknown key \"" + row + path + "\"; did you mean \"" + nearest_name(path, {names.begin(), names.end()}) +
-           "\"?";
+    return unknown_key(row + path, path, {names.begin(), names.end()}, faults_.size());
   }
 
   /// Every field of a document or row. @param row its name with a dot, for messages; empty for the document
@@ -219,12 +225,24 @@ class Reader {
     return rows;
   }
 
+  /// A file that the scene names. @param key  under which it does, where a file that cannot be read is reported
+  std::optional<std::string> read_named(const std::filesystem::path& file, const InputKind& kind,
+                                        const std::string& key) {
+    Input input = read_input(file, kind);
+    if (input.fault.empty()) return std::move(input.bytes);
+    add_fault(key, "cannot read " + file.string() + ": " + input.fault);
+    return std::nullopt;
+  }
+
   void read_mesh(Scene& scene) {
-    if (scene.tool.shape != ToolShape::mesh || scene.tool.file.empty()) return;
+    if (scene.tool.shape != ToolShape::mesh) return;
     if (failed_.contains("tool.file") || failed_.contains("tool.unit")) return;
     constexpr double units_m[] = {1.0, 1e-2, 1e-3, 0.0254};
-    scene.tool.mesh = read_mesh_of_file(file_.parent_path() / scene.tool.file,
-                                        units_m[static_cast<std::size_t>(scene.tool.unit)], faults_);
+    const std::filesystem::path file = file_.parent_path() / scene.tool.file;
+    std::optional<std::string> content = read_named(file, mesh_input, "tool.file");
+    if (!content) return;
+    scene.tool.mesh =
+        mesh_of_file(*std::move(content), file, units_m[static_cast<std::size_t>(scene.tool.unit)], faults_);
   }
 
   template <class T>
@@ -283,9 +301,9 @@ class Reader {
     return true;
   }
   template <class T>
-  static bool assign(const Field<T>&, std::string& (*const& member)(T&), const toml::node& node, T& object) {
+  static bool assign(const Field<T>& field, std::string& (*const& member)(T&), const toml::node& node, T& object) {
     const auto value = node.is_string() ? node.value<std::string>() : std::nullopt;
-    if (!value) return false;
+    if (!value || !is_plain_text(*value) || (value->empty() && !field.default_value)) return false;
     member(object) = *value;
     return true;
   }
@@ -349,10 +367,9 @@ class Reader {
                      T& object) {
     const auto v = numbers(field, node, 4);
     if (!v) return false;
-    const Eigen::Quaterniond q((*v)[0], (*v)[1], (*v)[2], (*v)[3]);
-    if (q.norm() == 0.0) return false;
-    member(object) = unit(q);
-    return true;
+    const auto orientation = orientation_of({(*v)[0], (*v)[1], (*v)[2], (*v)[3]});
+    if (orientation) member(object) = *orientation;
+    return orientation.has_value();
   }
   template <class T>
   static bool assign(const Field<T>&, const Choice<T>& access, const toml::node& node, T& object) {
@@ -379,6 +396,7 @@ class Reader {
 
   /// A row gives its height by z or by the depth, not by both or neither.
   void check_rows(const std::vector<TrackRow>& rows) {
+    if (!csv_lines_.empty()) return;  // a table's header says it for all rows
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const TrackRow& row = rows[i];
       const std::string name = "track[" + std::to_string(i) + "].";
@@ -389,7 +407,7 @@ class Reader {
       const std::string flat = "[" + number_text(p_m.x()) + ", " + number_text(p_m.y()) + "]";
       if (row.direction && !row.depth_m) {
         add_fault(name + "direction", "only applies with depth_m, how far along it beyond first contact");
-      } else if (row.direction && row.direction->norm() == 0.0) {
+      } else if (row.direction && row.direction->stableNorm() == 0.0) {
         add_fault(name + "direction", "is zero; expected a non-zero length");
       } else if (row.direction && row.position.height_open && row.direction->head<2>().norm() > 0.0) {
         add_fault(name + "position_m", "a slanting direction needs a point of its line; expected three numbers");
@@ -411,7 +429,7 @@ class Reader {
       const TrackRow& row = rows[i];
       Pose pose{row.position.position_m, row.orientation};
       if (row.depth_m) {
-        const Vec3 direction = row.direction.value_or(-Vec3::UnitZ()).normalized();
+        const Vec3 direction = row.direction.value_or(-Vec3::UnitZ()).stableNormalized();
         const std::optional<double> touch_m = first_contact_m(*body, scene.tool, pose, direction);
         if (!touch_m) {
           add_fault("track[" + std::to_string(i) + "].depth_m",
@@ -426,6 +444,13 @@ class Reader {
           const double moved_m = pose.position_m[axis] + (*touch_m + *row.depth_m) * direction[axis];
           pose.position_m[axis] = std::round(moved_m * 1e12) / 1e12;
         }
+        const Range& range = track_field("position_m").range;
+        if (!range.contains(pose.position_m.minCoeff()) || !range.contains(pose.position_m.maxCoeff())) {
+          add_fault("track[" + std::to_string(i) + "].depth_m",
+                    "leads to a place further off than position_m may be; expected each coordinate in " + range.text() +
+                        " m");
+          continue;
+        }
       }
       scene.track.push_back({row.time_s, pose});
     }
@@ -434,7 +459,7 @@ class Reader {
   std::vector<TrackRow> read_track_file(const toml::table& table) {
     for (const auto& [key, node] : table) {
       if (key.str() != track_file_key) {
-        faults_.push_back(at(key.source(), "unknown key \"track." + std::string(key.str()) +
+        faults_.push_back(at(key.source(), "unknown key \"track." + shortened(key.str()) +
                                                "\"; did you mean \"track.file\", or [[track]] rows?"));
       }
     }
@@ -444,29 +469,20 @@ class Reader {
       return {};
     }
     const std::filesystem::path csv = file_.parent_path() / *name;
-    std::vector<int> lines;
-    std::vector<TrackRow> rows = read_track_csv(csv, faults_, lines);
+    places_["track.file"] = at(table.get(track_file_key)->source(), "");
+    const std::optional<std::string> text = read_named(csv, table_input, "track.file");
+    if (!text) return {};
     places_["track"] = {csv.string(), 0, 0, ""};
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      for (const char* key : {".time_s", ".position_m", ".depth_m"}) {
-        places_["track[" + std::to_string(i) + "]" + key] = {csv.string(), lines[i], 1, ""};
-      }
-    }
-    return rows;
+    return read_track_csv(*text, csv.string(), faults_, csv_lines_);
   }
 
   const toml::table& document_;
   std::filesystem::path file_;
   std::vector<Fault> faults_;
   std::map<std::string, Fault> places_;  ///< where each key stands; message empty
+  std::vector<int> csv_lines_;           ///< of the track's rows, where it is a table
   std::set<std::string> failed_;         ///< keys whose value is not to be relied on
 };
-
-[[noreturn]] void rethrow(const toml::parse_error& error, const std::string& file) {
-  const toml::source_position where = error.source().begin;
-  throw InputError({{file, static_cast<int>(where.line), static_cast<int>(where.column),
-                     "not valid TOML: " + std::string(error.description())}});
-}
 
 /// Moves, so that the values keep the place they were read from.
 void merge(toml::table&& from, toml::table& into) {
@@ -490,33 +506,23 @@ void take_in_included(const std::filesystem::path& file, toml::table& document) 
   };
   if (!node->is_string()) refuse("include = " + written(*node) + "; expected the path of a TOML file, from this one");
   const std::filesystem::path included = file.parent_path() / node->value_or(std::string());
-  const std::optional<std::string> text = read_file(included);
-  if (!text)
-    refuse("include: cannot read " + included.string() + "; expected a TOML file with keys of a scene" +
-           did_you_mean_file(included));
-  try {
-    toml::table all = toml::parse(*text, included.string());
-    if (all.contains("include"))
-      refuse("include: " + included.string() + " includes a file itself; expected one without");
-    document.erase("include");
-    merge(std::move(document), all);
-    document = std::move(all);
-  } catch (const toml::parse_error& error) {
-    rethrow(error, included.string());
-  }
+  const Input input = read_input(included, toml_input);
+  if (!input.fault.empty()) refuse("include: cannot read " + included.string() + ": " + input.fault);
+  toml::table all = parse_document(input.bytes, included.string());
+  if (all.contains("include"))
+    refuse("include: " + included.string() + " includes a file itself; expected one without");
+  document.erase("include");
+  merge(std::move(document), all);
+  document = std::move(all);
 }
 
 /// @param before  what stands before the value: its key and " = "
 toml::table parse_value(const std::string& value, const std::string& before, const std::string& place) {
   try {
-    return toml::parse(before + value, place);
-  } catch (const toml::parse_error&) {
+    return parse_document(before + value, place);
+  } catch (const InputError&) {
     // A shell user should not have to quote words twice.
-    try {
-      return toml::parse(before + "'" + value + "'", place);
-    } catch (const toml::parse_error& error) {
-      rethrow(error, place);
-    }
+    return parse_document(before + "'" + value + "'", place);
   }
 }
 
@@ -603,12 +609,7 @@ std::string mesh_text(const TriangleMesh& mesh) {
 
 Scene parse_scene(const std::string& text, const std::filesystem::path& file,
                   const std::vector<std::string>& overrides) {
-  toml::table document;
-  try {
-    document = toml::parse(text, file.string());
-  } catch (const toml::parse_error& error) {
-    rethrow(error, file.string());
-  }
+  toml::table document = parse_document(text, file.string());
   require_kind(document, file, FileKind::scene);
   take_in_included(file, document);
   for (const std::string& setting : overrides) apply_override(setting, document);
@@ -616,13 +617,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file,
 }
 
 Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (!in || std::filesystem::is_directory(file) || !(text << in.rdbuf())) {
-    throw InputError(
-        {{file.string(), 0, 0, "cannot read the scene; expected a readable TOML file" + did_you_mean_file(file)}});
-  }
-  return parse_scene(text.str(), file, overrides);
+  return parse_scene(require_input(file, toml_input, "the scene"), file, overrides);
 }
 
 std::string resolved_toml(const Scene& scene) {

@@ -2,6 +2,7 @@
 
 #include "scene/fields.h"
 #include "scene/scene_io.h"
+#include "scene/text.h"
 #include "scene/toml_reader.h"
 
 #include <algorithm>
@@ -174,7 +175,10 @@ class Reader : TomlReader {
       add(*node, "axis.labels: expected " + std::to_string(axis.settings.size()) + " texts, one for every value");
       return;
     }
-    for (std::size_t i = 0; i < array->size(); ++i) axis.labels[i] = array->get(i)->value_or(std::string());
+    for (std::size_t i = 0; i < array->size(); ++i) {
+      axis.labels[i] = array->get(i)->value_or(std::string());
+      if (!is_plain_text(axis.labels[i])) add(*array->get(i), "axis.labels: expected texts without control characters");
+    }
   }
 
   /// Every value of every axis with every one of the others.
@@ -240,13 +244,13 @@ Fault in_study(const Fault& fault, const StudyCase& one) {
 }  // namespace
 
 Study load_study(const std::filesystem::path& file) {
-  const toml::table document = read_document(file);
+  const toml::table document = read_document(file, "the study");
   require_kind(document, file, FileKind::sweep);
   return Reader(document, file).read();
 }
 
 std::optional<std::string> value_in(std::string_view text, const std::filesystem::path& file, const std::string& key) {
-  const toml::table document = parse_document(text, file);
+  const toml::table document = parse_document(text, file.string());
   const auto node = document.at_path(key);
   return node ? std::optional(value_text(*node.node())) : std::nullopt;
 }

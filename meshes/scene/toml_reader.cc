@@ -1,8 +1,9 @@
 #include "scene/toml_reader.h"
 
 #include "scene/fields.h"
-#include "scene/files.h"
+#include "scene/input.h"
 #include "scene/nearest_name.h"
+#include "scene/text.h"
 
 #include <algorithm>
 
@@ -47,6 +48,77 @@ std::string command_for(FileKind kind, const std::filesystem::path& file) {
   return "";
 }
 
+/// Refuses, with its place, what no TOML file has and the parser does not stand: bytes that are no UTF-8, a zero byte,
+/// a character beyond ASCII outside of quotes and comments, and a key of very many parts.
+class Guard {
+ public:
+  Guard(std::string_view text, const std::string& file) : text_(without_mark(text)), file_(file) {}
+
+  void check() {
+    while (at_ < text_.size()) {
+      const std::string_view rest = text_.substr(at_);
+      const std::size_t length = utf8_length(rest);
+      if (length == 0) refuse("a byte that is no UTF-8");
+      if (rest[0] == '\0') refuse("a zero byte");
+      if (quotes_.empty() && !comment_) {
+        if (length > 1) refuse("a character that is not ASCII, outside of quotes and comments");
+        count_parts(rest[0]);
+      }
+      step(begin_or_end(rest, length));
+    }
+  }
+
+ private:
+  /// Goes over quotes that begin or end a string, or over one character. @returns its length in bytes
+  std::size_t begin_or_end(std::string_view rest, std::size_t length) {
+    const char c = rest[0];
+    if (c == '\n') {
+      comment_ = false;
+      if (quotes_.size() == 1) quotes_ = {};
+    } else if (comment_) {
+      return length;
+    } else if (quotes_.empty()) {
+      comment_ = c == '#';
+      if (c == '"' || c == '\'') return (quotes_ = rest.substr(0, rest.starts_with(std::string(3, c)) ? 3 : 1)).size();
+    } else if (c == '\\' && quotes_[0] == '"' && rest.size() > 1 && utf8_length(rest.substr(1)) == 1 &&
+               rest[1] != '\n' && rest[1] != '\0') {
+      return 2;
+    } else if (rest.starts_with(quotes_)) {
+      // A string may end in quotes of its own before the three that end it.
+      std::size_t count = quotes_.size();
+      while (quotes_.size() == 3 && count < 5 && rest.substr(count).starts_with(c)) ++count;
+      quotes_ = {};
+      return count;
+    }
+    return length;
+  }
+
+  void step(std::size_t bytes) {
+    for (const char c : text_.substr(at_, bytes)) {
+      if (c == '\n') ++line_, column_ = 1;
+      if (c != '\n' && (static_cast<unsigned char>(c) & 0xc0) != 0x80) ++column_;
+    }
+    at_ += bytes;
+  }
+
+  void count_parts(char c) {
+    constexpr int parts_max = 16;
+    if (std::string_view("=,[]{}\n").find(c) != std::string_view::npos) parts_ = 1;
+    if (c == '.' && ++parts_ > parts_max) refuse("a key of more than " + std::to_string(parts_max) + " parts");
+  }
+
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw InputError({{file_, line_, column_, "not valid TOML: " + what}});
+  }
+
+  std::string_view text_;
+  const std::string& file_;
+  std::string_view quotes_;  ///< of the string that at_ is in
+  bool comment_ = false;
+  std::size_t at_ = 0;
+  int line_ = 1, column_ = 1, parts_ = 1;
+};
+
 }  // namespace
 
 void require_kind(const toml::table& document, const std::filesystem::path& file, FileKind wanted) {
@@ -57,23 +129,19 @@ void require_kind(const toml::table& document, const std::filesystem::path& file
                          "; the verb for it is: " + command_for(*kind, file)}});
 }
 
-toml::table parse_document(std::string_view text, const std::filesystem::path& file) {
+toml::table parse_document(std::string_view text, const std::string& file) {
+  Guard(text, file).check();
   try {
-    return toml::parse(text, file.string());
+    return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
     const toml::source_position where = error.source().begin;
-    throw InputError({{file.string(), static_cast<int>(where.line), static_cast<int>(where.column),
+    throw InputError({{file, static_cast<int>(where.line), static_cast<int>(where.column),
                        "not valid TOML: " + std::string(error.description())}});
   }
 }
 
-toml::table read_document(const std::filesystem::path& file) {
-  const std::optional<std::string> text = read_file(file);
-  if (!text) {
-    throw InputError(
-        {{file.string(), 0, 0, "cannot read the study; expected a readable TOML file" + did_you_mean_file(file)}});
-  }
-  return parse_document(*text, file);
+toml::table read_document(const std::filesystem::path& file, const std::string& what) {
+  return parse_document(require_input(file, toml_input, what), file.string());
 }
 
 std::string value_text(const toml::node& node) {
@@ -91,11 +159,7 @@ std::string value_text(const toml::node& node) {
     }
     return "{" + text + "}";
   }
-  for (const char c : node.value_or(std::string_view())) {
-    if (c == '"' || c == '\\') text += '\\';
-    text += c;
-  }
-  return "\"" + text + "\"";
+  return toml_quoted(node.value_or(std::string_view()));
 }
 
 void TomlReader::refuse_faults() {
@@ -116,15 +180,19 @@ void TomlReader::known_keys(const toml::table& table, const std::string& row, co
   for (const auto& [key, node] : table) {
     const std::string name(key.str());
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    add(key.source(), "unknown key \"" + row + name + "\"; did you mean \"" + row + nearest_name(name, known) + "\"?");
+    std::vector<std::string> names;
+    if (faults_.size() < faults_shown_max) {
+      for (const std::string& each : known) names.push_back(row + each);
+    }
+    add(key.source(), unknown_key(row + name, row + name, names, faults_.size()));
   }
 }
 
 std::optional<std::string> TomlReader::text(const toml::table& table, const std::string& key) {
   const toml::node* node = table.get(key);
   if (node == nullptr) return std::nullopt;
-  if (node->is_string()) return node->value<std::string>();
-  add(*node, key + " = " + value_text(*node) + "; expected a text");
+  if (node->is_string() && is_plain_text(node->value_or(std::string_view()))) return node->value<std::string>();
+  add(*node, key + " = " + shortened(value_text(*node)) + "; expected a text without control characters");
   return std::nullopt;
 }
 
@@ -138,7 +206,7 @@ std::string TomlReader::word(const toml::table& table, const std::string& key, c
     add(table, key + ": missing; expected " + expected);
   } else if (!node->is_string() ||
              std::find(words.begin(), words.end(), node->value_or(std::string())) == words.end()) {
-    add(*node, key + " = " + value_text(*node) + "; expected " + expected +
+    add(*node, key + " = " + shortened(value_text(*node)) + "; expected " + expected +
                    did_you_mean(node->value_or(std::string()), words));
   } else {
     return node->value_or(std::string());

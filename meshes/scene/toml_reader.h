@@ -19,11 +19,11 @@ enum class FileKind { scene, sweep, tuning, gates };
 /// @throws InputError when the document is clearly of another kind than wanted, with the verb that takes it
 void require_kind(const toml::table& document, const std::filesystem::path& file, FileKind wanted);
 
-/// The text's document. @param file  for messages. @throws InputError when it is no TOML
-[[nodiscard]] toml::table parse_document(std::string_view text, const std::filesystem::path& file);
+/// The text's document: the one way to the parser. @param file  for messages. @throws InputError when it is no TOML
+[[nodiscard]] toml::table parse_document(std::string_view text, const std::string& file);
 
-/// The study file's document. @throws InputError when it cannot be read or is no TOML
-[[nodiscard]] toml::table read_document(const std::filesystem::path& file);
+/// The file's document. @param what  for messages: "the study". @throws InputError when it cannot be read or is no TOML
+[[nodiscard]] toml::table read_document(const std::filesystem::path& file, const std::string& what);
 
 /// A value as TOML that reads back the same.
 [[nodiscard]] std::string value_text(const toml::node& node);

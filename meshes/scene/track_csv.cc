@@ -1,12 +1,11 @@
 #include "scene/track_csv.h"
 
-#include "scene/nearest_name.h"
+#include "scene/text.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <string_view>
 
 namespace touchstone::scene {
@@ -14,9 +13,17 @@ namespace {
 
 constexpr std::array<std::string_view, 9> column_names = {"time_s", "x_m", "y_m", "z_m",    "qw",
                                                           "qx",     "qy",  "qz",  "depth_m"};
-constexpr std::size_t height_column = 3, depth_column = 8;
+constexpr std::size_t height_column = 3, depth_column = 8, orientation_column = 4;
 constexpr std::string_view expected_header =
     "time_s,x_m,y_m,z_m, or depth_m in place of z_m, with or without ,qw,qx,qy,qz";
+
+/// The key of a [[track]] row that holds a column's numbers.
+const Field<TrackRow>& field_of(std::size_t column) {
+  return track_field(column == 0                   ? "time_s"
+                     : column == depth_column      ? "depth_m"
+                     : column < orientation_column ? "position_m"
+                                                   : "orientation_wxyz");
+}
 
 struct Cell {
   std::string_view text;
@@ -39,19 +46,17 @@ std::vector<Cell> split(std::string_view line) {
 
 }  // namespace
 
-std::vector<TrackRow> read_track_csv(const std::filesystem::path& file, std::vector<Fault>& faults,
+std::vector<TrackRow> read_track_csv(std::string_view text, const std::string& name, std::vector<Fault>& faults,
                                      std::vector<int>& lines) {
-  const std::string name = file.string();
   std::vector<TrackRow> track;
-  std::ifstream in(file);
-  if (!in || std::filesystem::is_directory(file)) {
-    faults.push_back({name, 0, 0, "cannot read the track; expected a readable CSV file" + did_you_mean_file(file)});
-    return track;
-  }
+  std::array<Range, column_names.size()> ranges;
+  for (std::size_t i = 0; i < ranges.size(); ++i) ranges[i] = field_of(i).range;
   std::vector<std::size_t> meaning;  // of each column: index into column_names
-  std::string line;
-  for (int number = 1; std::getline(in, line); ++number) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
+  text = without_mark(text);
+  for (int number = 1; !text.empty(); ++number) {
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     if (line.empty() || line.front() == '#') continue;
     const std::vector<Cell> cells = split(line);
     if (meaning.empty()) {
@@ -60,7 +65,7 @@ std::vector<TrackRow> read_track_csv(const std::filesystem::path& file, std::vec
         const auto index = static_cast<std::size_t>(found - column_names.begin());
         if (found == column_names.end() || std::find(meaning.begin(), meaning.end(), index) != meaning.end()) {
           faults.push_back({name, number, cell.column,
-                            "unknown or repeated column \"" + std::string(cell.text) + "\"; expected " +
+                            "unknown or repeated column " + name_or_nothing(cell.text) + "; expected " +
                                 std::string(expected_header)});
           return track;
         }
@@ -86,27 +91,29 @@ std::vector<TrackRow> read_track_csv(const std::filesystem::path& file, std::vec
     std::array<double, 9> value = {0, 0, 0, 0, 1, 0, 0, 0, 0};
     bool good = true;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const std::string_view text = cells[i].text;
-      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value[meaning[i]]);
-      if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value[meaning[i]])) {
+      const std::string_view cell = cells[i].text;
+      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value[meaning[i]]);
+      if (error != std::errc() || end != cell.data() + cell.size() || !ranges[meaning[i]].contains(value[meaning[i]])) {
+        const std::string_view unit = field_of(meaning[i]).unit;
         faults.push_back({name, number, cells[i].column,
-                          "\"" + std::string(text) + "\" for " + std::string(column_names[meaning[i]]) +
-                              "; expected a finite number"});
+                          "\"" + shortened(cell, 40) + "\" for " + std::string(column_names[meaning[i]]) +
+                              "; expected a number in " + ranges[meaning[i]].text() +
+                              (unit.empty() ? "" : " " + std::string(unit))});
         good = false;
       }
     }
-    const Eigen::Quaterniond q(value[4], value[5], value[6], value[7]);
-    if (good && q.norm() == 0.0) {
-      faults.push_back({name, number, 1, "the quaternion is zero; expected a non-zero length"});
-      good = false;
-    }
     if (!good) continue;
+    const auto orientation = orientation_of(Eigen::Quaterniond(value[4], value[5], value[6], value[7]));
+    if (!orientation) {
+      faults.push_back({name, number, 1, "qw, qx, qy, qz; expected " + expected_text(field_of(orientation_column))});
+      continue;
+    }
     const bool by_depth = std::ranges::find(meaning, depth_column) != meaning.end();
     track.push_back({.time_s = value[0],
                      .position = {Vec3(value[1], value[2], value[3]), by_depth},
                      .depth_m = by_depth ? std::optional(value[depth_column]) : std::nullopt,
                      .direction = {},
-                     .orientation = unit(q)});
+                     .orientation = *orientation});
     lines.push_back(number);
   }
   if (meaning.empty()) faults.push_back({name, 0, 0, "the track is empty; expected " + std::string(expected_header)});

@@ -1,5 +1,7 @@
 #include "scene/triangle_mesh.h"
 
+#include "scene/fields.h"
+#include "scene/input.h"
 #include "scene/mesh_checks.h"
 #include "scene/mesh_file.h"
 
@@ -55,12 +57,36 @@ std::optional<TriangleMesh> checked_mesh(const std::string& content, const std::
     faults.push_back({file.string(), 0, 0, message});
     return std::nullopt;
   };
-  RawMesh raw = welded(read_mesh(content, file));
+  RawMesh raw = read_mesh(content, file);
+  if (raw.triangles.size() > mesh_triangles_max) {
+    return refuse("the mesh has " + std::to_string(raw.triangles.size()) + " triangles; expected at most " +
+                  std::to_string(mesh_triangles_max));
+  }
+  for (const Vec3& p : raw.points) {
+    if (!(p.cwiseAbs().maxCoeff() * unit_m <= mesh_reach_max_m)) {
+      return refuse("the vertex at " + place_text(p) + " is " + number_text(p.cwiseAbs().maxCoeff() * unit_m) +
+                    " m from the origin along an axis; expected at most " + number_text(mesh_reach_max_m) +
+                    " m (tool.unit)");
+    }
+  }
+  raw = welded(raw);
   // Places in faults are in the file's own unit, as its author sees them.
   std::vector<MeshPiece> pieces;
   if (const auto fault = orient_outwards(raw, pieces)) return refuse(*fault);
-  if (const auto place = self_intersection(raw)) {
-    return refuse("the surface cuts or touches itself near " + place_text(*place));
+  if (pieces.size() > mesh_pieces_max) {
+    return refuse("the mesh has " + std::to_string(pieces.size()) + " separate pieces; expected at most " +
+                  std::to_string(mesh_pieces_max));
+  }
+  try {
+    // A mesh of triangles as long as wide has some ten pairs for each.
+    const std::size_t pairs_max = 4'000'000 + 20 * raw.triangles.size();
+    if (const auto place = self_intersection(raw, pairs_max)) {
+      return refuse("the surface cuts or touches itself near " + place_text(*place));
+    }
+  } catch (const TooManyPairs&) {
+    return refuse(
+        "the mesh has too many long thin triangles side by side to tell whether it cuts itself; expected "
+        "triangles nearer to equal sides");
   }
   if (const auto place = nested_piece(raw, pieces)) {
     return refuse("the piece at " + place_text(*place) +
@@ -79,10 +105,9 @@ std::optional<TriangleMesh> checked_mesh(const std::string& content, const std::
 
 }  // namespace
 
-std::shared_ptr<const TriangleMesh> read_mesh_of_file(const std::filesystem::path& file, double unit_m,
-                                                      std::vector<Fault>& faults) {
+std::shared_ptr<const TriangleMesh> mesh_of_file(std::string content, const std::filesystem::path& file, double unit_m,
+                                                 std::vector<Fault>& faults) {
   try {
-    std::string content = read_mesh_bytes(file);
     std::optional<TriangleMesh> mesh = checked_mesh(content, file, unit_m, faults);
     if (!mesh) return nullptr;
     return {new TriangleMesh(*std::move(mesh)), MeshOfFile{std::move(content)}};
@@ -94,7 +119,12 @@ std::shared_ptr<const TriangleMesh> read_mesh_of_file(const std::filesystem::pat
 
 std::optional<TriangleMesh> read_triangle_mesh(const std::filesystem::path& file, double unit_m,
                                                std::vector<Fault>& faults) {
-  const std::shared_ptr<const TriangleMesh> mesh = read_mesh_of_file(file, unit_m, faults);
+  Input input = read_input(file, mesh_input);
+  if (!input.fault.empty()) {
+    faults.push_back({file.string(), 0, 0, "cannot read the mesh: " + input.fault});
+    return std::nullopt;
+  }
+  const std::shared_ptr<const TriangleMesh> mesh = mesh_of_file(std::move(input.bytes), file, unit_m, faults);
   return mesh ? std::optional(*mesh) : std::nullopt;
 }
 

@@ -2,6 +2,7 @@
 
 #include "scene/fields.h"
 #include "scene/nearest_name.h"
+#include "scene/text.h"
 #include "scene/toml_reader.h"
 
 #include <algorithm>
@@ -99,7 +100,7 @@ class Reader : TomlReader {
     if (node == nullptr) return otherwise;
     const double value = node->is_number() ? *node->value<double>() : NAN;
     if (range.contains(value)) return value;
-    add(*node, key + " = " + value_text(*node) + "; expected a number in " + range.text());
+    add(*node, key + " = " + shortened(value_text(*node)) + "; expected a number in " + range.text());
     return otherwise;
   }
 
@@ -111,8 +112,8 @@ class Reader : TomlReader {
       const std::array<double, 2> ends = {*(*array)[0].value<double>(), *(*array)[1].value<double>()};
       if (ends[0] < ends[1] && range.contains(ends[0]) && range.contains(ends[1])) return ends;
     }
-    add(node, where + " = " + value_text(node) + "; expected [low, high], low below high, each in " + range.text() +
-                  (unit.empty() ? "" : " " + unit));
+    add(node, where + " = " + shortened(value_text(node)) + "; expected [low, high], low below high, each in " +
+                  range.text() + (unit.empty() ? "" : " " + unit));
     return std::nullopt;
   }
 
@@ -125,7 +126,7 @@ class Reader : TomlReader {
     const auto take = [&](const toml::node& one) {
       const auto found = std::find(words.begin(), words.end(), one.value_or(std::string()));
       if (found == words.end()) {
-        add(one, key + " = " + value_text(one) + "; expected \"" + words[0] + "\" or \"" + words[1] + "\"");
+        add(one, key + " = " + shortened(value_text(one)) + "; expected \"" + words[0] + "\" or \"" + words[1] + "\"");
         return;
       }
       const auto value = static_cast<Enum>(found - words.begin());
@@ -303,7 +304,7 @@ class ParameterReader : TomlReader {
     const Range& range = scene_field(what->scene_key).range;
     const double value = node.is_number() ? *node.value<double>() : NAN;
     if (!range.contains(value)) {
-      add(node, key + " = " + value_text(node) + "; expected a number in " + range.text());
+      add(node, key + " = " + shortened(value_text(node)) + "; expected a number in " + range.text());
       return;
     }
     linear_constant_ = linear_constant_ || what->law.has_value();
@@ -331,13 +332,13 @@ void set_parameter(Scene& scene, const std::string& key, double value) {
 }
 
 Scene with_parameters(Scene scene, const std::filesystem::path& file) {
-  const toml::table document = read_document(file);
+  const toml::table document = read_document(file, "the parameters");
   return ParameterReader(document, file).over(std::move(scene));
 }
 
 TuningStudy load_tuning_study(const std::filesystem::path& file,
                               const std::function<std::vector<Fault>(const Scene&)>& check) {
-  const toml::table document = read_document(file);
+  const toml::table document = read_document(file, "the study");
   require_kind(document, file, FileKind::tuning);
   return Reader(document, file, check).read();
 }

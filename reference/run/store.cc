@@ -3,6 +3,7 @@
 #include "scene/hash.h"
 
 #include <cstring>
+#include <iostream>
 #include <stdexcept>
 
 namespace touchstone::reference {
@@ -60,7 +61,16 @@ Store::Store(const std::filesystem::path& root, const std::string& identity, con
     if (entry.is_directory()) scene::remove_unfinished(entry);
   }
   // For the reader of the folder; the name is the hash of this text.
-  if (!std::filesystem::exists(folder_ / "identity.txt")) scene::write_file(folder_ / "identity.txt", identity);
+  const std::filesystem::path about = folder_ / "identity.txt";
+  if (std::filesystem::exists(about) && scene::read_file(about) != identity) {
+    std::cerr
+        << "warning: " << about.string()
+        << ": is not the text that the folder is named by; written again. The answers beside it carry checksums of "
+           "their own.\n";
+  } else if (std::filesystem::exists(about)) {
+    return;
+  }
+  scene::write_file(about, identity);
 }
 
 std::string Store::key(const std::string& identity) { return scene::hash_text(std::string(format_version) + identity); }

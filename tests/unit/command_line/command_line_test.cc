@@ -111,7 +111,7 @@ TEST_P(Verb, RefusesAnUnreadableTrackFile) {
   std::string content = text.str();
   content.erase(content.find("[[track]]"), content.rfind("0.0650]") + 7 - content.find("[[track]]"));
   std::ofstream(file) << content;
-  expect_refused(file, "none.csv: cannot read the track");
+  expect_refused(file, "none.csv: there is no such file; expected a CSV file");
 }
 TEST_P(Verb, RefusesAMissingScene) { expect_refused((dir_ / "none.toml").string(), "cannot read the scene"); }
 
@@ -571,6 +571,45 @@ TEST(StudyVerb, TwoWorkersOverTheSameIndicesLeaveOneTable) {
   EXPECT_EQ(outside.exit_code, 2);
   EXPECT_THAT(outside.output, HasSubstr("--index 4: expected a whole number in [1, 3]"));
   std::filesystem::remove_all(dir);
+}
+
+/// The program of a verb, with its path.
+std::string program_of(const std::string& ending) {
+  for (const std::string& verb : verbs()) {
+    if (verb.ends_with(ending)) return verb.substr(0, verb.rfind(' '));
+  }
+  return "";
+}
+
+class InputOfAVerb : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(dir_ / "gates" / "x.toml"); }
+  void TearDown() override { std::filesystem::remove_all(dir_); }
+  const std::filesystem::path dir_ =
+      std::filesystem::path(testing::TempDir()) / ("input-of-a-verb-" + std::to_string(getpid()));
+};
+
+TEST_F(InputOfAVerb, ThatIsAFolderIsBadInput) {
+  const std::string program = program_of("/touchstone compare"), dir = dir_.string();
+  if (program.empty()) GTEST_SKIP() << "built without the reference";
+  for (const std::string verb :
+       {"study expand " + dir, "tune " + dir, "plan " + dir, "gate --gates " + dir + "/gates",
+        "compare " + scene + " --parameters " + dir, "live " + scene + " --device replay --log " + dir}) {
+    const Answer answer = run(program + " " + verb + " --out " + dir + "/out");
+    EXPECT_EQ(answer.exit_code, 2) << verb << ": " << answer.output;
+    EXPECT_THAT(answer.output, HasSubstr("it is a folder; expected ")) << verb;
+    EXPECT_EQ(std::count(answer.output.begin(), answer.output.end(), '\n'), 1) << answer.output;
+  }
+}
+
+TEST_F(InputOfAVerb, MayHaveANameThatIsNoText) {
+  const std::string program = program_of("/touchstone-fast live"), dir = dir_.string();
+  EXPECT_EQ(run(program + " live " + scene + " --device scripted --seconds 0.02 --out " + dir + "/a").exit_code, 0);
+  std::filesystem::copy(dir_ / "a" / "live.csv", dir_ / "l\xff.csv");
+  const Answer answer =
+      run(program + " live " + scene + " --device replay --log " + dir + "/l\xff.csv --out " + dir + "/b");
+  EXPECT_EQ(answer.exit_code, 0) << answer.output;
+  EXPECT_NO_THROW((void)nlohmann::json::parse(std::ifstream(dir_ / "b" / "manifest.json")));
 }
 
 }  // namespace

@@ -161,13 +161,20 @@ TEST_F(GateFolderTest, AChangeProvesAGateOnlyByANumberBeyondItsLimit) {
   EXPECT_EQ(verb({.prove = true}), fast::answer_is_no);
 }
 
-TEST_F(GateFolderTest, MissingReferenceDataIsRed) {
+TEST_F(GateFolderTest, MissingReferenceDataIsBadInput) {
   std::string text = gate_text("1.0", "contact.k3_n_per_m3=3.1e8");
   write("one.toml", text.insert(text.find("set ="), "reference = \"reference/none\"\n"));
-  const std::vector<GateRecord> records = run_gates(loaded(), {});
-  EXPECT_THAT(records, SizeIs(1));
-  EXPECT_THAT(records[0].failure, HasSubstr("missing"));
-  EXPECT_FALSE(records[0].passes());
+  EXPECT_THAT([&] { (void)run_gates(loaded(), {}); },
+              ThrowsMessage<scene::InputError>(
+                  AllOf(HasSubstr("one.toml"), HasSubstr("there is no folder"), HasSubstr("--regenerate one"))));
+}
+
+TEST_F(GateFolderTest, AQuantityThatTheRunDoesNotHaveIsBadInput) {
+  std::string text = gate_text("1.0", "contact.k3_n_per_m3=3.1e8");
+  write("one.toml", text.replace(text.find("force.peak_fast_n"), 17, "force.peek_fast_n"));
+  EXPECT_THAT([&] { (void)run_gates(loaded(), {}); },
+              ThrowsMessage<scene::InputError>(AllOf(HasSubstr("one.toml:"), HasSubstr("no figure force.peek_fast_n"),
+                                                     HasSubstr("did you mean \"force.peak_fast_n\"?"))));
 }
 
 TEST_F(GateFolderTest, WhatNoGateAsksForIsAFault) {

@@ -67,5 +67,13 @@ TEST(Text, IsWrappedAtSpacesByCharacters) {
 
 TEST(Text, IsEscapedForMarkup) { EXPECT_EQ(escape_xml("a<b>&\"c\"\x01"), "a&lt;b&gt;&amp;&quot;c&quot;"); }
 
+TEST(CsvCell, IsNoFormula) {
+  EXPECT_EQ(csv_cell("=1+cmd|'/c calc'!A0"), "'=1+cmd|'/c calc'!A0");
+  EXPECT_EQ(csv_cell("@sum"), "'@sum");
+  EXPECT_EQ(csv_cell("-2+3"), "'-2+3");
+  EXPECT_EQ(csv_cell("=a,b"), "\"'=a,b\"");
+  for (const char* number : {"-0.5", "+3", "-1e-3", "12", "", "middle"}) EXPECT_EQ(csv_cell(number), number);
+}
+
 }  // namespace
 }  // namespace touchstone::compare

@@ -182,7 +182,7 @@ TEST(Step, BadPoseHoldsTheLastGoodAnswer) {
   bad[1].position_m.z() = infinite;
   bad[2].orientation.w() = nan;
   bad[3].orientation = Eigen::Quaterniond(0.0, 0.0, 0.0, 0.0);
-  bad[4].orientation = Eigen::Quaterniond(1e200, 1e200, 0.0, 0.0);
+  bad[4].orientation = Eigen::Quaterniond(1e-100, 0.0, 0.0, 0.0);
   for (const scene::Pose& pose : bad) {
     EXPECT_EQ(s.step_to(pose), StepStatus::not_finite);
     EXPECT_EQ(s.force_n(), force_n);
@@ -198,7 +198,7 @@ TEST(Step, UnnormalisedOrientationIsTheSameOrientation) {
   pose.orientation = test::tilted();
   s.step_to(pose);
   const Vec3 force_n = s.force_n();
-  pose.orientation.coeffs() *= 2.0;
+  pose.orientation.coeffs() *= 1.5;
   s.step_to(pose);
   EXPECT_LT((s.force_n() - force_n).norm(), 1e-12 * force_n.norm());
 }

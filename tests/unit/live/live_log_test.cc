@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -74,6 +75,16 @@ std::vector<TickRecord> a_few() {
     records[i].pose = test::pressed(0.001);
   }
   return records;
+}
+
+TEST_F(LiveLogTest, ThatIsNoFileIsRefused) {
+  std::filesystem::remove_all(file_);
+  std::filesystem::create_directories(file_);
+  expect_refused(0, "cannot read the log: it is a folder; expected the live.csv of a live run of at most 2 GiB");
+  std::filesystem::remove_all(file_);
+  ASSERT_EQ(::mkfifo(file_.c_str(), 0600), 0);
+  expect_refused(0, "cannot read the log: it is a pipe");
+  std::filesystem::remove(file_);
 }
 
 TEST_F(LiveLogTest, ComesBackToTheLastBit) {

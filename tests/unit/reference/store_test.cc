@@ -3,6 +3,7 @@
 #include "scene/error.h"
 #include "scene/hash.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -57,6 +58,20 @@ TEST_F(StoreTest, TornOrAlteredFileIsNotRead) {
     EXPECT_FALSE(store.read(1, 1));
     EXPECT_FALSE(std::filesystem::exists(file));
   }
+}
+
+TEST_F(StoreTest, AnAlteredIdentityIsToldAndWrittenAgain) {
+  { const Store store(root_, "a scene", never); }
+  const std::filesystem::path file = root_ / Store::key("a scene") / "identity.txt";
+  scene::write_file(file, "another scene");
+  testing::internal::CaptureStderr();
+  { const Store store(root_, "a scene", never); }
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              testing::HasSubstr("is not the text that the folder is named by"));
+  EXPECT_EQ(scene::read_file(file), "a scene");
+  testing::internal::CaptureStderr();
+  { const Store store(root_, "a scene", never); }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 TEST_F(StoreTest, AnotherStepsFileIsNotRead) {

@@ -187,8 +187,8 @@ TEST(TrackByDepth, ResolvedSceneHasTheSamePosesBitForBit) {
   for (int trial = 0; trial < 200; ++trial) {
     const auto number = [&] { return std::to_string(any(random)); };
     const std::string row = "position_m = [0.001, 0.002, 0.03]\ndirection = [" + number() + ", " + number() +
-                            ", -1.5]\norientation_wxyz = [" + number() + ", " + number() + ", " + number() + ", " +
-                            number() + "]\ndepth_m = ";
+                            ", -1.5]\norientation_wxyz = [1.0, " + number() + ", " + number() + ", " + number() +
+                            "]\ndepth_m = ";
     const Scene scene = parse_scene(head + track(row + "-0.001", row + "0.002"), "a.toml",
                                     {"tool.shape=cylinder", "tool.length_m=0.03"});
     const Scene again = parse_scene(resolved_toml(scene), "a.toml");

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -292,11 +294,75 @@ TEST_F(MeshFile, RefusesBrokenFilesWithThePlace) {
   EXPECT_THAT(refusal("a.stl", stl), HasSubstr("byte 100: a coordinate is not finite"));
 }
 
+TEST_F(MeshFile, ElementsWithoutPropertiesAreRefusedAtOnce) {
+  std::string header = "ply\nformat binary_little_endian 1.0\n";
+  for (int i = 0; i < 30; ++i) header += "element foo 1000000000\n";
+  EXPECT_THAT(refusal("loop.ply", header + "end_header\n"),
+              HasSubstr("loop.ply:33: element \"foo\" has no property; expected at least one"));
+}
+
+TEST_F(MeshFile, AByteOrderMarkIsPassedOver) {
+  EXPECT_TRUE(read("marked.obj", "\xef\xbb\xbf" + obj(box_)).has_value());
+  EXPECT_EQ(read_obj("\xef\xbb\xbf" + obj(box_), "marked.obj").points.size(), 8u);
+}
+
+TEST_F(MeshFile, LargerThanOtherToolsIsRefused) {
+  for (const double reach : {1.1e4, 1e30, 1e155, 1e300}) {
+    EXPECT_FALSE(read("huge.obj", obj(box_mesh(Vec3::Constant(-reach), Vec3::Constant(reach))), 1e-3).has_value());
+    ASSERT_EQ(faults_.size(), 1u);
+    EXPECT_THAT(faults_[0].text(), HasSubstr("expected at most 10.0 m (tool.unit)"));
+  }
+  EXPECT_TRUE(read("large.obj", obj(box_mesh(Vec3::Constant(-1e4), Vec3::Constant(1e4))), 1e-3).has_value());
+}
+
+/// Two cones on a ring of `count` points, each with all its triangles at one point.
+RawMesh fan(int count) {
+  RawMesh mesh;
+  mesh.points = {Vec3(0.0, 0.0, 5.0), Vec3(0.0, 0.0, -5.0)};
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / count;
+    mesh.points.emplace_back(std::cos(angle), std::sin(angle), 0.0);
+    const std::int32_t here = 2 + i, next = 2 + (i + 1) % count;
+    mesh.triangles.push_back({0, here, next});
+    mesh.triangles.push_back({1, next, here});
+  }
+  return mesh;
+}
+
+/// Tetrahedra apart from each other.
+RawMesh scattered(int count) {
+  RawMesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 at(0.003 * (i % 30), 0.003 * (i / 30 % 30), 0.003 * (i / 900));
+    const std::int32_t first = 4 * i;
+    for (const Vec3& off : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})
+      mesh.points.push_back(at + 0.001 * off);
+    for (const std::array<std::int32_t, 3>& t :
+         {std::array{0, 2, 1}, std::array{0, 1, 3}, std::array{1, 2, 3}, std::array{0, 3, 2}})
+      mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return mesh;
+}
+
+TEST_F(MeshFile, ThatWouldTakeLongToCheckIsRefusedByAStatedLimit) {
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_THAT(refusal(scattered(20000)), HasSubstr("20000 separate pieces; expected at most 1000"));
+  EXPECT_THAT(refusal(fan(20000)), HasSubstr("too many long thin triangles side by side"));
+  // Triangles without an area are counted too: they are in the file.
+  std::string bytes(84 + 50 * 500'001, '\0');
+  const std::uint32_t count = 500'001;
+  std::memcpy(bytes.data() + 80, &count, sizeof count);
+  EXPECT_THAT(refusal("many.stl", bytes), HasSubstr("the mesh has 500001 triangles; expected at most 500000"));
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 10.0);
+  EXPECT_TRUE(read("fan.obj", obj(fan(400)))->convex);
+  EXPECT_TRUE(read("scattered.obj", obj(scattered(900))).has_value());
+}
+
 TEST_F(MeshFile, MissingFileIsNamed) {
   std::vector<Fault> faults;
   EXPECT_FALSE(read_triangle_mesh(folder_ / "none.stl", 1.0, faults).has_value());
   ASSERT_EQ(faults.size(), 1u);
-  EXPECT_THAT(faults[0].text(), HasSubstr("none.stl: cannot be read"));
+  EXPECT_THAT(faults[0].text(), HasSubstr("none.stl: cannot read the mesh: there is no such file"));
 }
 
 TEST_F(MeshFile, TakesTwentyThousandTriangles) {

@@ -205,8 +205,9 @@ TEST_F(TrackFile, ReadsPosesInAnyColumnOrder) {
 
 TEST_F(TrackFile, FaultsNameLineAndColumn) {
   EXPECT_EQ(message("time_s,x_m,y_m,z_m\n0,0,0,0.08\n1,0,zero,0.07\n"),
-            ":3:5: \"zero\" for y_m; expected a finite number");
-  EXPECT_EQ(message("time_s,x_m,y_m,z_m\n0,0,0,0.08\n1,0,0,nan\n"), ":3:7: \"nan\" for z_m; expected a finite number");
+            ":3:5: \"zero\" for y_m; expected a number in [-1000, 1000] m");
+  EXPECT_EQ(message("time_s,x_m,y_m,z_m\n0,0,0,0.08\n1,0,0,nan\n"),
+            ":3:7: \"nan\" for z_m; expected a number in [-1000, 1000] m");
   EXPECT_EQ(message("time_s,x_m,y_m,z_m\n0,0,0,0.08\n1,0,0\n"), ":3:1: expected 4 values, found 3");
   EXPECT_THAT(message("time_s,x,y_m,z_m\n"), HasSubstr(":1:8: unknown or repeated column \"x\""));
   EXPECT_THAT(message("time_s,x_m,y_m\n"), HasSubstr("misses columns"));
@@ -215,7 +216,7 @@ TEST_F(TrackFile, FaultsNameLineAndColumn) {
   EXPECT_THAT(message("time_s,x_m,y_m,z_m\n0,0,0,0.08\n"), HasSubstr("at least two poses"));
   EXPECT_THAT(message("time_s,x_m,y_m,z_m\n1,0,0,0.08\n0,0,0,0.07\n"),
               HasSubstr(":3:1: track[1].time_s: time runs backwards"));
-  EXPECT_THAT(message("time_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0.08,0,0,0,0\n"), HasSubstr("quaternion is zero"));
+  EXPECT_THAT(message("time_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0.08,0,0,0,0\n"), HasSubstr("norm in [0.5, 2]"));
 }
 
 TEST_F(TrackFile, MissingFileIsOneClearMessage) {
@@ -227,7 +228,8 @@ TEST_F(TrackFile, MissingFileIsOneClearMessage) {
     (void)parse_scene(text, dir_ / "a.toml");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_EQ(error.what(), (dir_ / "t.csv").string() + ": cannot read the track; expected a readable CSV file");
+    EXPECT_EQ(error.what(), (dir_ / "a.toml").string() + ":11:8: track.file: cannot read " + (dir_ / "t.csv").string() +
+                                ": it is a folder; expected a CSV file of at most 256 MiB");
   }
 }
 
