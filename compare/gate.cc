@@ -46,7 +46,7 @@ void write_accepted(const path& file, const std::map<std::string, AcceptedValue>
     json[name] = {{"value", entry.value}, {"unit", entry.unit}, {"scene_hash", entry.scene_hash}};
   }
   std::filesystem::create_directories(file.parent_path());
-  scene::write_file(file, json.dump(2) + "\n");
+  scene::write_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 bool is_asked(const std::string& file, const std::string& gate, const GateNames& names) {

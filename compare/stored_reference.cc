@@ -285,7 +285,7 @@ void store_reference(const path& folder, const scene::Scene& scene, const scene:
                       {"commit", scene::build_info.commit},
                       {"curve_checksum", scene::hash_text(*scene::read_file(folder / curve_name))},
                       {"surface_checksum", scene::hash_text(bytes)}};
-  scene::write_file(folder / about_name, about.dump(2) + "\n");
+  scene::write_file(folder / about_name, about.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 reference::Result stored_reference(const path& folder, const scene::Scene& scene, const scene::Surface& surface) {

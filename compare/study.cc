@@ -106,7 +106,7 @@ StudyManifest expand(const scene::Study& study, const std::filesystem::path& fol
   std::vector<scene::Scene> scenes = scene::load_cases(study, [&](const scene::Scene& scene) {
     return study.run == "fast" ? std::vector<scene::Fault>{} : reference::unsupported(scene);
   });
-  scene::prepare_result_folder(folder);
+  const scene::FolderLock lock = scene::prepare_result_folder(folder);
   for (const char* name : {"scenes", "results", "logs"}) std::filesystem::create_directories(folder / name);
 
   StudyManifest manifest{folder, study.name, study.title, study.run, study.axes, {}};
@@ -147,7 +147,7 @@ StudyManifest expand(const scene::Study& study, const std::filesystem::path& fol
                              {"set", pairs(one.settings)}});
   }
   scene::write_file(folder / "array.sbatch", batch_script(manifest, program, store));
-  scene::write_file(folder / "manifest.json", json.dump(2) + "\n");
+  scene::write_file(folder / "manifest.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   return manifest;
 }
 

@@ -97,15 +97,10 @@ int run_verb(const CaseRun& run, const std::filesystem::path& scene_file, const 
     const int code = run(scene_file, folder);
     why = said.text();
     return code;
-  } catch (const scene::InputError& error) {
-    why = error.what();
-    return fast::bad_input;
-  } catch (const std::filesystem::filesystem_error& error) {
-    why = error.what();
-    return fast::bad_input;
-  } catch (const std::exception& error) {
-    why = error.what();
-    return fast::answer_is_no;
+  } catch (...) {
+    fast::Failure failure = fast::failure_at_hand();
+    why = std::move(failure.message);
+    return failure.exit_code;
   }
 }
 
@@ -119,11 +114,10 @@ int run_case(const StudyManifest& manifest, const ManifestCase& one, const CaseR
                               "changed since the study was expanded; expected the scene of " + title +
                                   ": change the study and expand it again"}});
   }
-  scene::prepare_result_folder(folder);
   std::filesystem::remove(folder / "done.json");
   std::filesystem::remove(folder / "failed.json");
   const Json attempt = {{"id", one.id}, {"host", host_name()}, {"process", ::getpid()}, {"began", utc_now()}};
-  scene::write_file(folder / "attempt.json", attempt.dump(2) + "\n");
+  scene::write_file(folder / "attempt.json", attempt.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   say(title);
   const scene::Stopwatch watch;
   std::string why;
@@ -145,7 +139,7 @@ int run_case(const StudyManifest& manifest, const ManifestCase& one, const CaseR
   done["version"] = scene::build_info.version;
   done["commit"] = scene::build_info.commit;
   done["summary"] = scene::hash_text(*summary);
-  scene::write_file(folder / "done.json", done.dump(2) + "\n");
+  scene::write_file(folder / "done.json", done.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   say(title + fmt::format(" done in {:.1f} s", watch.read("case").wall_s));
   return code;
 }

@@ -205,7 +205,8 @@ StudyTable collect(const StudyManifest& manifest) {
   }
   const std::vector<StudyParameter> beside = keys_beside(manifest);
   scene::write_file(manifest.folder / "summary.csv", csv(manifest, rows, beside, keys));
-  scene::write_file(manifest.folder / "summary.json", json(manifest, rows, units).dump(2) + "\n");
+  scene::write_file(manifest.folder / "summary.json",
+                    json(manifest, rows, units).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   scene::write_file(manifest.folder / "summary.md", markdown(manifest, rows, beside, table.text));
   scene::write_file(manifest.folder / "report.html", study_page_html(manifest, rows));
   return table;

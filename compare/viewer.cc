@@ -110,7 +110,7 @@ Json data_of(const scene::Scene& scene, const fast::Run& run, const reference::R
 /// As the text of a script element, where neither HTML nor XML may see markup.
 std::string script_text(const Json& data) {
   std::string out;
-  for (const char c : data.dump()) {
+  for (const char c : data.dump(-1, ' ', false, Json::error_handler_t::replace)) {
     out += c == '<' || c == '>' || c == '&' ? fmt::format("\\u{:04x}", static_cast<int>(c)) : std::string(1, c);
   }
   return out;

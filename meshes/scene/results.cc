@@ -35,6 +35,9 @@ constexpr const char* axis_names[] = {"x", "y", "z"};
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+/// Names of files may hold any bytes; those that are not UTF-8 become U+FFFD.
+std::string text_of(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
 std::string utc_now() {
   const std::time_t now = std::time(nullptr);
   char text[32];
@@ -146,7 +149,7 @@ void write_summary(const std::filesystem::path& path, const Figures& figures) {
   }
   json["units"] = units;
   if (!reasons.is_null()) json["reasons"] = reasons;
-  write_file(path, json.dump(2) + "\n");
+  write_file(path, text_of(json));
 }
 
 StageTime Stopwatch::read(const std::string& stage) const {
@@ -198,12 +201,19 @@ void write_manifest(const std::filesystem::path& path, const Manifest& manifest)
     json["times"][time.stage] = {{"wall_s", number_or_null(time.wall_s)}, {"cpu_s", number_or_null(time.cpu_s)}};
   }
   json["resolved_scene"] = manifest.resolved_scene;
-  write_file(path, json.dump(2) + "\n");
+  write_file(path, text_of(json));
 }
 
-void prepare_result_folder(const std::filesystem::path& folder) {
+FolderLock prepare_result_folder(const std::filesystem::path& folder) {
   require_writable(folder, "--out");
+  // Not "lock": that one a worker of a study holds while its verb takes this one.
+  FolderLock lock(folder, ".touchstone-writer");
+  if (!lock.try_take()) {
+    throw InputError("--out " + folder.string() +
+                     ": another run is writing there; expected a folder of its own, or to be run after it");
+  }
   remove_unfinished(folder);
+  return lock;
 }
 
 }  // namespace touchstone::scene
