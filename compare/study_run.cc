@@ -114,6 +114,7 @@ int run_case(const StudyManifest& manifest, const ManifestCase& one, const CaseR
                               "changed since the study was expanded; expected the scene of " + title +
                                   ": change the study and expand it again"}});
   }
+  scene::remove_unfinished(folder);
   std::filesystem::remove(folder / "done.json");
   std::filesystem::remove(folder / "failed.json");
   const Json attempt = {{"id", one.id}, {"host", host_name()}, {"process", ::getpid()}, {"began", utc_now()}};

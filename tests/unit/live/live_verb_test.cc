@@ -93,7 +93,7 @@ TEST_F(LiveVerb, EverySignalToStopEndsItWithAllWritten) {
 }
 
 TEST_F(LiveVerb, OutlivesItsTerminalWhereThatIsAskedFor) {
-  const Answer answer = live("--seconds 1.5", "out", "trap '' HUP; timeout --foreground --preserve-status -s HUP 0.7 ");
+  const Answer answer = live("--seconds 1.5 & sleep 0.7; kill -HUP $!; wait $!", "out", "trap '' HUP; ");
   EXPECT_EQ(answer.exit_code, 0) << answer.output;
 }
 
