@@ -56,7 +56,7 @@ int export_deck(const fast::VerbOptions& options, const ExportOptions& export_op
   }
   if (!faults.empty()) throw scene::InputError(std::move(faults));
   const std::filesystem::path folder = options.folder(scene, "export");
-  scene::prepare_result_folder(folder);
+  const scene::FolderLock lock = scene::prepare_result_folder(folder);
   if (export_options.time_to_error > 0) {
     return with_reference_exits([&] {
       const TimeToError times = time_to_error(scene, export_options.time_to_error, folder);

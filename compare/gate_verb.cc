@@ -54,7 +54,7 @@ int gate(const GateOptions& options, const std::string& command) {
       options.base.empty() ? std::nullopt : std::optional(base_gates(options.folder, options.base));
   if (options.accept) require_names(options, "--accept");
 
-  scene::prepare_result_folder(options.out);
+  const scene::FolderLock lock = scene::prepare_result_folder(options.out);
   fast::ProgressLine line(options.quiet);
   scene::Manifest manifest = scene::make_manifest(scene::Scene{}, command);
   manifest.scene_hash = "none: every gate file names its own";

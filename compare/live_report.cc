@@ -145,7 +145,7 @@ Plot force_plot(const scene::Scene& scene, const live::LiveResult& result) {
 }
 
 /// Durations in ten columns per factor of ten; a logarithmic count shows the few that are long.
-Plot histogram_plot(const std::string& title, const live::DurationHistogram& histogram, const std::string& x_label,
+Plot histogram_plot(const std::string& title, const fast::DurationHistogram& histogram, const std::string& x_label,
                     double period_us) {
   Plot plot = plot_of(title, x_label + " [µs]", "ticks");
   plot.x_log = plot.y_log = true;
@@ -168,7 +168,7 @@ Plot histogram_plot(const std::string& title, const live::DurationHistogram& his
   return plot;
 }
 
-std::string histogram_caption(const live::DurationHistogram& histogram) {
+std::string histogram_caption(const fast::DurationHistogram& histogram) {
   const fast::Percentiles p = histogram.percentiles();
   return fmt::format("Median {}, 99\u00a0% within {}, 99.9\u00a0% within {}, longest {}.", us_text(p.p50_us),
                      us_text(p.p99_us), us_text(p.p999_us), us_text(p.max_us));
@@ -257,7 +257,7 @@ Section missed_section(const live::LiveResult& result) {
                               "\n" + figure(to_svg(plot, 560, 260), caption)};
 }
 
-std::string percentiles_row(const std::string& name, const live::DurationHistogram& histogram) {
+std::string percentiles_row(const std::string& name, const fast::DurationHistogram& histogram) {
   const fast::Percentiles p = histogram.percentiles();
   return "<tr>" + cell(name) + number_cell(us_text(p.p50_us)) + number_cell(us_text(p.p99_us)) +
          number_cell(us_text(p.p999_us)) + number_cell(us_text(p.max_us)) + "</tr>\n";
@@ -266,7 +266,7 @@ std::string percentiles_row(const std::string& name, const live::DurationHistogr
 Section tick_section(const live::LiveResult& result) {
   const live::Ledger& ledger = result.ledger;
   std::string out = "<div class=\"plots\">\n";
-  const auto add = [&](const std::string& title, const live::DurationHistogram& histogram, const std::string& words) {
+  const auto add = [&](const std::string& title, const fast::DurationHistogram& histogram, const std::string& words) {
     out += figure(to_svg(histogram_plot(title, histogram, "time", period_us(result)), 560, 300),
                   words + " " + histogram_caption(histogram));
   };
@@ -288,7 +288,7 @@ Section tick_section(const live::LiveResult& result) {
 Section stages_section(const live::LiveResult& result) {
   std::string out = "<div class=\"plots\">\n";
   for (std::size_t s = 0; s < fast::stage_count; ++s) {
-    const live::DurationHistogram& stage = result.ledger.stages[s];
+    const fast::DurationHistogram& stage = result.ledger.stages[s];
     if (stage.count() == 0) continue;
     out += figure(to_svg(histogram_plot(fast::stage_names[s], stage, "time", period_us(result)), 560, 260),
                   fmt::format("Of the {} in which it ran. {}", counted(static_cast<double>(stage.count()), "tick"),

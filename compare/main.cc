@@ -14,14 +14,18 @@
 #include "fast/live/live_verb.h"
 #include "fast/new_verb.h"
 #include "reference/contact/contact_shares.h"
+#include "reference/linear/blas.h"
 #include "reference/linear/ranks.h"
 #include "scene/fields.h"
 
+#include <cstdlib>
 #include <iostream>
 
 using namespace touchstone;
 
-int main(int argc, char** argv) {
+namespace {
+
+int run_program(int argc, char** argv) {
   const reference::ranks::Session session;
   if (!reference::ranks::first()) {
     reference::follow_first_rank();
@@ -135,4 +139,19 @@ int main(int argc, char** argv) {
       "not\n"
       "converged.");
   return fast::run_command_line(app, argc, argv, exit_code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return fast::guarded([&] {
+    if (!reference::blas_has_memory()) {
+      std::cerr
+          << "the memory does not suffice for the linear algebra's threads; expected more of it, or fewer threads "
+             "with OPENBLAS_NUM_THREADS\n";
+      // They wait for memory without end, and an ordinary exit waits for them.
+      std::_Exit(fast::not_converged);
+    }
+    return run_program(argc, argv);
+  });
 }

@@ -4,44 +4,17 @@
 #include "compare/text.h"
 #include "fast/command_line.h"
 #include "fast/progress_line.h"
+#include "fast/stop_signals.h"
 #include "reference/run/cost.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <iostream>
 
 namespace touchstone::compare {
 namespace {
-
-std::atomic<bool> stop_requested = false;
-
-extern "C" void request_stop(int signal) {
-  stop_requested = true;
-  std::signal(signal, SIG_DFL);
-}
-
-/// Raises stop_requested on Ctrl-C or a batch system's SIGTERM, for as long as it lives.
-class StopOnSignal {
- public:
-  StopOnSignal() {
-    stop_requested = false;
-    old_interrupt_ = std::signal(SIGINT, request_stop);
-    old_terminate_ = std::signal(SIGTERM, request_stop);
-  }
-  ~StopOnSignal() {
-    std::signal(SIGINT, old_interrupt_);
-    std::signal(SIGTERM, old_terminate_);
-  }
-  StopOnSignal(const StopOnSignal&) = delete;
-  StopOnSignal& operator=(const StopOnSignal&) = delete;
-
- private:
-  void (*old_interrupt_)(int);
-  void (*old_terminate_)(int);
-};
 
 std::string time_left_text(const reference::Progress& p) {
   if (p.seconds_left < 0.0) return "";
@@ -88,11 +61,11 @@ std::string progress_text(const reference::Progress& p) {
 reference::Result solve_with_progress(const scene::Scene& scene, const scene::Surface& surface,
                                       const ReferenceOptions& options, bool quiet) {
   constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0;
-  const StopOnSignal stop;
+  const fast::StopSignals signals(fast::StopSignals::Again::end_at_once);
   fast::ProgressLine line(quiet);
   reference::Options solve_options;
   solve_options.store = options.store;
-  solve_options.stop = &stop_requested;
+  solve_options.stop = &fast::StopSignals::asked();
   solve_options.rest_area_m2 = surface.vertex_area_m2;
   if (options.memory_gib) solve_options.memory_limit_bytes = *options.memory_gib * gibibyte;
   // Who asks for a number of meshes gets them.

@@ -33,8 +33,8 @@ struct ReferenceOptions {
 /// One line for the terminal, the most important first.
 [[nodiscard]] std::string progress_text(const reference::Progress& progress);
 
-/// Solves, resumes or reads back, showing how far it is. Ctrl-C ends it after the current
-/// Newton iteration with reference::Interrupted; a second Ctrl-C ends the process at once.
+/// Solves, resumes or reads back, showing how far it is. Ctrl-C, SIGTERM or SIGHUP
+/// ends it after the current Newton iteration with reference::Interrupted; a second one ends the process at once.
 [[nodiscard]] reference::Result solve_with_progress(const scene::Scene& scene, const scene::Surface& surface,
                                                     const ReferenceOptions& options, bool quiet);
 

@@ -107,7 +107,7 @@ StudyManifest expand(const scene::Study& study, const std::filesystem::path& fol
   std::vector<scene::Scene> scenes = scene::load_cases(study, [&](const scene::Scene& scene) {
     return study.run == "fast" ? std::vector<scene::Fault>{} : reference::unsupported(scene);
   });
-  scene::prepare_result_folder(folder);
+  const scene::FolderLock lock = scene::prepare_result_folder(folder);
   for (const char* name : {"scenes", "results", "logs"}) std::filesystem::create_directories(folder / name);
 
   StudyManifest manifest{folder, study.name, study.title, study.run, study.axes, {}};

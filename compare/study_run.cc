@@ -98,15 +98,10 @@ int run_verb(const CaseRun& run, const std::filesystem::path& scene_file, const 
     const int code = run(scene_file, folder);
     why = said.text();
     return code;
-  } catch (const scene::InputError& error) {
-    why = error.what();
-    return fast::bad_input;
-  } catch (const std::filesystem::filesystem_error& error) {
-    why = error.what();
-    return fast::bad_input;
-  } catch (const std::exception& error) {
-    why = error.what();
-    return fast::answer_is_no;
+  } catch (...) {
+    fast::Failure failure = fast::failure_at_hand();
+    why = std::move(failure.message);
+    return failure.exit_code;
   }
 }
 
@@ -120,7 +115,7 @@ int run_case(const StudyManifest& manifest, const ManifestCase& one, const CaseR
                               "changed since the study was expanded; expected the scene of " + title +
                                   ": change the study and expand it again"}});
   }
-  scene::prepare_result_folder(folder);
+  scene::remove_unfinished(folder);
   std::filesystem::remove(folder / "done.json");
   std::filesystem::remove(folder / "failed.json");
   const Json attempt = {{"id", one.id}, {"host", host_name()}, {"process", ::getpid()}, {"began", utc_now()}};

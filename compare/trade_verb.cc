@@ -13,7 +13,7 @@ int run(const fast::VerbOptions& options, const TradeOptions& trade_options, con
     throw scene::InputError(std::move(faults));
   }
   const std::filesystem::path folder = options.folder(scene, "trade");
-  scene::prepare_result_folder(folder);
+  const scene::FolderLock lock = scene::prepare_result_folder(folder);
   return with_reference_exits([&] {
     scene::Manifest manifest = scene::make_manifest(scene, "touchstone trade");
     const scene::Stopwatch watch;

@@ -38,7 +38,7 @@ int run(const TuneOptions& options, const ReferenceOptions& reference) {
       options.study, [&](const scene::Scene& scene) { return reference::unsupported(asked(scene, reference)); });
   const std::filesystem::path folder =
       options.out.empty() ? std::filesystem::path("out") / (study.name + "-tune") : options.out;
-  scene::prepare_result_folder(folder);
+  const scene::FolderLock lock = scene::prepare_result_folder(folder);
   return with_reference_exits([&] {
     scene::Manifest manifest =
         scene::make_manifest(study.training.front().scene, "touchstone tune " + options.study.string());

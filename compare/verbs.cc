@@ -39,7 +39,7 @@ int plan(const fast::VerbOptions& options, const ReferenceOptions&) {
 int run_fast(const fast::VerbOptions& options, const ReferenceOptions&) {
   const scene::Scene scene = options.load();
   const std::filesystem::path folder = options.folder(scene, "fast");
-  scene::prepare_result_folder(folder);
+  const scene::FolderLock lock = scene::prepare_result_folder(folder);
   scene::Manifest manifest = scene::make_manifest(scene, "touchstone fast");
   const scene::Stopwatch watch;
   const fast::Run run = fast::run_into_folder(scene, folder, manifest, options.quiet);
@@ -55,7 +55,7 @@ int run_reference(const fast::VerbOptions& options, const ReferenceOptions& refe
   const scene::Scene scene = asked(options.load(), reference);
   refuse(reference::unsupported(scene));
   const std::filesystem::path folder = options.folder(scene, "reference");
-  scene::prepare_result_folder(folder);
+  const scene::FolderLock lock = scene::prepare_result_folder(folder);
   return with_reference_exits([&] {
     const scene::Stopwatch watch;
     const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
@@ -76,7 +76,7 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
   refuse(reference::unsupported(given));
   const scene::Scene scene = parameters.empty() ? given : scene::with_parameters(given, parameters);
   const std::filesystem::path folder = options.folder(scene, "compare");
-  scene::prepare_result_folder(folder);
+  const scene::FolderLock lock = scene::prepare_result_folder(folder);
   const Call call{options.scene_file, options.overrides, reference, parameters, folder};
   return with_reference_exits([&] {
     scene::Manifest manifest = scene::make_manifest(scene, "touchstone compare");

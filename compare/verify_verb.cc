@@ -211,7 +211,7 @@ int verify(const VerifyOptions& options, const std::string& command, const std::
     return fast::done;
   }
   static_cast<void>(chosen(all, options.names));
-  scene::prepare_result_folder(options.out);
+  const scene::FolderLock lock = scene::prepare_result_folder(options.out);
   scene::Manifest manifest = scene::make_manifest(scene::Scene{}, command);
   manifest.scene_hash = "none: the problems are the program's own";
   manifest.resolved_scene.clear();

@@ -6,9 +6,22 @@
 #include "scene/nearest_name.h"
 #include "scene/scene_io.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
 #include <iostream>
+#include <new>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
 
 namespace touchstone::fast {
 
@@ -114,13 +127,90 @@ int run_command_line(CLI::App& app, int argc, char** argv, int& exit_code) {
     }
     const int code = app.exit(error);
     return code == 0 ? done : bad_input;
-  } catch (const scene::InputError& error) {
-    std::cerr << error.what() << '\n';
-    return bad_input;
-  } catch (const std::filesystem::filesystem_error& error) {
-    std::cerr << error.what() << '\n';
-    return bad_input;
   }
+}
+
+namespace {
+
+constexpr const char* no_memory = "the memory does not suffice; expected more of it, or a smaller scene";
+
+/// The text in one line: libraries set theirs in several.
+std::string in_one_line(const std::string& text) {
+  std::istringstream words(text);
+  std::string line;
+  for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
+/// The last resort where nothing catches, as in a thread; perhaps without memory.
+[[noreturn]] void say_and_end() noexcept {
+  const auto end = [](const char* what) {
+    std::fprintf(stderr, "cannot go on: %s\n", what);
+    std::_Exit(not_converged);
+  };
+  try {
+    if (const std::exception_ptr failure = std::current_exception()) std::rethrow_exception(failure);
+  } catch (const std::bad_alloc&) {
+    end(no_memory);
+  } catch (const std::exception& error) {
+    end(error.what());
+  } catch (...) {
+  }
+  end("an unknown error");
+  std::abort();
+}
+
+/// Keeps the first file that is opened from taking the place of a standard stream that was closed. Reading and writing
+/// there still fail.
+void hold_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
+}  // namespace
+
+Failure failure_at_hand() {
+  try {
+    throw;
+  } catch (const scene::InputError& error) {
+    return {bad_input, error.what()};
+  } catch (const std::system_error& error) {  // of files and streams, too
+    if (error.code() == std::errc::resource_unavailable_try_again || error.code() == std::errc::not_enough_memory) {
+      return {not_converged, "no thread can be started: " + std::string(no_memory)};
+    }
+    return {bad_input, in_one_line(error.what())};
+  } catch (const std::bad_alloc&) {
+    return {not_converged, no_memory};
+  } catch (const std::length_error&) {
+    return {not_converged, no_memory};
+  } catch (const std::exception& error) {
+    return {not_converged, in_one_line(error.what())};
+  } catch (...) {
+    return {not_converged, "an unknown error"};
+  }
+}
+
+int guarded(const std::function<int()>& program) noexcept {
+  std::set_terminate(say_and_end);
+  std::signal(SIGXFSZ, SIG_IGN);
+  hold_standard_streams();
+  int exit_code = done;
+  try {
+    exit_code = program();
+  } catch (...) {
+    const Failure failure = failure_at_hand();
+    std::cerr << failure.message << '\n';
+    exit_code = failure.exit_code;
+  }
+  errno = 0;
+  const bool taken = static_cast<bool>(std::cout.flush());
+  if (std::fflush(stdout) == 0 && taken) return exit_code;
+  // A stream that failed before does not try again, so its reason has to be asked for.
+  if (errno == 0) static_cast<void>(!::write(STDOUT_FILENO, "\n", 1));
+  std::cerr << "cannot write to standard output" << (errno != 0 ? std::string(": ") + std::strerror(errno) : "")
+            << '\n';
+  return exit_code == done ? bad_input : exit_code;
 }
 
 std::string shell_word(const std::string& word) {

@@ -40,10 +40,26 @@ void group_verbs(CLI::App& app, const std::vector<std::pair<std::string, std::ve
 /// What a misspelt verb or option is to be told, with the nearest known one; empty when the fault is another.
 [[nodiscard]] std::string misspelt(const CLI::App& app);
 
-/// Parses and runs the chosen verb; turns every error into one message on stderr and an exit code. Without any argument
-/// it prints the help.
+/// Parses and runs the chosen verb; a command that cannot be is one message on stderr and an exit code. Without any
+/// argument it prints the help.
 /// @param exit_code  the variable given to add_verb
+/// @throws what the verb throws
 [[nodiscard]] int run_command_line(CLI::App& app, int argc, char** argv, int& exit_code);
+
+/// What a failure is to its user.
+struct Failure {
+  int exit_code;
+  std::string message;  ///< a sentence; of an input's faults one each
+};
+
+/// Of the exception that is being handled.
+[[nodiscard]] Failure failure_at_hand();
+
+/// Runs a whole program, whatever happens in it: every exception, also of a thread, becomes a message on stderr and an
+/// exit code, and so does text that standard output does not take. A file that may not grow is an error like a full
+/// disk.
+/// @returns the exit code
+[[nodiscard]] int guarded(const std::function<int()>& program) noexcept;
 
 /// A word quoted for a shell where it needs it.
 [[nodiscard]] std::string shell_word(const std::string& word);

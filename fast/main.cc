@@ -22,16 +22,14 @@ int plan(const fast::VerbOptions& options) {
 int run(const fast::VerbOptions& options) {
   const scene::Scene scene = options.load();
   const std::filesystem::path folder = options.folder(scene, "fast");
-  scene::prepare_result_folder(folder);
+  const scene::FolderLock lock = scene::prepare_result_folder(folder);
   const fast::Run run =
       fast::run_into_folder(scene, folder, scene::make_manifest(scene, "touchstone-fast fast"), options.quiet);
   std::cout << fast::summary_text(run) << "Results: " << folder.string() << '\n';
   return fast::done;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_program(int argc, char** argv) {
   CLI::App app("Real-time contact of a rigid tool with an elastic body.", "touchstone-fast");
   fast::VerbOptions options;
   live::LiveOptions live_options;
@@ -53,4 +51,10 @@ int main(int argc, char** argv) {
   fast::add_completion_verb(app, shell, exit_code);
   app.footer("touchstone-fast VERB --help: options and an example");
   return fast::run_command_line(app, argc, argv, exit_code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return fast::guarded([&] { return run_program(argc, argv); });
 }

@@ -3,6 +3,8 @@
 #include "fast/progress_line.h"
 #include "fast/state.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -82,14 +84,12 @@ Run run_into_folder(const scene::Scene& scene, const std::filesystem::path& fold
 std::string summary_text(const Run& run) {
   const auto deepest = std::max_element(run.instants.begin(), run.instants.end(),
                                         [](const auto& a, const auto& b) { return a.depth_m < b.depth_m; });
-  char text[400];
-  std::snprintf(text, sizeof text,
-                "Force at the deepest recorded instant (%.3g mm): %.4g N\n"
-                "Step time over %d ticks: median %.3g us, 99 %% below %.3g us, 99.9 %% below %.3g us, longest %.3g us\n"
-                "Status: %s\n",
-                1e3 * deepest->depth_m, deepest->force_n().norm(), run.ticks, run.step.p50_us, run.step.p99_us,
-                run.step.p999_us, run.step.max_us, status_text(run.status).c_str());
-  return text;
+  return fmt::format(
+      "Force at the deepest recorded instant ({:.3g} mm): {:.4g} N\n"
+      "Step time over {} ticks: median {:.3g} us, 99 % below {:.3g} us, 99.9 % below {:.3g} us, longest {:.3g} us\n"
+      "Status: {}\n",
+      1e3 * deepest->depth_m, deepest->force_n().norm(), run.ticks, run.step.p50_us, run.step.p99_us, run.step.p999_us,
+      run.step.max_us, status_text(run.status));
 }
 
 }  // namespace touchstone::fast

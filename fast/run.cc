@@ -1,5 +1,6 @@
 #include "fast/run.h"
 
+#include "fast/duration_histogram.h"
 #include "fast/separation.h"
 #include "fast/several_regions.h"
 #include "fast/step.h"
@@ -16,7 +17,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double microseconds(Clock::duration duration) { return std::chrono::duration<double, std::micro>(duration).count(); }
+std::int64_t nanoseconds(Clock::duration duration) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
+}
 
 /// Hash over every tick's force and the shape after the last.
 class StateHash {
@@ -93,44 +96,43 @@ Run run(const scene::Scene& scene, const std::function<void(double)>& progress) 
 
   const Separation separation(*model.body, run.surface, scene::tool_surface(scene.tool, scene.fast.tool_samples));
   run.first_contact_s = separation.first_contact_s(scene.track);
-  const std::vector<Tick> ticks = ticks_of(scene);
-  std::vector<double> step_us, force_us;
-  step_us.reserve(ticks.size());
-  force_us.reserve(ticks.size());
+  Ticks ticks(scene);
+  DurationHistogram step, force;
   StateHash hash;
-  const std::size_t report_every = std::max<std::size_t>(1, ticks.size() / 100);
-  for (std::size_t k = 0; k < ticks.size(); ++k) {
-    const scene::Pose pose = scene::pose_at(scene.track, ticks[k].time_s);
+  const std::int64_t report_every = std::max<std::int64_t>(1, ticks.count() / 100);
+  for (std::optional<Tick> tick; (tick = ticks.next()); ++run.ticks) {
+    const scene::Pose pose = scene::pose_at(scene.track, tick->time_s);
     const Clock::time_point begin = Clock::now();
     StepStatus status = step_force(model, pose, state);
     const Clock::time_point published = Clock::now();
     if (status != StepStatus::not_finite) status |= step_shape(model, state);
     const Clock::time_point end = Clock::now();
 
-    step_us.push_back(microseconds(end - begin));
+    step.add(nanoseconds(end - begin));
     if (state.in_contact()) {
-      force_us.push_back(microseconds(published - begin));
+      force.add(nanoseconds(published - begin));
       run.regions_max = std::max(run.regions_max, state.region_count);
     }
     run.status |= static_cast<std::uint32_t>(status);
     hash.add_force(total_force_n(state));
-    if (ticks[k].instant >= 0) {
+    if (tick->instant >= 0) {
       if (state.region_count > 1) {
         const OrderSpread spread = order_spread(model, state);
         run.order_spread_rel = std::max(run.order_spread_rel.value_or(0.0), spread.spread_rel);
         run.equilibrium_rel = std::max(run.equilibrium_rel.value_or(0.0), spread.equilibrium_rel);
       }
-      run.instants.push_back(record_of(scene, model, state, ticks[k].time_s, pose));
+      run.instants.push_back(record_of(scene, model, state, tick->time_s, pose));
       if (!state.in_contact()) run.instants.back().separation_m = separation.distance_m(pose);
       run.normals.push_back(matrix_of(state.field.normal));
-      add_beams(model, state, ticks[k].time_s, run.beams);
+      add_beams(model, state, tick->time_s, run.beams);
     }
-    if (progress && k % report_every == 0) progress(static_cast<double>(k + 1) / static_cast<double>(ticks.size()));
+    if (progress && run.ticks % report_every == 0) {
+      progress(std::min(1.0, static_cast<double>(run.ticks + 1) / static_cast<double>(ticks.count())));
+    }
   }
   if (progress) progress(1.0);
-  run.step = percentiles(std::move(step_us));
-  run.force = percentiles(std::move(force_us));
-  run.ticks = static_cast<int>(ticks.size());
+  run.step = step.percentiles();
+  run.force = force.percentiles();
   run.state_hash = hash.finish(state.field);
   return run;
 }

@@ -33,11 +33,11 @@ struct Run {
   std::vector<scene::InstantRecord> instants;  ///< at scene::instants_s
   std::vector<Eigen::Matrix3Xd> normals;       ///< per instant, current unit normals at the rest points
   std::vector<BeamRecord> beams;               ///< per instant, pressing region and anchor point
-  Percentiles step;                            ///< whole step, wall clock, over all ticks of the track
-  Percentiles force;                           ///< detection to published force, ticks in contact only
+  Percentiles step;                            ///< whole step, wall clock, over all ticks of the track; to 1 %
+  Percentiles force;                           ///< detection to published force, ticks in contact only; to 1 %
   double setup_s = 0.0;                        ///< building the model
   std::size_t memory_bytes = 0;                ///< model and state
-  int ticks = 0;
+  std::int64_t ticks = 0;
   int regions_max = 0;
   std::optional<double> first_contact_s;  ///< by Separation; absent where the tool stays apart
   /// What the paper leaves open about several regions (errata E18), worst over the instants; see OrderSpread. Absent
@@ -50,7 +50,8 @@ struct Run {
 /// What the fast model computes for this scene and what it leaves out.
 [[nodiscard]] scene::Plan plan(const scene::Scene& scene);
 
-/// Runs the whole track at fast.rate_hz. Deterministic but for the timings.
+/// Runs the whole track at fast.rate_hz. Deterministic but for the timings. The memory hangs on the instants, not on
+/// the ticks.
 /// @param progress called now and then with the fraction done; may be empty
 [[nodiscard]] Run run(const scene::Scene& scene, const std::function<void(double)>& progress = {});
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 namespace touchstone::fast {
 namespace {
@@ -26,7 +27,7 @@ void build(const scene::Surface& surface, Model& model) {
                            static_cast<std::size_t>(t[2]));
   model.beginModel(surface.triangle_count(), surface.vertex_count());
   model.addSubModel(points_m, triangles);
-  model.endModel();
+  if (model.endModel() == fcl::BVH_ERR_MODEL_OUT_OF_MEMORY) throw std::bad_alloc();
 }
 
 fcl::Transform3d transform(const Pose& pose) {

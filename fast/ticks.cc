@@ -1,25 +1,39 @@
 #include "fast/ticks.h"
 
 #include <cmath>
-#include <cstdint>
 
 namespace touchstone::fast {
 
-std::vector<Tick> ticks_of(const scene::Scene& scene) {
-  const double begin_s = scene.track.front().time_s, end_s = scene.track.back().time_s;
-  const std::vector<double> instants_s = scene::instants_s(scene);
-  std::vector<Tick> ticks;
-  std::size_t next = 0;
-  const auto last = static_cast<std::int64_t>(std::llround((end_s - begin_s) * scene.fast.rate_hz));
-  for (std::int64_t k = 0; k <= last; ++k) {
-    const auto nearest = [&](double time_s) { return std::llround((time_s - begin_s) * scene.fast.rate_hz) <= k; };
-    const bool regular = next == instants_s.size() || !nearest(instants_s[next]);
-    if (regular) ticks.push_back({begin_s + static_cast<double>(k) / scene.fast.rate_hz, -1});
+Ticks::Ticks(const scene::Scene& scene)
+    : begin_s_(scene.track.front().time_s),
+      rate_hz_(scene.fast.rate_hz),
+      instants_s_(scene::instants_s(scene)),
+      last_(std::llround((scene.track.back().time_s - begin_s_) * rate_hz_)) {}
+
+bool Ticks::instant_is_due() const {
+  return instant_ < instants_s_.size() && std::llround((instants_s_[instant_] - begin_s_) * rate_hz_) <= k_;
+}
+
+std::optional<Tick> Ticks::next() {
+  for (; k_ <= last_; ++k_, taken_ = false) {
     // Instants closer together than the ticks each get one of their own.
-    for (; next < instants_s.size() && nearest(instants_s[next]); ++next) {
-      ticks.push_back({instants_s[next], static_cast<int>(next)});
+    if (instant_is_due()) {
+      taken_ = true;
+      const std::size_t instant = instant_++;
+      return Tick{instants_s_[instant], static_cast<int>(instant)};
+    }
+    if (!taken_) {
+      taken_ = true;
+      return Tick{begin_s_ + static_cast<double>(k_) / rate_hz_, -1};
     }
   }
+  return std::nullopt;
+}
+
+std::vector<Tick> ticks_of(const scene::Scene& scene) {
+  std::vector<Tick> ticks;
+  Ticks all(scene);
+  while (const std::optional<Tick> tick = all.next()) ticks.push_back(*tick);
   return ticks;
 }
 

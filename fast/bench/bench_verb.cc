@@ -22,7 +22,7 @@ std::string load_average() {
 }  // namespace
 
 int bench_verb(const BenchVerbOptions& options, const std::string& command) {
-  scene::prepare_result_folder(options.out);
+  const scene::FolderLock lock = scene::prepare_result_folder(options.out);
   scene::Manifest manifest = scene::make_manifest(scene_of({scene::BodyShape::box, "4k", 1}), command);
   manifest.entries.emplace_back("only", options.only.empty() ? "everything" : options.only);
   manifest.entries.emplace_back("effort", options.quick ? "quick" : "full");

@@ -88,6 +88,19 @@ std::int64_t newest_grid_point(const LoopTime& time, std::int64_t since_start_ns
   return index;
 }
 
+/// Lets go of the hand: the wrench never jumps, at the end neither.
+void fade_out(const LoopTime& time, const LoopPorts& ports) noexcept {
+  constexpr double longest_s = 10.0;
+  const std::int64_t begin_ns = ports.clock.now_ns();
+  for (std::int64_t k = 1; time.time_s(k) < longest_s; ++k) {
+    const Wrench& wrench = ports.limiter.next(Wrench{}, false);
+    if (wrench.force_n.isZero(0.0) && wrench.torque_nm.isZero(0.0)) break;
+    ports.device.write(wrench);
+    ports.clock.wait_until(begin_ns + time.time_ns(k));
+  }
+  ports.device.write(Wrench{});
+}
+
 }  // namespace
 
 void run_device_loop(const LoopTime& time, const LoopPorts& ports, Ledger& ledger) noexcept {
@@ -106,7 +119,7 @@ void run_device_loop(const LoopTime& time, const LoopPorts& ports, Ledger& ledge
     do_tick({index, time.time_s(index)}, now_ns, now_ns - (start_ns + time.time_ns(index)), ports, ledger);
     ++index;
   }
-  ports.device.write(Wrench{});
+  fade_out(time, ports);
 }
 
 }  // namespace touchstone::live

@@ -69,7 +69,7 @@ struct LoopPorts {
 ///
 /// A tick that starts less than a period late is done late. What lies longer back is missed and never caught up with:
 /// the loop goes on at the newest grid point. Every grid point passed is either in ledger.ticks or in ledger.missed.
-/// The device is given a zero wrench at the end.
+/// At the end the wrench fades to zero as after a bad pose; these writes are no ticks.
 void run_device_loop(const LoopTime& time, const LoopPorts& ports, Ledger& ledger) noexcept;
 
 }  // namespace touchstone::live

@@ -5,12 +5,15 @@
 #include "fast/live/replay_device.h"
 #include "fast/live/scripted_device.h"
 #include "scene/error.h"
+#include "scene/files.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
+#include <iterator>
 #include <memory>
 #include <thread>
 
@@ -85,33 +88,24 @@ Setup set_up(const scene::Scene& scene, const LiveOptions& options) {
 /// Writes records down as they come and keeps their history; the file has its name only when complete.
 class Recorder {
  public:
-  explicit Recorder(std::filesystem::path file)
-      : file_(std::move(file)), part_(file_.string() + ".part"), out_(part_, std::ios::binary) {
-    out_ << log_header();
-  }
+  explicit Recorder(const std::filesystem::path& file) : file_(file) { file_.append(log_header()); }
   void drain(RecordRing<TickRecord>& ring, RunHistory& history) {
     text_.clear();
     for (TickRecord record; ring.pop(record);) {
       append_log_line(record, text_);
       history.add(record);
     }
-    out_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
-    good_.store(static_cast<bool>(out_), std::memory_order_relaxed);
+    if (!file_.append(text_)) good_.store(false, std::memory_order_relaxed);
   }
   /// Any thread.
   [[nodiscard]] bool good() const noexcept { return good_.load(std::memory_order_relaxed); }
+  /// @throws std::filesystem::filesystem_error with the reason, such as a full disk
   void finish() {
-    out_.flush();
-    if (!out_) {
-      throw std::filesystem::filesystem_error("cannot write", file_, std::make_error_code(std::errc::io_error));
-    }
-    out_.close();
-    std::filesystem::rename(part_, file_);
+    if (!file_.finish()) throw scene::InputError("live.csv: somebody removed it while it was written");
   }
 
  private:
-  std::filesystem::path file_, part_;
-  std::ofstream out_;
+  scene::UnfinishedFile file_;
   std::string text_;
   std::atomic<bool> good_{true};
 };
@@ -236,7 +230,7 @@ scene::Figures figures(const LiveResult& result, const LiveOptions& options) {
       {"live.ticks", static_cast<double>(ledger.ticks), "", ""},
       {"live.missed", static_cast<double>(ledger.missed), "", ""},
   };
-  const auto add = [&](const std::string& key, const DurationHistogram& histogram) {
+  const auto add = [&](const std::string& key, const fast::DurationHistogram& histogram) {
     const fast::Percentiles p = histogram.percentiles();
     list.push_back({key + ".p50", p.p50_us, "", "us"});
     list.push_back({key + ".p99", p.p99_us, "", "us"});
@@ -275,51 +269,39 @@ scene::Figures figures(const LiveResult& result, const LiveOptions& options) {
 
 std::string summary_text(const LiveResult& result) {
   const Ledger& ledger = result.ledger;
-  char line[240];
+  std::string text;
+  const auto say = [&text]<class... Values>(fmt::format_string<Values...> format, Values&&... values) {
+    fmt::format_to(std::back_inserter(text), format, std::forward<Values>(values)...);
+  };
   const auto percent =
       100.0 * static_cast<double>(ledger.ticks) / std::max<double>(1.0, double(ledger.ticks + ledger.missed));
-  std::snprintf(line, sizeof line, "%lld ticks at %d Hz, %lld missed (%.2f %% done), %s\n",
-                static_cast<long long>(ledger.ticks), result.rate_hz, static_cast<long long>(ledger.missed), percent,
-                result.scheduling.text().c_str());
-  std::string text = line;
-  const auto row = [&](const char* name, const DurationHistogram& histogram) {
+  say("{} ticks at {} Hz, {} missed ({:.2f} % done), {}\n", ledger.ticks, result.rate_hz, ledger.missed, percent,
+      result.scheduling.text());
+  const auto row = [&](const std::string& name, const fast::DurationHistogram& histogram) {
     const fast::Percentiles p = histogram.percentiles();
-    std::snprintf(line, sizeof line, "  %-22s %10.4g %10.4g %10.4g %10.4g\n", name, p.p50_us, p.p99_us, p.p999_us,
-                  p.max_us);
-    text += line;
+    say("  {:<22} {:10.4g} {:10.4g} {:10.4g} {:10.4g}\n", name, p.p50_us, p.p99_us, p.p999_us, p.max_us);
   };
-  std::snprintf(line, sizeof line, "  %-22s %10s %10s %10s %10s\n", "microseconds", "p50", "p99", "p99.9", "max");
-  text += line;
+  say("  {:<22} {:>10} {:>10} {:>10} {:>10}\n", "microseconds", "p50", "p99", "p99.9", "max");
   row("lateness", ledger.lateness);
   row("pose to force", ledger.force);
   row("shape", ledger.shape);
   row("whole tick", ledger.step);
   for (std::size_t s = 0; s < fast::stage_count; ++s) {
-    if (ledger.stages[s].count() > 0) row((std::string("  ") + fast::stage_names[s]).c_str(), ledger.stages[s]);
+    if (ledger.stages[s].count() > 0) row(std::string("  ") + fast::stage_names[s], ledger.stages[s]);
   }
   row("age of the shape", result.shape_age);
-  std::snprintf(line, sizeof line,
-                "Largest force sent %.4g N (model %.4g N); %lld ticks limited, %lld bad poses, %llu records dropped\n"
-                "Status: %s\n",
-                ledger.force_max_n, ledger.model_force_max_n, static_cast<long long>(ledger.limited_ticks),
-                static_cast<long long>(ledger.bad_poses), static_cast<unsigned long long>(result.dropped_records),
-                fast::status_text(ledger.status).c_str());
-  text += line;
-  if (result.replay) {
-    const ReplayAnswer& replay = *result.replay;
-    if (replay.equal()) {
-      std::snprintf(line, sizeof line, "Replay: all %lld answers equal the log's to the last bit\n",
-                    static_cast<long long>(replay.rows));
-    } else if (replay.unequal > 0) {
-      std::snprintf(line, sizeof line,
-                    "Replay: %lld of %lld answers differ from the log's, the first on line %lld (same scene file?)\n",
-                    static_cast<long long>(replay.unequal), static_cast<long long>(replay.compared),
-                    static_cast<long long>(replay.first_unequal + 2));
-    } else {
-      std::snprintf(line, sizeof line, "Replay: ended after %lld of %lld ticks, all equal to the log's\n",
-                    static_cast<long long>(replay.compared), static_cast<long long>(replay.rows));
-    }
-    text += line;
+  say("Largest force sent {:.4g} N (model {:.4g} N); {} ticks limited, {} bad poses, {} records dropped\nStatus: {}\n",
+      ledger.force_max_n, ledger.model_force_max_n, ledger.limited_ticks, ledger.bad_poses, result.dropped_records,
+      fast::status_text(ledger.status));
+  if (!result.replay) return text;
+  const ReplayAnswer& replay = *result.replay;
+  if (replay.equal()) {
+    say("Replay: all {} answers equal the log's to the last bit\n", replay.rows);
+  } else if (replay.unequal > 0) {
+    say("Replay: {} of {} answers differ from the log's, the first on line {} (same scene file?)\n", replay.unequal,
+        replay.compared, replay.first_unequal + 2);
+  } else {
+    say("Replay: ended after {} of {} ticks, all equal to the log's\n", replay.compared, replay.rows);
   }
   return text;
 }

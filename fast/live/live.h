@@ -41,7 +41,7 @@ struct LiveResult {
   Ledger ledger;
   RunHistory history;
   Scheduling scheduling;
-  DurationHistogram shape_age;  ///< of the newest published shape, when the reader looked
+  fast::DurationHistogram shape_age;  ///< of the newest published shape, when the reader looked
   std::int64_t shapes_read = 0;
   double displacement_max_m = 0.0;  ///< largest that the reader saw
   std::uint64_t dropped_records = 0;

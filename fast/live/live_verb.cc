@@ -2,40 +2,15 @@
 
 #include "fast/progress_line.h"
 #include "fast/run.h"
+#include "fast/stop_signals.h"
 #include "scene/error.h"
 #include "scene/nearest_name.h"
 
-#include <csignal>
 #include <iostream>
 #include <sstream>
 
 namespace touchstone::live {
 namespace {
-
-std::atomic<bool> stop_asked{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
-
-/// Ctrl-C asks for an end while it lives. More of them ask for no more: `timeout` and some shells send two.
-class StopOnSignal {
- public:
-  StopOnSignal() {
-    stop_asked.store(false);
-    struct sigaction action {};
-    action.sa_handler = [](int) { stop_asked.store(true, std::memory_order_relaxed); };
-    sigaction(SIGINT, &action, &interrupt_before_);
-    sigaction(SIGTERM, &action, &end_before_);
-  }
-  ~StopOnSignal() {
-    sigaction(SIGINT, &interrupt_before_, nullptr);
-    sigaction(SIGTERM, &end_before_, nullptr);
-  }
-  StopOnSignal(const StopOnSignal&) = delete;
-  StopOnSignal& operator=(const StopOnSignal&) = delete;
-
- private:
-  struct sigaction interrupt_before_ {};
-  struct sigaction end_before_ {};
-};
 
 /// What to type for this run again.
 std::string command_line(const fast::VerbOptions& options, const LiveOptions& live, const std::string& command) {
@@ -55,7 +30,7 @@ int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const s
               const WritePage& page) {
   const scene::Scene scene = options.load();
   const std::filesystem::path folder = options.folder(scene, "live");
-  scene::prepare_result_folder(folder);
+  const scene::FolderLock lock = scene::prepare_result_folder(folder);
   scene::Manifest manifest = scene::make_manifest(scene, command);
   manifest.entries.emplace_back("command_line", command_line(options, live, command));
   manifest.entries.emplace_back("device", name_of(live.device));
@@ -63,9 +38,10 @@ int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const s
 
   const scene::Stopwatch watch;
   fast::ProgressLine progress(options.quiet);
-  const StopOnSignal guard;
+  // More of them ask for no more: `timeout` and some shells send two.
+  const fast::StopSignals signals(fast::StopSignals::Again::nothing);
   const LiveResult result = run_live(
-      scene, live, folder, stop_asked, [&](const std::string& text) { progress.show(text); },
+      scene, live, folder, fast::StopSignals::asked(), [&](const std::string& text) { progress.show(text); },
       [](const std::string& warning) { std::cerr << "warning: " << warning << '\n'; });
   progress.finish();
   manifest.times.push_back(watch.read("live"));

@@ -8,15 +8,31 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 namespace touchstone::scene {
 namespace {
 
-constexpr std::string_view unfinished_mark = ".part-";
+/// Between a file's name and "PROCESS-NUMBER" in the name of a temporary one. Others hardly choose it by chance.
+constexpr std::string_view unfinished_mark = ".touchstone-part-";
+
+/// Whether open_temporary() makes names like this.
+bool is_temporary(std::string_view name) {
+  const std::size_t mark = name.rfind(unfinished_mark);
+  if (mark == std::string_view::npos || mark == 0) return false;
+  const std::string_view numbers = name.substr(mark + unfinished_mark.size());
+  const std::size_t dash = numbers.find('-');
+  if (dash == std::string_view::npos) return false;
+  const auto whole = [](std::string_view text) {
+    return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+  };
+  return whole(numbers.substr(0, dash)) && whole(numbers.substr(dash + 1));
+}
 
 [[noreturn]] void fail(const std::string& what, const std::filesystem::path& path, int error) {
   throw std::filesystem::filesystem_error(what, path, std::error_code(error, std::generic_category()));
@@ -28,7 +44,7 @@ int open_temporary(const std::filesystem::path& path, std::filesystem::path& tem
   for (int number = 0;; ++number) {
     temporary = path;
     temporary += std::string(unfinished_mark) + std::to_string(::getpid()) + "-" + std::to_string(number);
-    const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (file >= 0 || errno != EEXIST) return file;
   }
 }
@@ -50,37 +66,47 @@ int sync(int file) {
   return ::fsync(file) == 0 || errno == EINVAL ? 0 : errno;
 }
 
-/// @returns false when another run removed the temporary file before it was locked, or no locks can be had
-bool try_write(const std::filesystem::path& path, std::string_view content) {
-  std::filesystem::path temporary;
-  const Descriptor file(open_temporary(path, temporary));
-  if (file.number() < 0) fail("cannot write", path, errno);
+}  // namespace
+
+UnfinishedFile::UnfinishedFile(std::filesystem::path path) : path_(std::move(path)) {
+  descriptor_ = open_temporary(path_, temporary_);
+  if (descriptor_ < 0) fail("cannot write", path_, errno);
   // Tells remove_unfinished() that this run lives, until the file has its name.
-  ::flock(file.number(), LOCK_EX);
-  int error = write_all(file.number(), content);
-  if (error == 0) error = sync(file.number());
-  // A network file system may report a full disk only at a close; a copy's keeps the lock.
-  const int copy = ::dup(file.number());
-  if ((copy < 0 || ::close(copy) != 0) && error == 0) error = errno;
-  if (error == 0 && ::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
-  if (error == ENOENT) return false;
-  if (error != 0) {
-    ::unlink(temporary.c_str());
-    fail("cannot write", path, error);
-  }
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  const Descriptor names(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (names.number() < 0) fail("cannot open", folder, errno);
-  if ((error = sync(names.number())) != 0) fail("cannot write", folder, error);
-  return true;
+  ::flock(descriptor_, LOCK_EX);
 }
 
-}  // namespace
+UnfinishedFile::~UnfinishedFile() {
+  if (!finished_) ::unlink(temporary_.c_str());
+  ::close(descriptor_);
+}
+
+bool UnfinishedFile::append(std::string_view content) noexcept {
+  if (error_ == 0) error_ = write_all(descriptor_, content);
+  return error_ == 0;
+}
+
+bool UnfinishedFile::finish() {
+  if (error_ == 0) error_ = sync(descriptor_);
+  // A network file system may report a full disk only at a close; a copy's keeps the lock.
+  const int copy = ::dup(descriptor_);
+  if ((copy < 0 || ::close(copy) != 0) && error_ == 0) error_ = errno;
+  if (error_ == 0 && ::rename(temporary_.c_str(), path_.c_str()) != 0) error_ = errno;
+  if (error_ == ENOENT) return false;
+  if (error_ != 0) fail("cannot write", path_, error_);
+  finished_ = true;
+  const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
+  const Descriptor names(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (names.number() < 0) fail("cannot open", folder, errno);
+  if (const int error = sync(names.number()); error != 0) fail("cannot write", folder, error);
+  return true;
+}
 
 void write_file(const std::filesystem::path& path, std::string_view content) {
   constexpr int attempts = 3;
   for (int attempt = 0; attempt < attempts; ++attempt) {
-    if (try_write(path, content)) return;
+    UnfinishedFile file(path);
+    file.append(content);
+    if (file.finish()) return;
   }
   fail("cannot write", path, ENOENT);
 }
@@ -93,8 +119,10 @@ std::optional<std::string> read_file(const std::filesystem::path& path) {
 
 void remove_unfinished(const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().filename().string().find(unfinished_mark) == std::string::npos) continue;
-    const Descriptor file(::open(entry.path().c_str(), O_RDONLY | O_CLOEXEC));
+    if (!is_temporary(entry.path().filename().string()) || !std::filesystem::is_regular_file(entry.symlink_status())) {
+      continue;
+    }
+    const Descriptor file(::open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
     const bool of_a_live_run =
         file.number() >= 0 && ::flock(file.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     if (!of_a_live_run) std::filesystem::remove(entry.path());
@@ -117,12 +145,18 @@ void require_writable(const std::filesystem::path& folder, const std::string& op
   if (number != 0) refuse("cannot write there", std::error_code(number, std::generic_category()));
 }
 
-FolderLock::FolderLock(const std::filesystem::path& folder) : file_(folder / "lock") {
-  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& name) : file_(folder / name) {
+  // Without waiting: it may be a pipe.
+  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail("cannot open", file_, errno);
 }
 
-FolderLock::~FolderLock() { ::close(descriptor_); }  // which gives the lock back
+FolderLock::FolderLock(FolderLock&& other) noexcept
+    : file_(std::move(other.file_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+FolderLock::~FolderLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);  // which gives the lock back
+}
 
 bool FolderLock::try_take() {
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return true;

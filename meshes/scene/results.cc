@@ -202,9 +202,16 @@ void write_manifest(const std::filesystem::path& path, const Manifest& manifest)
   write_file(path, json_text(json));
 }
 
-void prepare_result_folder(const std::filesystem::path& folder) {
+FolderLock prepare_result_folder(const std::filesystem::path& folder) {
   require_writable(folder, "--out");
+  // Not "lock": that one a worker of a study holds while its verb takes this one.
+  FolderLock lock(folder, ".touchstone-writer");
+  if (!lock.try_take()) {
+    throw InputError("--out " + folder.string() +
+                     ": another run is writing there; expected a folder of its own, or to be run after it");
+  }
   remove_unfinished(folder);
+  return lock;
 }
 
 }  // namespace touchstone::scene

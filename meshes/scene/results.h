@@ -74,8 +74,9 @@ struct Manifest {
 /// @throws std::filesystem::filesystem_error
 void write_manifest(const std::filesystem::path& path, const Manifest& manifest);
 
-/// Makes the folder and clears it of what killed runs left half-written, or says in one InputError why it cannot be
-/// written to.
-void prepare_result_folder(const std::filesystem::path& folder);
+/// Makes the folder, takes it for this process, and clears it of what killed runs left half-written. Or says in one
+/// InputError why it cannot be written to, at once also where another process writes to it.
+/// @returns what keeps others out, until its end
+[[nodiscard]] FolderLock prepare_result_folder(const std::filesystem::path& folder);
 
 }  // namespace touchstone::scene

@@ -49,7 +49,7 @@ struct CholmodSolver::State {
     right.xtype = CHOLMOD_REAL;
     right.dtype = CHOLMOD_DOUBLE;
     if (!cholmod_l_solve2(system, factor, &right, nullptr, &solution, nullptr, &permuted, &supernode, &common)) {
-      throw std::runtime_error("CHOLMOD could not solve: out of memory");
+      throw std::bad_alloc();
     }
     x = Eigen::Map<const Matrix>(static_cast<const double*>(solution->x), x.rows(), x.cols());
   }
@@ -80,13 +80,13 @@ void CholmodSolver::analyse(const SymmetricMatrix& matrix) {
   cholmod_l_free_factor(&state_->factor, &state_->common);
   cholmod_sparse sparse = State::view(matrix);
   state_->factor = cholmod_l_analyze(&sparse, &state_->common);
-  if (!state_->factor) throw std::runtime_error("CHOLMOD could not analyse the matrix: out of memory");
+  if (!state_->factor) throw std::bad_alloc();
 }
 
 bool CholmodSolver::factorise(const SymmetricMatrix& matrix) {
   cholmod_sparse sparse = State::view(matrix);
   cholmod_l_factorize(&sparse, state_->factor, &state_->common);
-  if (state_->common.status < CHOLMOD_OK) throw std::runtime_error("CHOLMOD could not factorise: out of memory");
+  if (state_->common.status < CHOLMOD_OK) throw std::bad_alloc();
   return state_->common.status == CHOLMOD_OK && state_->factor->minor == state_->factor->n;
 }
 

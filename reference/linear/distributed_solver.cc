@@ -73,10 +73,9 @@ struct DistributedSolver::State {
   }
 
   void fail(const std::string& what) const {
-    throw std::runtime_error("MUMPS could not " + what + ": " +
-                             (infog(1) == -13 || infog(1) == -19 ? "out of memory"
-                                                                 : "it says INFOG(1) = " + std::to_string(infog(1)) +
-                                                                       ", INFOG(2) = " + std::to_string(infog(2))));
+    if (infog(1) == -13 || infog(1) == -19) throw std::bad_alloc();
+    throw std::runtime_error("MUMPS could not " + what + ": it says INFOG(1) = " + std::to_string(infog(1)) +
+                             ", INFOG(2) = " + std::to_string(infog(2)));
   }
 };
 

@@ -95,9 +95,8 @@ Session::Session() {
   world.threads = fair_threads(machine, world.on_this_machine);
   MPI_Comm_free(&machine);
   if (first()) return;
-  // Ctrl-C and a batch system's SIGTERM reach every rank. The first one ends its step and then lets the others go.
-  std::signal(SIGINT, SIG_IGN);
-  std::signal(SIGTERM, SIG_IGN);
+  // Such a signal reaches every rank. The first one ends its step and then lets the others go.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);
 }
 
 Session::~Session() {

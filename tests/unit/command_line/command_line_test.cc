@@ -224,7 +224,7 @@ TEST(FastVerb, AFullDiskIsOneMessageAndTheNextRunGoesOn) {
     EXPECT_THAT(full.output, HasSubstr("cannot write: File too large [" + out.string()));
     EXPECT_EQ(std::count(full.output.begin(), full.output.end(), '\n'), 1) << full.output;
     for (const auto& entry : std::filesystem::directory_iterator(out)) {
-      EXPECT_THAT(entry.path().string(), testing::Not(HasSubstr(".part-")));
+      EXPECT_THAT(entry.path().string(), testing::Not(HasSubstr(".touchstone-part-")));
     }
     EXPECT_FALSE(std::filesystem::exists(out / "curve.csv"));
     EXPECT_EQ(run(command).exit_code, 0);

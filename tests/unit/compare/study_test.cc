@@ -294,7 +294,7 @@ TEST_F(StudyFolderTest, KilledWorkersLoseNothingThatWasDone) {
   EXPECT_EQ(collect(manifest).done, 5);
   for (const ManifestCase& one : manifest.cases) {
     for (const auto& entry : std::filesystem::directory_iterator(manifest.result_folder(one))) {
-      EXPECT_THAT(entry.path().string(), Not(HasSubstr(".part-")));
+      EXPECT_THAT(entry.path().string(), Not(HasSubstr(".touchstone-part-")));
     }
   }
 }

@@ -6,7 +6,14 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <fstream>
+#include <new>
+#include <string>
 
 namespace touchstone::fast {
 namespace {
@@ -77,6 +84,38 @@ TEST(Run, TicksAtTheScenesRate) {
   EXPECT_EQ(run(scene).ticks, 101);
   scene.fast.rate_hz = 2.0;  // fewer ticks than instants: each instant still has one of its own
   EXPECT_EQ(run(scene).ticks, 14);
+}
+
+/// Memory that this process may write to [byte].
+std::size_t writable_bytes() {
+  std::ifstream in("/proc/self/status");
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("VmData:")) return 1024 * std::stoul(line.substr(7));
+  }
+  return 0;
+}
+
+TEST(Run, MemoryDoesNotHangOnTheTicks) {
+  scene::Scene scene = test::ball_on_cube();
+  // A long way off, where a tick costs least.
+  for (scene::Waypoint& row : scene.track) row.pose.position_m.z() += 0.5;
+  scene.track.back().time_s = 1e4;
+  scene.fast.triangles = 100;
+  scene.fast.tool_samples = 100;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const rlimit small{writable_bytes() + (std::size_t{64} << 20), RLIM_INFINITY};
+    ::setrlimit(RLIMIT_DATA, &small);
+    bool good = false;
+    try {
+      good = run(scene).ticks == 10'000'001;
+    } catch (const std::bad_alloc&) {
+    }
+    ::_exit(good ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0) << "ten million ticks do not fit into 64 MiB";
 }
 
 TEST(Run, RecordsWhatAStepAnswers) {

@@ -62,7 +62,7 @@ TEST_F(LiveRun, TheLedgerHasEveryStageOfTheSceneAndNoOther) {
       EXPECT_LE(runs(result, stage), ticks);
     }
     std::int64_t longest_ns = 0;
-    for (const DurationHistogram& stage : result.ledger.stages) longest_ns = std::max(longest_ns, stage.max_ns());
+    for (const fast::DurationHistogram& stage : result.ledger.stages) longest_ns = std::max(longest_ns, stage.max_ns());
     EXPECT_LE(longest_ns, result.ledger.step.max_ns());
     std::size_t keys = 0;
     for (const scene::Figure& figure : figures(result, options)) keys += figure.key.starts_with("live.stage.") ? 1 : 0;
@@ -106,6 +106,20 @@ TEST_F(LiveRun, EndsWhenAskedWithAllWritten) {
   EXPECT_LT(result.ledger.ticks, 3600000);
   EXPECT_EQ(read_log(folder_ / "live.csv").ticks.size() + result.dropped_records,
             static_cast<std::size_t>(result.ledger.ticks));
+}
+
+TEST(LiveSummary, IsNeverCut) {
+  LiveResult result;
+  result.ledger.status = 0xffffffff;
+  result.scheduling.fifo = true;
+  result.replay =
+      ReplayAnswer{std::int64_t{1} << 60, std::int64_t{1} << 60, std::int64_t{1} << 59, std::int64_t{1} << 58};
+  const std::string text = summary_text(result);
+  EXPECT_NE(text.find("Status: " + fast::status_text(0xffffffff) + "\n"), std::string::npos) << text;
+  EXPECT_TRUE(text.ends_with(
+      "Replay: 576460752303423488 of 1152921504606846976 answers differ from the log's, the first on line "
+      "288230376151711746 (same scene file?)\n"))
+      << text;
 }
 
 TEST_F(LiveRun, FiguresHaveTheKeysOfTheContract) {

@@ -79,15 +79,22 @@ TEST_F(LiveVerb, TheLimitIsTheScenes) {
   EXPECT_GT(summary("out")["live.limited_ticks"].get<double>(), 10.0);
 }
 
-TEST_F(LiveVerb, CtrlCEndsItWithAllWritten) {
-  const Answer answer =
-      live("--device hand --seconds 3600", "out", "timeout --foreground --preserve-status -s INT 0.7 ");
-  EXPECT_EQ(answer.exit_code, 130) << answer.output;
-  EXPECT_THAT(answer.output, HasSubstr("Results:"));
-  for (const char* name : {"live.csv", "summary.json", "manifest.json"}) {
-    EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / name)) << name;
+TEST_F(LiveVerb, EverySignalToStopEndsItWithAllWritten) {
+  for (const std::string signal : {"INT", "TERM", "HUP"}) {
+    const Answer answer =
+        live("--device hand --seconds 3600", signal, "timeout --foreground --preserve-status -s " + signal + " 0.7 ");
+    EXPECT_EQ(answer.exit_code, 130) << signal << ": " << answer.output;
+    EXPECT_THAT(answer.output, HasSubstr("Results:"));
+    for (const char* name : {"live.csv", "summary.json", "manifest.json"}) {
+      EXPECT_TRUE(std::filesystem::exists(folder_ / signal / name)) << signal << ": " << name;
+    }
+    EXPECT_GE(summary(signal)["live.ticks"].get<double>(), 1.0);
   }
-  EXPECT_GE(summary("out")["live.ticks"].get<double>(), 1.0);
+}
+
+TEST_F(LiveVerb, OutlivesItsTerminalWhereThatIsAskedFor) {
+  const Answer answer = live("--seconds 1.5 & sleep 0.7; kill -HUP $!; wait $!", "out", "trap '' HUP; ");
+  EXPECT_EQ(answer.exit_code, 0) << answer.output;
 }
 
 TEST_F(LiveVerb, BadInputIsOneMessage) {

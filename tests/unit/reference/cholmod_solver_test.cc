@@ -1,6 +1,11 @@
 #include "reference/linear/cholmod_solver.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <new>
 
 namespace touchstone::reference {
 namespace {
@@ -30,6 +35,25 @@ TEST(CholmodSolver, RefusesAnIndefiniteMatrix) {
   CholmodSolver solver(1);
   solver.analyse(three_by_three(-1.0));
   EXPECT_FALSE(solver.factorise(three_by_three(-1.0)));
+}
+
+TEST(Blas, SaysThatItLacksMemoryAndDoesNotTryWithoutEnd) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(20);
+    const rlimit small{std::size_t{2} << 30, RLIM_INFINITY};
+    ::setrlimit(RLIMIT_AS, &small);
+    bool said = false;
+    try {
+      CholmodSolver solver(64);
+    } catch (const std::bad_alloc&) {
+      said = true;
+    }
+    ::_exit(said ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
 }
 
 }  // namespace

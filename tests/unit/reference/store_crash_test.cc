@@ -57,7 +57,7 @@ std::string content(const std::filesystem::path& path) {
 int unfinished_files(const std::filesystem::path& root) {
   int count = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
-    count += entry.path().filename().string().find(".part-") != std::string::npos ? 1 : 0;
+    count += entry.path().filename().string().find(".touchstone-part-") != std::string::npos ? 1 : 0;
   }
   return count;
 }

@@ -105,8 +105,8 @@ TEST_F(StoreTest, AFileOfTheFormerFormatIsNotRead) {
 TEST_F(StoreTest, WhatKilledRunsLeftIsRemoved) {
   const auto step = [&] { return Store(root_, "a scene", never).step_file(0, 0); }();
   std::filesystem::create_directories(step.parent_path());
-  const std::filesystem::path leftovers[] = {step.string() + ".part-123-0",
-                                             step.parent_path().parent_path() / "identity.txt.part-9-0"};
+  const std::filesystem::path leftovers[] = {step.string() + ".touchstone-part-123-0",
+                                             step.parent_path().parent_path() / "identity.txt.touchstone-part-9-0"};
   for (const auto& leftover : leftovers) std::ofstream(leftover) << "half";
   const Store store(root_, "a scene", never);
   for (const auto& leftover : leftovers) EXPECT_FALSE(std::filesystem::exists(leftover)) << leftover;

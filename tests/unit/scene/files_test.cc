@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <sys/file.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -78,6 +79,52 @@ TEST_F(FilesTest, WritesAndReplacesAndLeavesNothingElse) {
   EXPECT_THAT(names(), testing::ElementsAre("file"));
 }
 
+TEST_F(FilesTest, AFileThatGrowsHasItsNameWhenItIsComplete) {
+  {
+    UnfinishedFile file(root_ / "file");
+    EXPECT_TRUE(file.append("first "));
+    EXPECT_TRUE(file.append("second"));
+    EXPECT_FALSE(std::filesystem::exists(root_ / "file"));
+    EXPECT_TRUE(file.finish());
+    EXPECT_EQ(content(root_ / "file"), "first second");
+  }
+  {
+    UnfinishedFile file(root_ / "file");
+    file.append("third");
+  }
+  EXPECT_EQ(content(root_ / "file"), "first second");
+  EXPECT_THAT(names(), testing::ElementsAre("file"));
+}
+
+TEST_F(FilesTest, NothingIsWrittenThroughALink) {
+  const std::filesystem::path victim = root_ / "victim";
+  write_file(victim, "mine");
+  for (const std::string& name : {std::string("file"), "file.touchstone-part-" + std::to_string(::getpid()) + "-0"}) {
+    std::filesystem::create_symlink(victim, root_ / name);
+  }
+  write_file(root_ / "file", "new");
+  EXPECT_EQ(content(victim), "mine");
+  EXPECT_EQ(content(root_ / "file"), "new");
+  EXPECT_FALSE(std::filesystem::is_symlink(root_ / "file"));
+  std::filesystem::create_symlink(root_ / "made", root_ / "lock");
+  EXPECT_THROW(FolderLock{root_}, std::filesystem::filesystem_error);
+  EXPECT_FALSE(std::filesystem::exists(root_ / "made"));
+}
+
+TEST_F(FilesTest, RemovesNothingOfOthers) {
+  const std::vector<std::string> files = {"holiday.part-1.zip",       "db.part-backup",         "a.touchstone-part-1",
+                                          "a.touchstone-part-1-2.gz", ".touchstone-part-1-2",   "a.touchstone-part--",
+                                          "a.touchstone-part-x-1",    "a.touchstone-part-1-2 ", "a.touchstone-part-1-"};
+  for (const std::string& name : files) std::ofstream(root_ / name) << "x";
+  std::filesystem::create_directory(root_ / "folder.touchstone-part-1-2");
+  ASSERT_EQ(::mkfifo((root_ / "pipe.touchstone-part-1-2").c_str(), 0600), 0);
+  std::filesystem::create_symlink(root_ / "db.part-backup", root_ / "link.touchstone-part-1-2");
+  ::alarm(10);  // a pipe may be waited for
+  remove_unfinished(root_);
+  ::alarm(0);
+  EXPECT_EQ(names().size(), files.size() + 3);
+}
+
 TEST_F(FilesTest, AFileThatDoesNotFitLeavesTheOldOneAndNothingElse) {
   write_file(root_ / "file", "old");
   rlimit before{};
@@ -124,7 +171,7 @@ TEST_F(FilesTest, AWriterAndAJanitorMayMeet) {
 }
 
 TEST_F(FilesTest, OnlyWhatIsUnfinishedIsRemoved) {
-  for (const char* name : {"file", "file.part-12-0", "curve.csv.part-99-3", "counter.part"}) {
+  for (const char* name : {"file", "file.touchstone-part-12-0", "curve.csv.touchstone-part-99-3", "counter.part"}) {
     std::ofstream(root_ / name) << "x";
   }
   remove_unfinished(root_);
@@ -132,10 +179,10 @@ TEST_F(FilesTest, OnlyWhatIsUnfinishedIsRemoved) {
 }
 
 TEST_F(FilesTest, WhatALiveRunWritesStays) {
-  const int file = ::open((root_ / "file.part-12-0").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  const int file = ::open((root_ / "file.touchstone-part-12-0").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   ASSERT_EQ(::flock(file, LOCK_EX), 0);
   remove_unfinished(root_);
-  EXPECT_THAT(names(), testing::ElementsAre("file.part-12-0"));
+  EXPECT_THAT(names(), testing::ElementsAre("file.touchstone-part-12-0"));
   ::close(file);
   remove_unfinished(root_);
   EXPECT_TRUE(names().empty());

@@ -124,9 +124,39 @@ TEST(Stopwatch, ReadsShortStages) {
 
 TEST_F(ResultFolder, UnusableFolderIsOneMessage) {
   std::ofstream(dir_ / "file") << "x";
-  EXPECT_THROW(prepare_result_folder(dir_ / "file" / "below"), InputError);
-  EXPECT_THROW(prepare_result_folder("/proc/touchstone"), InputError);
-  EXPECT_NO_THROW(prepare_result_folder(dir_ / "new" / "deep"));
+  EXPECT_THROW((void)prepare_result_folder(dir_ / "file" / "below"), InputError);
+  EXPECT_THROW((void)prepare_result_folder("/proc/touchstone"), InputError);
+  EXPECT_NO_THROW((void)prepare_result_folder(dir_ / "new" / "deep"));
+}
+
+TEST_F(ResultFolder, OneRunWritesAtATime) {
+  write_file(dir_ / "other.csv.touchstone-part-1-1", "half");
+  {
+    const FolderLock mine = prepare_result_folder(dir_);
+    EXPECT_FALSE(std::filesystem::exists(dir_ / "other.csv.touchstone-part-1-1"));
+    write_file(dir_ / "curve.csv.touchstone-part-1-1", "half");
+    try {
+      (void)prepare_result_folder(dir_);
+      ADD_FAILURE() << "two writers";
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(),
+                "--out " + dir_.string() +
+                    ": another run is writing there; expected a folder of its own, or to be run after it");
+    }
+    EXPECT_TRUE(std::filesystem::exists(dir_ / "curve.csv.touchstone-part-1-1")) << "the other run's";
+    const FolderLock below = prepare_result_folder(dir_ / "below");
+    const FolderLock worker(dir_);  // of a study, whose verbs take the folder
+  }
+  EXPECT_NO_THROW((void)prepare_result_folder(dir_));
+}
+
+TEST_F(ResultFolder, NamesOfAnyBytesBecomeJson) {
+  Manifest manifest = make_manifest(Scene{}, "touchstone live");
+  manifest.entries.emplace_back("log", "l\xff.csv");
+  write_manifest(dir_ / "manifest.json", manifest);
+  write_summary(dir_ / "summary.json", {{"name", 0.0, "\xc3(", ""}});
+  EXPECT_EQ(nlohmann::json::parse(read("manifest.json"))["log"], "l\uFFFD.csv");
+  EXPECT_EQ(nlohmann::json::parse(read("summary.json"))["name"], "\uFFFD(");
 }
 
 TEST_F(ResultFolder, AFailedWriteLeavesNothingHalfWritten) {

@@ -1,10 +1,10 @@
-#include "fast/live/ledger.h"
+#include "fast/duration_histogram.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-namespace touchstone::live {
+namespace touchstone::fast {
 
 std::size_t DurationHistogram::bin_of(std::int64_t duration_ns) noexcept {
   const auto value = static_cast<std::uint64_t>(std::clamp<std::int64_t>(duration_ns, 0, longest_ns));
@@ -46,9 +46,9 @@ std::uint64_t DurationHistogram::count_between(double from_ns, double to_ns) con
   return count;
 }
 
-fast::Percentiles DurationHistogram::percentiles() const noexcept {
+Percentiles DurationHistogram::percentiles() const noexcept {
   return {1e-3 * percentile_ns(0.5), 1e-3 * percentile_ns(0.99), 1e-3 * percentile_ns(0.999),
           1e-3 * static_cast<double>(max_ns_)};
 }
 
-}  // namespace touchstone::live
+}  // namespace touchstone::fast

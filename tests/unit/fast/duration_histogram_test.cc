@@ -1,4 +1,4 @@
-#include "fast/live/ledger.h"
+#include "fast/duration_histogram.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace touchstone::live {
+namespace touchstone::fast {
 namespace {
 
 double exact_ns(std::vector<std::int64_t> sample, double part) {
@@ -82,4 +82,4 @@ TEST(DurationHistogram, TakesAnything) {
 }
 
 }  // namespace
-}  // namespace touchstone::live
+}  // namespace touchstone::fast
