@@ -117,7 +117,7 @@ class MachineFaults : public testing::TestWithParam<Case> {
     bool sent = false;
     while (::waitpid(child, &status, WNOHANG) == 0) {
       if (signal != 0 && !sent && seconds() > signal_s) sent = ::kill(child, signal) == 0;
-      if (seconds() > 60.0) ::kill(child, SIGKILL);
+      if (seconds() > 300.0) ::kill(child, SIGKILL);
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), text_of(dir_ / "output"),
@@ -173,12 +173,15 @@ TEST_P(MachineFaults, EndInASentenceAndTheNextRunWorks) {
     std::string name, before, after, sentence;
     std::vector<int> exit_codes;
   };
-  const std::vector<Fault> faults = {
+  // What happens to the output and to descriptors is one rule of the program, whatever the verb.
+  const bool every = GetParam().verb == "fast" || GetParam().verb == "live" || GetParam().verb == "compare";
+  std::vector<Fault> faults = {
       {"no space for a file", "ulimit -f 1;", "", "cannot write: File too large \\[", {2}},
       {"no space for the output", "", ">/dev/full", "cannot write to standard output: No space left on device", {2}},
       {"a closed output", "", ">&-", "cannot write to standard output", {2}},
       {"few descriptors", "ulimit -n 5;", "", "Too many open files|cannot open shared object file", {2, 3, 127}},
   };
+  if (!every) faults.resize(1);
   for (const Fault& fault : faults) {
     SCOPED_TRACE(fault.name);
     const End end = run_verb(fault.before, fault.after);
@@ -200,7 +203,7 @@ TEST_P(MachineFaults, EndInASentenceAndTheNextRunWorks) {
     ::close(lock);
   }
 
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGKILL}) {
+  for (const int signal : every ? std::vector{SIGINT, SIGTERM, SIGHUP, SIGKILL} : std::vector{SIGTERM, SIGKILL}) {
     SCOPED_TRACE("signal " + std::to_string(signal));
     const End end = run_verb("", "", signal, 0.7 * first.seconds);
     // Or it was over before.
@@ -230,7 +233,7 @@ TEST_P(MachineFaults, LackOfMemoryIsSaid) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the sanitizer takes all the addresses there are";
 #endif
-  const std::vector<int> limits_mib = GetParam().full() ? std::vector{720, 900, 1100} : std::vector{24, 28, 36, 44};
+  const std::vector<int> limits_mib = GetParam().full() ? std::vector{720, 1000} : std::vector{24, 28, 36, 44};
   for (const int limit_mib : limits_mib) {
     SCOPED_TRACE(std::to_string(limit_mib) + " MiB");
     const End end = run_verb("ulimit -v " + std::to_string(1024 * limit_mib) + ";");
