@@ -306,7 +306,7 @@ TEST_F(NewVerb, RefusesInOneLineAndWritesNothing) {
   refused(block + "--tool sphere 10", "--tool sphere 10: expected a length with its unit");
   refused(block + "--tool shpere 10mm", "did you mean \"sphere\"?");
   refused(block + "--tool capsule 10mm", "expected radius and length of the straight part, such as 6x20mm");
-  refused(block + "--tool mesh none.stl --unit mm", "none.stl: cannot be read");
+  refused(block + "--tool mesh none.stl --unit mm", "tool.file: cannot read none.stl: there is no such file");
   refused(block + "--tool mesh none.stl", "--unit is missing: expected the unit of the mesh file's coordinates");
   refused(block + "--tool sphere 10mm --at 50x0mm", "moved straight down the tool never meets the body");
   refused("--body box 60x60x40mm --youngs-modulus 3 --poissons-ratio 0.4 --tool sphere 10mm --depth 2mm",
@@ -314,7 +314,10 @@ TEST_F(NewVerb, RefusesInOneLineAndWritesNothing) {
   refused("--body box 60x60x4mm --youngs-modulus 3MPa --poissons-ratio 0.4 --tool sphere 10mm --depth 3mm",
           "--depth: more than half of the body's height");
   const std::string stl = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/tools/mallet.stl";
-  refused(block + "--tool mesh " + stl + " --unit m", "--unit: the mesh is");
+  refused(block + "--tool mesh " + stl + " --unit m", "expected at most 10.0 m (tool.unit)");
+  refused(
+      "--body box 2x2x2mm --youngs-modulus 3MPa --poissons-ratio 0.4 --depth 0.2mm --tool mesh " + stl + " --unit in",
+      "--unit: the mesh is");
   EXPECT_THAT(make(program, "none/a.toml " + block + "--tool sphere 10mm").output, HasSubstr("and there is no "));
   std::ofstream(dir_ / "there.toml") << "mine";
   const Answer answer = make(program, "there.toml " + block + "--tool sphere 10mm");
