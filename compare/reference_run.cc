@@ -127,12 +127,13 @@ bool known_to(const reference::Result& result, double error) {
 }
 
 std::string refinement_text(const reference::Result& result) {
-  const auto text_of = [](const std::optional<double>& rel) {
+  const auto text_of = [](const std::optional<double>& rel, const char* norm) {
     if (!rel) return std::string("none");
-    return std::isfinite(*rel) ? fmt::format("{:.2g} %", 100.0 * *rel) : std::string("unknown");
+    return std::isfinite(*rel) ? fmt::format("{:.2g} % ({})", 100.0 * *rel, norm) : std::string("unknown");
   };
   return fmt::format("Uncertainty of the reference: force {}, shape {}, from {} mesh{}\n{}\n",
-                     text_of(result.force_uncertainty_rel), text_of(result.shape_uncertainty_rel), result.levels.size(),
+                     text_of(result.force_uncertainty_rel, "worst instant"),
+                     text_of(result.shape_uncertainty_rel, "root mean square"), result.levels.size(),
                      result.levels.size() == 1 ? "" : "es",
                      wrapped("Refinement ended: " + result.refinement.why_ended, 80));
 }

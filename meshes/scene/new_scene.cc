@@ -2,11 +2,11 @@
 
 #include "scene/area_law.h"
 #include "scene/fields.h"
+#include "scene/text.h"
 
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 
 namespace touchstone::scene {
@@ -28,13 +28,6 @@ std::string plain(double value) {
   std::string digits = out.substr(0, e);
   if (digits.find('.') == std::string::npos) digits += ".0";
   return digits + "e" + std::to_string(std::atoi(out.c_str() + e + 1));
-}
-
-/// To a number of digits, for a derived constant.
-double rounded(double value, int digits) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
-  return std::strtod(text.data(), nullptr);
 }
 
 std::string list(std::initializer_list<double> values) {
@@ -159,7 +152,7 @@ std::string new_scene_toml(const NewScene& scene, const std::string& name) {
              "# the 0.707.\n"
            : "") +
       "[contact]\nlaw = \"area_aware\"\nk1_per_radius_n_per_m2 = " +
-      plain(rounded(area_law_constant_n_per_m2(material, tool, Formulation::corrected), 4)) + "\n" +
+      plain(area_law_constant_n_per_m2(material, tool, Formulation::corrected)) + "\n" +
       line("k3_n_per_m3 = 0.0", "a cubic term on top, for \"touchstone tune\" to fit") + "\n";
 
   const std::string mark = scene.friction ? "" : "# ";
@@ -171,7 +164,7 @@ std::string new_scene_toml(const NewScene& scene, const std::string& name) {
          mark + line("mu_D = " + mu, "sliding at mu_D F_n");
 
   out += "\n[fast]\n" +
-         line("s_c_m2 = " + plain(rounded(stiff_beam_area_m2(body), 2)),
+         line("s_c_m2 = " + plain(stiff_beam_area_m2(body)),
               "beams so thick that the contact moves further than they do") +
          "# Its other lengths follow the body's size where they are not given; touchstone plan shows them.\n"
          "\n[compare]\n" +

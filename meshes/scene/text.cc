@@ -1,7 +1,9 @@
 #include "scene/text.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <cstdlib>
 
 namespace touchstone::scene {
 namespace {
@@ -100,6 +102,12 @@ std::string toml_quoted(std::string_view text) {
     text.remove_prefix(length);
   }
   return out + "\"";
+}
+
+double rounded(double value, int digits) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+  return std::strtod(text.data(), nullptr);
 }
 
 std::string_view without_mark(std::string_view text) noexcept {

@@ -1,4 +1,5 @@
 // Text from outside: what is UTF-8, and how it is shown in a message or written in a file without escaping from it.
+// Numbers as they are written.
 #pragma once
 
 #include <cstddef>
@@ -32,6 +33,9 @@ inline constexpr std::size_t faults_shown_max = 40;
 
 /// As a TOML basic string, which reads back the same. @param text  UTF-8
 [[nodiscard]] std::string toml_quoted(std::string_view text);
+
+/// The number that is written with so many significant digits.
+[[nodiscard]] double rounded(double value, int digits);
 
 /// Without the byte order mark that some editors put first.
 [[nodiscard]] std::string_view without_mark(std::string_view text) noexcept;

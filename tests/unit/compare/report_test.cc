@@ -197,7 +197,8 @@ TEST(Report, ShowsItsOwnCommandAboveTheContents) {
 TEST(Report, CardOfTheReferenceGivesTheUncertaintyOfForceAndShape) {
   const testing::Sides sides = testing::pressed(5, 600);
   const std::string html = report_of(sides);
-  const std::size_t card = html.find("<span>Reference's uncertainty</span><b>2\u00a0%</b><span>of the force; shape ");
+  const std::size_t card =
+      html.find("<span>Reference's uncertainty</span><b>2\u00a0%</b><span>of the force at the worst instant; shape ");
   ASSERT_NE(card, std::string::npos);
   EXPECT_LT(card, html.find("class=\"lead\""));
 }

@@ -104,10 +104,6 @@ TEST_F(Convexity, OfExportedSolidsAtAnyPlaceAndFineness) {
   }
 }
 
-TEST_F(Convexity, OfAnyUnit) {
-  for (const double unit_m : {1.0, 1e-2, 1e-3, 0.0254}) EXPECT_TRUE(convex(capsule(32, 8), unit_m)) << unit_m;
-}
-
 /// A box of 20 mm whose top has a dent as wide as itself, smooth, so that every edge in it is nearly flat.
 TriangleMesh dented_box(double depth_m) {
   constexpr double half_m = 0.01;
@@ -128,6 +124,15 @@ TEST_F(Convexity, EndsWhereADentIsDeeperThanTheTolerance) {
   // Turned, its bounding box is larger, and the tolerance with it.
   const double turned_m = convex_tolerance_rel * diagonal_m(moved(dented_box(0.0), Vec3::Zero(), askew));
   EXPECT_FALSE(convex(moved(dented_box(1.5 * turned_m), Vec3(0.1, 0.2, 0.3), askew)));
+}
+
+TEST_F(Convexity, OfAnyUnit) {
+  const double allowed_m = convex_tolerance_rel * diagonal_m(dented_box(0.0));
+  for (const double unit_m : {1.0, 1e-2, 1e-3, 0.0254}) {
+    EXPECT_TRUE(convex(capsule(32, 8), unit_m)) << unit_m;
+    EXPECT_TRUE(convex(dented_box(0.7 * allowed_m), unit_m)) << unit_m;
+    EXPECT_FALSE(convex(dented_box(1.5 * allowed_m), unit_m)) << unit_m;
+  }
 }
 
 TEST_F(Convexity, EndsWhereOneCornerIsPushedIn) {
