@@ -50,13 +50,14 @@ std::string head_section(const Tuning& tuning) {
              "The fast model's free numbers, fitted to the finite-element reference on training contacts and judged on "
              "contacts that the fit never saw.",
              "class=\"dim\"") +
-         "\n<div class=\"verdict\">\n" + tag("p", "What limits the " + tuning.models.front().name() + " model:") + "\n";
-  for (const std::string& sentence : tuning.models.front().limits) out += tag("p", sentence) + "\n";
-  out += "</div>\n<div class=\"tiles\">\n";
+         "\n<div class=\"tiles\">\n";
   out += worst_tile(tuning, true, "Force error held out, of the peak", &Errors::force_nrmse);
   out += worst_tile(tuning, true, "Shape error held out, of the displacement", &Errors::shape_rel_l2);
   out += worst_tile(tuning, false, "Force error in training, of the peak", &Errors::force_nrmse);
   out += worst_tile(tuning, false, "Shape error in training, of the displacement", &Errors::shape_rel_l2);
+  out += "</div>\n<div class=\"verdict\">\n" + tag("p", "What limits the " + tuning.models.front().name() + " model:") +
+         "\n";
+  for (const std::string& sentence : tuning.models.front().limits) out += tag("p", sentence) + "\n";
   return out + "</div>\n";
 }
 
@@ -112,8 +113,11 @@ std::string errors_table(const Tuning& tuning, bool held_out) {
       out += "</tr>\n";
     }
   }
-  return out + "</table></div>\n" +
-         tag("p",
+  return out + "</table></div>\n";
+}
+
+std::string errors_note() {
+  return tag("p",
              "Behind ± stands the reference's own uncertainty in the same norm. Force of the peak: root mean square "
              "over "
              "the instants, relative to the largest force; relative: root mean square where the depth is above 10 % of "
@@ -369,7 +373,7 @@ std::string data_section(const Tuning& tuning) {
 }  // namespace
 
 std::string tuning_report_html(const Tuning& tuning, const scene::Manifest& manifest) {
-  std::string out = head_section(tuning) + errors_table(tuning, true) + errors_table(tuning, false);
+  std::string out = head_section(tuning) + errors_table(tuning, true) + errors_table(tuning, false) + errors_note();
   for (const TunedModel& model : tuning.models) out += model_section(tuning, model);
   out += data_section(tuning);
   out += manifest_section(

@@ -87,7 +87,9 @@ Reason cause_paragraph(const scene::Scene& scene, const Errors& errors) {
   if (!errors.force_peak_rel.distinguishable() || !(deepest.force_fast_n > 0.0)) return {};
   const double d = deepest.depth_m;
   const double law_n = scene.contact.k1_n_per_m * d + scene.contact.k3_n_per_m3 * d * d * d;
-  const std::optional<double> hertz_n = hertz_force_n(scene, d);
+  // Only Duffing's force is one of the depth alone, as Hertz's is.
+  const bool duffing = scene.contact.law == scene::ContactLaw::duffing;
+  const std::optional<double> hertz_n = duffing ? hertz_force_n(scene, d) : std::nullopt;
   Reason out{.about = "Likely cause"};
   const bool too_low = hertz_n && law_n * mismatch < *hertz_n && deepest.force_fast_n < deepest.force_reference_n;
   const bool too_high = hertz_n && law_n > mismatch * *hertz_n && deepest.force_fast_n > deepest.force_reference_n;

@@ -65,16 +65,31 @@ TEST(Verdict, SaysHowWrongTheForceIsAndWhy) {
   EXPECT_TRUE(says(text, "The reference took 5.32 min for 23 instants on 3 meshes")) << text;
 }
 
-TEST(Verdict, GivesNoReasonTheNumbersDoNotGive) {
+/// Both sides with the fast model's force off by a constant factor.
+testing::Sides with_force_times(double factor) {
   testing::Sides sides = testing::pressed(5, 200);
-  // Constants that fit the material, and a force off by a constant factor.
-  sides.scene.contact.k1_n_per_m = hertz_force_n(sides.scene, 0.005).value() / 0.005;
-  sides.scene.contact.k3_n_per_m3 = 0.0;
   for (std::size_t t = 0; t < 5; ++t) {
     if (!sides.result.instants[t].regions.empty()) {
-      set_force(sides.run.instants[t], 0.8 * sides.result.instants[t].force_n());
+      set_force(sides.run.instants[t], factor * sides.result.instants[t].force_n());
     }
   }
+  return sides;
+}
+
+TEST(Verdict, DoesNotCompareTheAreaAwareLawWithHertz) {
+  testing::Sides sides = with_force_times(0.8);
+  sides.scene.contact.law = scene::ContactLaw::area_aware;
+  sides.scene.contact.k1_n_per_m = sides.scene.contact.k3_n_per_m3 = 0.0;
+  const std::string text = told(sides);
+  EXPECT_TRUE(says(text, "not tuned to this contact")) << text;
+  EXPECT_FALSE(says(text, "contact law gives")) << text;
+}
+
+TEST(Verdict, GivesNoReasonTheNumbersDoNotGive) {
+  testing::Sides sides = with_force_times(0.8);
+  // Constants that fit the material.
+  sides.scene.contact.k1_n_per_m = hertz_force_n(sides.scene, 0.005).value() / 0.005;
+  sides.scene.contact.k3_n_per_m3 = 0.0;
   const std::string text = told(sides);
   EXPECT_TRUE(says(text, "20 % too low")) << text;
   EXPECT_TRUE(says(text, "not tuned to this contact. The fast model gives 80 % to 80 %")) << text;
