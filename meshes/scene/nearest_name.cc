@@ -25,6 +25,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return d[a.size()][b.size()];
 }
 
+/// Without the dashes before an option, which agree with those of every other.
+std::size_t letters(std::string_view name) { return name.size() - std::min(name.find_first_not_of('-'), name.size()); }
+
 }  // namespace
 
 std::string unknown_key(const std::string& shown, std::string_view name, const std::vector<std::string>& known,
@@ -45,7 +48,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& known) {
   if (known.empty() || name.size() > name_size_max) return "";
   const std::string nearest = nearest_name(name, known);
-  if (2 * edit_distance(name, nearest) > std::max(name.size(), nearest.size())) return "";
+  if (2 * edit_distance(name, nearest) > std::max(letters(name), letters(nearest))) return "";
   return "; did you mean \"" + nearest + "\"?";
 }
 

@@ -379,6 +379,8 @@ TEST(Misspelt, VerbsAndOptionsGetTheNearestName) {
     EXPECT_THAT(run(program + " zzzzzz").output, HasSubstr("unknown verb \"zzzzzz\"; expected one of new, plan, "));
   }
   if (full_program().empty()) return;
+  const Answer far = run(full_program() + " view out --set");
+  EXPECT_EQ(far.output, "touchstone view: unknown option --set; see touchstone view --help\n") << "--help is not meant";
   const Answer nested = run(full_program() + " study expnd x.toml");
   EXPECT_EQ(nested.exit_code, 2);
   EXPECT_EQ(nested.output, "touchstone study: unknown verb \"expnd\"; did you mean \"expand\"?\n");
