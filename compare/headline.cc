@@ -42,11 +42,6 @@ std::string value_cell(const scene::Figures& figures, std::string_view key) {
 
 }  // namespace
 
-const scene::Figure* find_figure(const scene::Figures& figures, std::string_view key) {
-  const auto found = std::find_if(figures.begin(), figures.end(), [&](const auto& f) { return f.key == key; });
-  return found == figures.end() ? nullptr : &*found;
-}
-
 std::string headline_heads() {
   std::string out;
   for (const Column& column : columns) {

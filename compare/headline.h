@@ -4,12 +4,8 @@
 #include "scene/record.h"
 
 #include <string>
-#include <string_view>
 
 namespace touchstone::compare {
-
-/// The figure of this key, or null.
-[[nodiscard]] const scene::Figure* find_figure(const scene::Figures& figures, std::string_view key);
 
 /// Head cells of the table.
 [[nodiscard]] std::string headline_heads();

@@ -1,6 +1,5 @@
 #include "compare/result_folder.h"
 
-#include "compare/headline.h"
 #include "scene/error.h"
 
 #include <fmt/format.h>

@@ -5,6 +5,7 @@
 #include "scene/frames.h"
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -48,5 +49,8 @@ struct Figure {
   std::string unit;
 };
 using Figures = std::vector<Figure>;
+
+/// The figure of this key, or null.
+[[nodiscard]] const Figure* find_figure(const Figures& figures, std::string_view key);
 
 }  // namespace touchstone::scene

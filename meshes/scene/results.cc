@@ -136,6 +136,11 @@ void write_csv(const std::filesystem::path& path, const std::vector<Column>& col
   write_file(path, text);
 }
 
+const Figure* find_figure(const Figures& figures, std::string_view key) {
+  const auto found = std::find_if(figures.begin(), figures.end(), [&](const auto& f) { return f.key == key; });
+  return found == figures.end() ? nullptr : &*found;
+}
+
 void write_summary(const std::filesystem::path& path, const Figures& figures) {
   Json json;
   Json units, reasons;
