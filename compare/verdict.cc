@@ -153,6 +153,9 @@ std::vector<Reason> status_paragraphs(const scene::Scene& scene, const fast::Run
   };
   add(fast::StepStatus::not_finite,
       "Some poses of the tool were not finite numbers; the fast model held its last good answer there.");
+  add(fast::StepStatus::contact_missed,
+      "At some instant the tool is inside the body and none of its samples is, so the fast model has no force there. "
+      "Raise fast.tool_samples.");
   add(fast::StepStatus::depth_limited,
       "The tool goes deeper than half of the body's thickness. The fast model held its depth there.");
   add(fast::StepStatus::law_saturated, "The contact law is past its peak. The fast model held its force there.");

@@ -22,6 +22,7 @@ struct Measured {
   double step_us = 0.0;
   int points = 0, regions = 0;
   bool contact = false;
+  double deepest_m = 0.0;  ///< by the exact shapes
 
   [[nodiscard]] std::string cost(std::initializer_list<Stage> stages) const {
     double sum_us = 0.0;
@@ -72,6 +73,7 @@ Measured measure(const scene::Scene& scene, const FastModel& model) {
   for (std::size_t s = 0; s < stage_count; ++s) measured.stage_us[s] = median(stage_us[s]);
   measured.step_us = median(step_us);
   measured.contact = state.in_contact();
+  measured.deepest_m = deepest_m;
   for (int i = 0; i < state.region_count; ++i)
     measured.points += state.regions[static_cast<std::size_t>(i)].points.count;
   return measured;
@@ -119,7 +121,12 @@ scene::Plan plan(const scene::Scene& scene) {
   models("contact detection",
          text("%d samples of the tool, %.3g mm apart, against the exact rest shape; %d points inside at the track's "
               "deepest instant",
-              model.tool.count(), model.tool.spacing_m * 1e3, measured.points),
+              model.tool.count(), model.tool.spacing_m * 1e3, measured.points) +
+             (measured.deepest_m > 0.0 && !measured.contact
+                  ? text("; CONTACT MISSED: the tool is %.3g mm deep there, so the force is missing; raise "
+                         "fast.tool_samples",
+                         measured.deepest_m * 1e3)
+                  : ""),
          measured.cost({Stage::detection}));
   if (model.max_regions > 1) {
     models("several regions",

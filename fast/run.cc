@@ -5,6 +5,7 @@
 #include "fast/several_regions.h"
 #include "fast/step.h"
 #include "fast/ticks.h"
+#include "scene/fields.h"
 
 #include <xxhash.h>
 #include <algorithm>
@@ -83,6 +84,9 @@ void add_beams(const FastModel& model, const FastState& state, double time_s, st
   }
 }
 
+/// A depth that counts as contact, of the body's size: the depth is known better than that.
+constexpr double missed_depth_rel = 1e-6;
+
 }  // namespace
 
 Run run(const scene::Scene& scene, const std::function<void(double)>& progress) {
@@ -96,6 +100,7 @@ Run run(const scene::Scene& scene, const std::function<void(double)>& progress) 
 
   const Separation separation(*model.body, run.surface, scene::tool_surface(scene.tool, scene.fast.tool_samples));
   run.first_contact_s = separation.first_contact_s(scene.track);
+  const double missed_depth_m = missed_depth_rel * scene::body_size_m(scene.body);
   Ticks ticks(scene);
   DurationHistogram step, force;
   StateHash hash;
@@ -122,6 +127,8 @@ Run run(const scene::Scene& scene, const std::function<void(double)>& progress) 
         run.equilibrium_rel = std::max(run.equilibrium_rel.value_or(0.0), spread.equilibrium_rel);
       }
       run.instants.push_back(record_of(scene, model, state, tick->time_s, pose));
+      if (run.instants.back().depth_m > missed_depth_m && !state.in_contact())
+        run.status |= static_cast<std::uint32_t>(StepStatus::contact_missed);
       if (!state.in_contact()) run.instants.back().separation_m = separation.distance_m(pose);
       run.normals.push_back(matrix_of(state.field.normal));
       add_beams(model, state, tick->time_s, run.beams);

@@ -18,6 +18,8 @@ std::string status_text(std::uint32_t status) {
   add(StepStatus::depth_limited, "depth limited to half of the body's thickness");
   add(StepStatus::law_saturated, "contact law saturated at its peak");
   add(StepStatus::regions_full, "more contact regions than fast.max_regions, the smallest left out");
+  add(StepStatus::contact_missed,
+      "contact missed: the tool is inside the body, no sample of it is (raise fast.tool_samples)");
   add(StepStatus::anchors_limited, "anchor displacement limited to that of the contact (raise fast.s_c_m2)");
   return text.empty() ? "ok" : text;
 }

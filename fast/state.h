@@ -22,7 +22,10 @@ enum class StepStatus : std::uint32_t {
   depth_limited = 1u << 1,    ///< deeper than depth_limit_rel of the body's thickness; press less deep
   law_saturated = 1u << 2,    ///< past the peak of a softening law; raise contact.k3_n_per_m3 or press less deep
   anchors_limited = 1u << 3,  ///< an anchor point outran the contact and was held back; raise fast.s_c_m2
-  regions_full = 1u << 4      ///< more contact regions than fast.max_regions; the smallest were left out
+  regions_full = 1u << 4,     ///< more contact regions than fast.max_regions; the smallest were left out
+  /// Of a run over a track, never of a step, which knows the tool by its samples alone: at a recorded instant the tool
+  /// is inside the body by the exact shapes, and none of its samples is. Raise fast.tool_samples.
+  contact_missed = 1u << 5
 };
 [[nodiscard]] constexpr StepStatus operator|(StepStatus a, StepStatus b) noexcept {
   return static_cast<StepStatus>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));

@@ -1,23 +1,20 @@
 // How many threads a solve may use.
 #pragma once
 
-#include <algorithm>
-#include <charconv>
-#include <cstdlib>
 #include <string_view>
-#include <thread>
 
 namespace touchstone::reference {
 
-/// OMP_NUM_THREADS where it is set to a number, as BLAS and batch systems have it; otherwise the processors that this
-/// process may run on. At least 1. The order of sums, and so the last digits of a result, depends on it.
-[[nodiscard]] inline int threads_to_use() {
-  int asked = 0;
-  if (const char* text = std::getenv("OMP_NUM_THREADS")) {
-    const std::string_view digits(text);
-    std::from_chars(digits.data(), digits.data() + digits.size(), asked);
-  }
-  return std::max(1, asked > 0 ? asked : static_cast<int>(std::thread::hardware_concurrency()));
-}
+/// OMP_NUM_THREADS where it is set to a number, as BLAS and batch systems have it; otherwise the processors that
+/// nothing else used when this was first asked. At least 1. The order of sums, and so the last digits of a result,
+/// depends on it.
+[[nodiscard]] int threads_to_use();
+
+/// Processors that nothing but the calling thread uses now; at least 1. The threads of BLAS wait for each other, so one
+/// that must wait for a processor holds up the others: on a busy machine fewer are faster.
+[[nodiscard]] int idle_processors();
+
+/// Threads that run or wait for a processor, of all processes, from the text of /proc/loadavg; 0 where it says nothing.
+[[nodiscard]] int runnable_threads(std::string_view loadavg) noexcept;
 
 }  // namespace touchstone::reference

@@ -5,11 +5,14 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <thread>
+#include <vector>
 
 namespace {
 
@@ -118,6 +121,24 @@ TEST_F(LimitsVerb, PlanEstimatesEveryMesh) {
     EXPECT_THAT(line, HasSubstr(" GiB and "));
     EXPECT_TRUE(line.ends_with(" s)") || line.ends_with(" min)")) << line;
   }
+}
+
+TEST_F(LimitsVerb, ABusyMachineGetsOneThread) {
+  std::atomic<bool> over = false;
+  std::vector<std::jthread> busy;
+  for (unsigned i = 0; i < std::thread::hardware_concurrency(); ++i) {
+    busy.emplace_back([&over] {
+      while (!over) {
+      }
+    });
+  }
+  const std::string plan = " " + program_ + " plan " + TOUCHSTONE_SOURCE_DIR + "/meshes/scenes/pin-on-cylinder.toml >" +
+                           (dir_ / "output").string();
+  EXPECT_EQ(std::system(("env -u OMP_NUM_THREADS" + plan).c_str()), 0);
+  EXPECT_THAT(text_of(dir_ / "output"), HasSubstr("time of 1 thread on"));
+  EXPECT_EQ(std::system(("env OMP_NUM_THREADS=3" + plan).c_str()), 0);
+  EXPECT_THAT(text_of(dir_ / "output"), HasSubstr("time of 3 threads on"));
+  over = true;
 }
 
 }  // namespace

@@ -179,6 +179,7 @@ TEST(Verdict, PassesOnWhatTheFastModelSaysOfItsSteps) {
   testing::Sides sides = testing::pressed(5, 200);
   EXPECT_FALSE(says(told(sides), "Status:")) << told(sides);
   for (const auto& [bit, words] : {std::pair(fast::StepStatus::not_finite, "were not finite numbers"),
+                                   std::pair(fast::StepStatus::contact_missed, "Raise fast.tool_samples"),
                                    std::pair(fast::StepStatus::depth_limited, "half of the body's thickness"),
                                    std::pair(fast::StepStatus::law_saturated, "past its peak"),
                                    std::pair(fast::StepStatus::regions_full, "fast.max_regions = 1"),

@@ -173,6 +173,29 @@ TEST(Run, TrackWithoutContactHasNoRegions) {
   for (const auto& record : result.instants) EXPECT_TRUE(record.regions.empty());
 }
 
+/// A ball whose samples are further apart than the contact is wide.
+scene::Scene contact_between_samples() {
+  scene::Scene scene = test::ball_on_cube();
+  const double more_m = 0.6 - scene.tool.radius_m;
+  scene.tool.radius_m = 0.6;
+  scene.fast.tool_samples = 100;
+  for (scene::Waypoint& w : scene.track) w.pose.position_m.z() += more_m;
+  return scene;
+}
+
+TEST(Run, AContactThatNoSampleFeelsIsNotOk) {
+  scene::Scene scene = contact_between_samples();
+  const auto missed = run(scene);
+  EXPECT_EQ(missed.regions_max, 0);
+  EXPECT_EQ(missed.status, static_cast<std::uint32_t>(StepStatus::contact_missed));
+  const scene::Plan told = plan(scene);
+  EXPECT_NE(told.front().reason.find("CONTACT MISSED"), std::string::npos) << told.front().reason;
+  scene.fast.tool_samples = 100'000;
+  const auto felt = run(scene);
+  EXPECT_EQ(felt.status & static_cast<std::uint32_t>(StepStatus::contact_missed), 0u);
+  EXPECT_EQ(plan(scene).front().reason.find("CONTACT MISSED"), std::string::npos);
+}
+
 TEST(Run, PublishedLeavesAResidualOffTheAxis) {
   scene::Scene scene = test::ball_on_cube(scene::Formulation::published);
   for (scene::Waypoint& w : scene.track) w.pose.position_m += Vec3(0.013, 0.005, 0.0);
@@ -219,8 +242,9 @@ TEST(ConvexMeshTool, TakesTheStepOfItsShape) {
 
 TEST(StatusText, NamesEveryBit) {
   EXPECT_EQ(status_text(0), "ok");
-  const std::string all = status_text(0x1f);
-  for (const char* part : {"not finite", "half of the body", "saturated", "fast.s_c_m2", "fast.max_regions"}) {
+  const std::string all = status_text(0x3f);
+  for (const char* part :
+       {"not finite", "half of the body", "saturated", "fast.s_c_m2", "fast.max_regions", "fast.tool_samples"}) {
     EXPECT_NE(all.find(part), std::string::npos) << part;
   }
 }
