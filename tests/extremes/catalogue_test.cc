@@ -1,4 +1,4 @@
-// reports/extremes.md is the comments of these tests.
+// The report of extremes is the comments of the tests in this program's folder.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,8 +11,10 @@
 namespace {
 
 const std::filesystem::path source = TOUCHSTONE_SOURCE_DIR;
+const std::filesystem::path folder = source / EXTREMES_FOLDER, report_file = source / EXTREMES_REPORT;
 
-/// What stands over a test: "// extreme: what holds." and "// As printed: what the published method does."
+/// What stands over a test: "// extreme: what holds." and, for the fast model, "// As printed: what the published
+/// method does."
 struct Row {
   std::string test, extreme, holds, printed;
 };
@@ -20,6 +22,9 @@ struct Chapter {
   std::string title;
   std::vector<Row> rows;
 };
+
+/// Whether the tests are of a method that was printed.
+const bool with_printed = std::string(EXTREMES_FOLDER) == "tests/extremes";
 
 std::string read(const std::filesystem::path& path) {
   std::ifstream in(path);
@@ -34,11 +39,12 @@ std::string capital(std::string text) {
 
 Row row_of(const std::string& test, const std::string& comment) {
   const std::string mark = " As printed: ";
-  const std::size_t colon = comment.find(": "), printed = comment.find(mark);
-  EXPECT_TRUE(colon < printed && printed != std::string::npos) << test << " says: " << comment;
-  if (!(colon < printed && printed != std::string::npos)) return {test, {}, {}, {}};
+  const std::size_t colon = comment.find(": "), printed = std::min(comment.find(mark), comment.size());
+  EXPECT_LT(colon, printed) << test << " says: " << comment;
+  EXPECT_EQ(printed < comment.size(), with_printed) << test << " says: " << comment;
+  if (colon >= printed || (printed < comment.size()) != with_printed) return {test, {}, {}, {}};
   return {test, comment.substr(0, colon), capital(comment.substr(colon + 2, printed - colon - 2)),
-          comment.substr(printed + mark.size())};
+          with_printed ? comment.substr(printed + mark.size()) : ""};
 }
 
 Chapter chapter_of(const std::filesystem::path& path) {
@@ -67,7 +73,7 @@ Chapter chapter_of(const std::filesystem::path& path) {
 
 std::vector<Chapter> catalogue() {
   std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(source / "tests/extremes")) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename();
     if (name.ends_with("_test.cc") && name != "catalogue_test.cc") paths.push_back(entry.path());
   }
@@ -80,9 +86,12 @@ std::vector<Chapter> catalogue() {
 std::string table(const std::vector<Chapter>& chapters) {
   std::ostringstream out;
   for (const Chapter& chapter : chapters) {
-    out << "\n## " << chapter.title << "\n\n| test | extreme | what holds | as printed |\n|---|---|---|---|\n";
-    for (const Row& row : chapter.rows)
-      out << "| `" << row.test << "` | " << row.extreme << " | " << row.holds << " | " << row.printed << " |\n";
+    out << "\n## " << chapter.title << "\n\n| test | extreme | what holds |"
+        << (with_printed ? " as printed |\n|---|---|---|---|\n" : "\n|---|---|---|\n");
+    for (const Row& row : chapter.rows) {
+      out << "| `" << row.test << "` | " << row.extreme << " | " << row.holds << " |"
+          << (with_printed ? " " + row.printed + " |" : "") << "\n";
+    }
   }
   return out.str();
 }
@@ -101,16 +110,16 @@ TEST(Catalogue, NamesEveryTestAndNoOther) {
   std::sort(named.begin(), named.end());
   std::sort(run.begin(), run.end());
   EXPECT_EQ(named, run);
-  EXPECT_GE(run.size(), 40u);
+  EXPECT_GE(run.size(), 10u);
 }
 
 TEST(Catalogue, IsTheReport) {
-  const std::string report = read(source / "reports/extremes.md"), wanted = table(catalogue());
+  const std::string report = read(report_file), wanted = table(catalogue());
   const std::size_t tables = report.find("\n## ");
   if (tables != std::string::npos && report.substr(tables) == wanted) return;
-  const std::string path = testing::TempDir() + "extremes.md";
+  const std::string path = testing::TempDir() + report_file.filename().string();
   std::ofstream(path) << report.substr(0, tables) << wanted;
-  ADD_FAILURE() << "reports/extremes.md differs from the tests' comments; the right one: " << path;
+  ADD_FAILURE() << EXTREMES_REPORT << " differs from the tests' comments; the right one: " << path;
 }
 
 }  // namespace
