@@ -2,9 +2,7 @@
 // of a file; `--kind=NAME` on the command line says of which kind. A reader may accept the bytes or refuse them with
 // its own error, whose text must be fit for a terminal. Anything else ends the process, and that is a finding.
 #include "compare/result_folder.h"
-#include "compare/stored_reference.h"
 #include "fast/live/live_log.h"
-#include "fast/model.h"
 #include "reference/run/step_record.h"
 #include "scene/error.h"
 #include "scene/files.h"
@@ -46,8 +44,7 @@ class Folder {
   Folder() : path_(path("/dev/shm") / ("touchstone-fuzz-" + std::to_string(::getpid()))) {
     for (const char* part : {"scenes", "tools", "studies", "parameters"}) {
       std::filesystem::create_directories(path_ / part);
-      std::filesystem::copy(source / "meshes" / part, path_ / part,
-                            std::filesystem::copy_options::overwrite_existing);
+      std::filesystem::copy(source / "meshes" / part, path_ / part, std::filesystem::copy_options::overwrite_existing);
     }
   }
   ~Folder() {
@@ -103,7 +100,8 @@ void scene_file(const std::string& bytes) {
   const scene::Scene scene = scene::load_scene(folder().file("scenes/input.toml", bytes));
   // What is accepted can be written down and is the same scene when read again.
   const std::string resolved = scene::resolved_toml(scene);
-  if (scene::scene_hash(scene::parse_scene(resolved, folder().root() / "scenes/input.toml")) != scene::scene_hash(scene))
+  if (scene::scene_hash(scene::parse_scene(resolved, folder().root() / "scenes/input.toml")) !=
+      scene::scene_hash(scene))
     finding("the resolved scene is another one:\n" + resolved);
 }
 
@@ -131,8 +129,8 @@ void track_file(const std::string& bytes) {
 /// The whole way of a mesh file: the format, the checks, convexity.
 void mesh_file(const char* ending, const std::string& bytes) {
   std::vector<scene::Fault> faults;
-  const auto mesh = scene::read_triangle_mesh(folder().file(path("tools") / (std::string("input") + ending), bytes),
-                                              1e-3, faults);
+  const auto mesh =
+      scene::read_triangle_mesh(folder().file(path("tools") / (std::string("input") + ending), bytes), 1e-3, faults);
   if (mesh && faults.empty()) require_finite(*mesh);
   if (!mesh && faults.empty()) finding("no mesh and no fault");
   if (!faults.empty()) throw scene::InputError(faults);
@@ -157,24 +155,6 @@ void store_file(const std::string& bytes) {
     std::fclose(out);
   }
   (void)store.read(1, 1);
-}
-
-/// The description of a committed reference answer, beside its tables.
-void gate_reference(const std::string& bytes) {
-  static const scene::Scene scene = scene::load_scene(source / "meshes/scenes/pin-on-cylinder.toml");
-  static const scene::Surface surface = 
-      scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
-  static const path target = [] {
-    const path copy = folder().root() / "gate-reference";
-    std::filesystem::copy(source / "tests/gates/reference/pin-on-cylinder", copy);
-    return copy;
-  }();
-  (void)folder().file("gate-reference/reference.json", bytes);
-  try {
-    (void)compare::stored_reference(target, scene, surface);
-  } catch (const compare::UnusableReference& error) {
-    require_readable(error.what());
-  }
 }
 
 void summary_file(const std::string& bytes) { (void)compare::read_figures(folder().file("summary.json", bytes)); }
@@ -211,7 +191,6 @@ const std::map<std::string_view, Target> targets = {
     {"log", &live_log},
     {"record", &store_record},
     {"store", &store_file},
-    {"gate-reference", &gate_reference},
     {"summary", &summary_file},
     {"manifest", &manifest_file},
     {"curve", &curve_file},
