@@ -1,6 +1,10 @@
 #include "reference/contact/regions.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
 #include <numeric>
 
 namespace touchstone::reference {
@@ -16,9 +20,31 @@ std::vector<int> region_of_points(const Eigen::Matrix3Xd& points_m, const std::v
   };
   const auto join = [&](int a, int b) { parent[std::max(root(a), root(b))] = std::min(root(a), root(b)); };
   for (const auto& [a, b] : links) join(a, b);
-  for (int a = 0; a < count; ++a) {
-    for (int b = 0; b < a; ++b) {
-      if (root(a) != root(b) && (points_m.col(a) - points_m.col(b)).squaredNorm() <= gap_m * gap_m) join(a, b);
+  const auto near = [&](int a, int b) { return (points_m.col(a) - points_m.col(b)).squaredNorm() <= gap_m * gap_m; };
+  // Cubes whose diagonal is the gap: the points of one are near each other, and those near them no further than two
+  // cubes away.
+  using Cube = std::array<std::int64_t, 3>;
+  const double edge_m = std::max(gap_m / std::sqrt(3.0) * (1.0 - 1e-12), 1e-12);
+  std::map<Cube, std::vector<int>> cubes;
+  for (int i = 0; i < count; ++i) {
+    Cube cube;
+    for (int axis = 0; axis < 3; ++axis) {
+      cube[axis] = static_cast<std::int64_t>(std::floor(points_m(axis, i) / edge_m));
+    }
+    std::vector<int>& inside = cubes[cube];
+    if (!inside.empty() && near(i, inside.front())) join(i, inside.front());
+    inside.push_back(i);
+  }
+  for (const auto& [cube, inside] : cubes) {
+    for (int step = 0; step < 125; ++step) {
+      const auto other = cubes.find({cube[0] + step / 25 - 2, cube[1] + step / 5 % 5 - 2, cube[2] + step % 5 - 2});
+      if (other == cubes.end() || other->first <= cube) continue;
+      for (const int a : inside) {
+        for (const int b : other->second) {
+          if (root(a) == root(b)) continue;
+          if (near(a, b)) join(a, b);
+        }
+      }
     }
   }
   std::vector<int> region(count);

@@ -97,6 +97,7 @@ TEST(ConvergenceExtremes, DragInTheTicks) {
       friction_n.push_back(rig.region().force.tangential_n.norm());
     }
     expect_converging(friction_n, 0.01);
+    EXPECT_NEAR(friction_n[3] / friction_n[4], 1.0, 0.02);
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 namespace touchstone::reference {
 namespace {
 
@@ -21,6 +23,38 @@ TEST(Regions, ChainsOfShortStepsAndLinksJoinPoints) {
   EXPECT_EQ(region_of_points(points_m, {}, 0.95), (std::vector<int>{0, 1, 1, 2, 0, 3}));
   EXPECT_EQ(region_of_points(points_m, {{5, 1}}, 1.0), (std::vector<int>{0, 1, 1, 1, 0, 1}));
   EXPECT_TRUE(region_of_points(Eigen::Matrix3Xd(3, 0), {}, 1.0).empty());
+}
+
+/// Each point with every other, as the definition has it.
+std::vector<int> by_pairs(const Eigen::Matrix3Xd& points_m, double gap_m) {
+  std::vector<int> region(static_cast<std::size_t>(points_m.cols()), -1);
+  int regions = 0;
+  for (std::size_t first = 0; first < region.size(); ++first) {
+    if (region[first] >= 0) continue;
+    std::vector<std::size_t> next = {first};
+    region[first] = regions++;
+    while (!next.empty()) {
+      const std::size_t a = next.back();
+      next.pop_back();
+      for (std::size_t b = 0; b < region.size(); ++b) {
+        const auto apart_m = points_m.col(static_cast<Eigen::Index>(a)) - points_m.col(static_cast<Eigen::Index>(b));
+        if (region[b] >= 0 || apart_m.squaredNorm() > gap_m * gap_m) continue;
+        region[b] = region[a];
+        next.push_back(b);
+      }
+    }
+  }
+  return region;
+}
+
+TEST(Regions, OfManyPointsAreThoseOfAllPairs) {
+  std::srand(1);
+  for (const int count : {2, 30, 300}) {
+    const Eigen::Matrix3Xd points_m = 0.05 * Eigen::Matrix3Xd::Random(3, count);
+    for (const double gap_m : {0.0, 1e-9, 0.002, 0.006, 0.012, 0.03, 0.2}) {
+      EXPECT_EQ(region_of_points(points_m, {}, gap_m), by_pairs(points_m, gap_m)) << count << ' ' << gap_m;
+    }
+  }
 }
 
 TEST(Regions, KeepTheirNumbersWhileTheyLive) {
