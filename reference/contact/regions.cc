@@ -39,11 +39,13 @@ std::vector<int> region_of_points(const Eigen::Matrix3Xd& points_m, const std::v
     for (int step = 0; step < 125; ++step) {
       const auto other = cubes.find({cube[0] + step / 25 - 2, cube[1] + step / 5 % 5 - 2, cube[2] + step % 5 - 2});
       if (other == cubes.end() || other->first <= cube) continue;
+      // The points of a cube are of one region, so one pair is enough, and none where they are joined already.
+      if (root(inside.front()) == root(other->second.front())) continue;
       for (const int a : inside) {
-        for (const int b : other->second) {
-          if (root(a) == root(b)) continue;
-          if (near(a, b)) join(a, b);
-        }
+        const auto b = std::ranges::find_if(other->second, [&](int p) { return near(a, p); });
+        if (b == other->second.end()) continue;
+        join(a, *b);
+        break;
       }
     }
   }
