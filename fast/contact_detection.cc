@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <type_traits>
 
 namespace touchstone::fast {
@@ -13,6 +14,9 @@ namespace {
 
 using scene::Mat3;
 using scene::Vec3;
+
+/// A cell of a thousand times the body's size is then a millionth of it.
+constexpr int most_halvings = 60;
 
 template <class Body>
 InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, const Placement& at, double margin_m,
@@ -36,23 +40,181 @@ InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, co
       const RestDistance rest = rest_distance(body, p_W);
       if (!(rest.signed_distance_m < margin_m)) continue;
       if (rest.signed_distance_m < 0.0) summary.add(rest.normal, -rest.signed_distance_m, tool.area_m2[i]);
-      const auto k = static_cast<std::size_t>(count++);
-      points.x_W_m[k] = p_W.x();
-      points.y_W_m[k] = p_W.y();
-      points.z_W_m[k] = p_W.z();
-      points.x_T_m[k] = p_T.x();
-      points.y_T_m[k] = p_T.y();
-      points.z_T_m[k] = p_T.z();
-      points.nx_T[k] = tool.nx_T[i];
-      points.ny_T[k] = tool.ny_T[i];
-      points.nz_T[k] = tool.nz_T[i];
-      points.area_m2[k] = tool.area_m2[i];
-      points.depth_m[k] = -rest.signed_distance_m;
-      points.sample[k] = static_cast<std::int32_t>(i);
+      const Vec3 normal_T(tool.nx_T[i], tool.ny_T[i], tool.nz_T[i]);
+      points.set(count++, p_W, p_T, normal_T, tool.area_m2[i], rest.signed_distance_m, rest.normal,
+                 static_cast<std::int32_t>(i));
     }
   }
   points.count = count;
   return summary;
+}
+
+/// Cuts a polygon about p with the rest surface: with its tangent plane at the closest point.
+/// @param rest of p
+template <class Body>
+void cut(const Body&, const Vec3& /*p_W*/, const RestDistance& rest, CutPolygon& polygon) noexcept {
+  polygon.keep_below(rest.normal, rest.signed_distance_m);
+}
+
+/// Faces that meet at edges.
+void cut(const scene::Box& box, const Vec3& p_W, const RestDistance& /*rest*/, CutPolygon& polygon) noexcept {
+  const Vec3 local = p_W - box.center_m();
+  for (int axis = 0; axis < 3; ++axis) {
+    polygon.keep_below(Vec3::Unit(axis), local[axis] - box.half_m()[axis]);
+    polygon.keep_below(-Vec3::Unit(axis), -local[axis] - box.half_m()[axis]);
+  }
+}
+
+/// Straight pieces of the profile, of which several may cut a cell, and the tangent plane for an arc.
+void cut(const scene::Revolution& body, const Vec3& p_W, const RestDistance& rest, CutPolygon& polygon) noexcept {
+  polygon.keep_below(rest.normal, rest.signed_distance_m);
+  for (int index = 0; index < body.piece_count(); ++index) {
+    const scene::RevolutionPiece& piece = body.piece(index);
+    if (!piece.straight()) continue;
+    const Eigen::Vector2d along = (piece.end_m - piece.start_m) / piece.length_m;
+    const Eigen::Vector2d normal(along.y(), -along.x());
+    const auto corners = polygon.corners();
+    std::array<double, CutPolygon::max_corners> level{};
+    bool cuts = false;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Vec3 local = p_W + corners[k] - body.offset_m();
+      const Eigen::Vector2d rz_m(std::sqrt(local.x() * local.x() + local.y() * local.y()), local.z());
+      level[k] = normal.dot(rz_m - piece.start_m);
+      cuts = cuts || level[k] >= 0.0;
+    }
+    if (cuts) polygon.keep_below({level.data(), corners.size()});
+  }
+}
+
+/// Cells of the tool, one by one, and what is inside of them.
+template <class Body>
+class CellFinder {
+ public:
+  CellFinder(const Body& body, const Placement& at, const CellRule& rule, double margin_m,
+             RegionPoints& points) noexcept
+      : body_(body), at_(at), rule_(rule), margin_m_(margin_m), points_(points) {
+    points.count = 0;
+  }
+
+  /// Whether the cell is near the body, so that its halves need a look where this round is too coarse.
+  bool add(const SurfaceCell& cell) noexcept {
+    const Vec3 p_W = at_.R_WT * cell.center_T_m + at_.origin_W_m;
+    const double reach_m = std::max(cell.radius_m, margin_m_);
+    if (surely_beyond(body_, p_W, reach_m)) return false;
+    const RestDistance rest = rest_distance(body_, p_W);
+    const double distance_m = rest.signed_distance_m;
+    if (!(distance_m < reach_m)) return false;
+    if (distance_m <= -cell.radius_m || !rule_.cut) {
+      if (distance_m < 0.0) {
+        put_inside(cell, p_W, cell.center_T_m, cell.area_m2, rest);
+      } else {
+        put_outside(cell, p_W, cell.center_T_m, cell.area_m2, rest);
+      }
+    } else {
+      add_cut(cell, p_W, rest);
+    }
+    return distance_m < cell.radius_m;
+  }
+
+  [[nodiscard]] bool fine_enough() const noexcept {
+    return inside_ >= rule_.points && rim_m2_ <= rule_.rim_share * inside_m2_;
+  }
+  [[nodiscard]] const InsideSummary& summary() const noexcept { return summary_; }
+
+ private:
+  void put_inside(const SurfaceCell& cell, const Vec3& p_W, const Vec3& p_T, double area_m2,
+                  const RestDistance& rest) noexcept {
+    summary_.add(rest.normal, -rest.signed_distance_m, area_m2);
+    ++inside_;
+    inside_m2_ += area_m2;
+    points_.set(points_.count++, p_W, p_T, cell.normal_T, area_m2, rest.signed_distance_m, rest.normal, cell.sample);
+  }
+
+  void put_outside(const SurfaceCell& cell, const Vec3& p_W, const Vec3& p_T, double area_m2,
+                   const RestDistance& rest) noexcept {
+    if (!(rest.signed_distance_m < margin_m_)) return;
+    points_.set(points_.count++, p_W, p_T, cell.normal_T, area_m2, std::max(0.0, rest.signed_distance_m), rest.normal,
+                cell.sample);
+  }
+
+  void add_cut(const SurfaceCell& cell, const Vec3& p_W, const RestDistance& rest) noexcept {
+    std::array<Vec3, 4> corner_m;
+    const auto corners = static_cast<std::size_t>(cell.corners);
+    for (std::size_t k = 0; k < corners; ++k) corner_m[k] = at_.R_WT * (cell.corner_T_m[k] - cell.center_T_m);
+    CutPolygon polygon({corner_m.data(), corners});
+    const CutPolygon::Moments whole = polygon.moments();
+    cut(body_, p_W, rest, polygon);
+    const CutPolygon::Moments kept = polygon.moments();
+    const double share = whole.area_m2 > 0.0 ? kept.area_m2 / whole.area_m2 : 0.0;
+    if (share >= 1.0 - 1e-9) {
+      if (rest.signed_distance_m < 0.0) return put_inside(cell, p_W, cell.center_T_m, cell.area_m2, rest);
+    } else if (share <= 0.0) {
+      return put_outside(cell, p_W, cell.center_T_m, cell.area_m2, rest);
+    }
+    const auto place_T = [&](const Vec3& off_W_m) -> Vec3 { return cell.center_T_m + at_.R_WT.transpose() * off_W_m; };
+    const Vec3 off_m = kept.center_m - whole.center_m;
+    RestDistance there = rest_distance(body_, p_W + off_m);
+    // A curved surface may pass beneath the middle of the part under its tangent plane.
+    there.signed_distance_m = std::min(there.signed_distance_m, -1e-300);
+    put_inside(cell, p_W + off_m, place_T(off_m), share * cell.area_m2, there);
+    rim_m2_ += share * cell.area_m2;
+    if (margin_m_ > 0.0 && share < 1.0 - 1e-9) {
+      const Vec3 out_m = -share / (1.0 - share) * off_m;
+      put_outside(cell, p_W + out_m, place_T(out_m), (1.0 - share) * cell.area_m2, rest_distance(body_, p_W + out_m));
+    }
+  }
+
+  const Body& body_;
+  const Placement& at_;
+  const CellRule& rule_;
+  double margin_m_;
+  RegionPoints& points_;
+  InsideSummary summary_;
+  int inside_ = 0;
+  double inside_m2_ = 0.0, rim_m2_ = 0.0;
+};
+
+template <class Body>
+InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, const Placement& at, const CellRule& rule,
+                         double margin_m, RegionPoints& points, CellScratch& scratch) noexcept {
+  const Body& body = static_cast<const Body&>(shape);
+  CellFinder<Body> found(body, at, rule, margin_m, points);
+  std::vector<std::int32_t>& near = scratch.near;
+  near.clear();
+  const auto nodes = static_cast<std::int32_t>(tool.tree.size());
+  for (std::int32_t node = 0; node < nodes;) {
+    const SampleBall& ball = tool.tree[static_cast<std::size_t>(node)];
+    if (!may_touch(body, at.R_WT * ball.center_T_m + at.origin_W_m,
+                   std::max(ball.cells_radius_m, ball.radius_m + margin_m))) {
+      node = ball.next;
+      continue;
+    }
+    ++node;
+    if (!ball.leaf) continue;
+    for (std::int32_t i = ball.begin; i < ball.end; ++i)
+      if (found.add(tool.cell[static_cast<std::size_t>(i)])) near.push_back(i);
+  }
+  if (found.fine_enough() || near.empty()) return found.summary();
+
+  // The points hold on to the cells of the last round.
+  const auto halve = [&](const SurfaceCell* cells, std::vector<SurfaceCell>& into) {
+    std::size_t count = 0;
+    for (const std::int32_t i : near)
+      for (const SurfaceCell& half : halves(cells[i], tool.groups)) into[count++] = half;
+    return count;
+  };
+  if (2 * near.size() > scratch.now.size()) return found.summary();
+  std::size_t count = halve(tool.cell.data(), scratch.now);
+  for (int round = 0;; ++round) {
+    CellFinder<Body> finer(body, at, rule, margin_m, points);
+    near.clear();
+    for (std::size_t k = 0; k < count; ++k)
+      if (finer.add(scratch.now[k])) near.push_back(static_cast<std::int32_t>(k));
+    if (finer.fine_enough() || near.empty() || 2 * near.size() > scratch.now.size() || round == most_halvings)
+      return finer.summary();
+    count = halve(scratch.now.data(), scratch.next);
+    std::swap(scratch.now, scratch.next);
+  }
 }
 
 template <class Body>
@@ -66,8 +228,25 @@ InsideSummary summarise(const scene::Shape& shape, const RegionPoints& points) n
   return summary;
 }
 
+/// How the depth varies over a small square beneath a plane, both with their slope at the point.
+double depth_spread_m(const RegionPoints& points, std::size_t k, const Vec3& d_T, const Mat3& R_WT, const Vec3& d,
+                      double depth_m) noexcept {
+  const double cos_tool = points.cos_theta[k];
+  const Vec3 n_T(points.nx_T[k], points.ny_T[k], points.nz_T[k]);
+  Vec3 slope = R_WT * (n_T - cos_tool * d_T);  // times cos_tool
+  const Vec3 n_W(points.rest_nx_W[k], points.rest_ny_W[k], points.rest_nz_W[k]);
+  const double cos_body = -n_W.dot(d);
+  // The closest point may be on another side than the one that d leads away from.
+  if (cos_body > 0.3) slope += cos_tool / cos_body * (n_W + cos_body * d);
+  // Of a square of side h, variance h^2 slope^2 / 12; its projected area is h^2 = A cos_tool.
+  const double spread_m = std::sqrt(slope.squaredNorm() * points.area_m2[k] / (12.0 * std::max(cos_tool, 1e-3)));
+  // A ramp that begins at depth 0.
+  return std::min(spread_m, depth_m / std::numbers::sqrt3);
+}
+
 template <class Body>
-RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const Vec3& d, RegionPoints& points) noexcept {
+RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const Vec3& d, bool spread,
+                            RegionPoints& points) noexcept {
   const Body& body = static_cast<const Body&>(shape);
   const auto way_out_m = exit_along(body, -d);
   const Vec3 d_T = R_WT.transpose() * d;
@@ -85,6 +264,7 @@ RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const V
     points.cos_theta[k] = cos_theta;
     points.depth_m[k] = depth_m;
     const double projected_m2 = points.area_m2[k] * cos_theta;
+    points.depth_spread_m[k] = spread ? depth_spread_m(points, k, d_T, R_WT, d, depth_m) : 0.0;
     const Vec3 on_surface_m = p_W - depth_m * d;
     if (kept == 1 || depth_m > extent.deepest_m) {
       extent.deepest_m = depth_m;
@@ -111,26 +291,29 @@ double exit_distance(const scene::Shape& shape, const Vec3& p_W_m, const Vec3& d
 }
 
 template <class Body>
-constexpr Detection detection_of{&find_inside<Body>, &summarise<Body>, &pull_back<Body>, &measure_depths<Body>,
-                                 &exit_distance<Body>};
+constexpr Detection detection_of{&find_inside<Body>, &find_cells<Body>,     &summarise<Body>,
+                                 &pull_back<Body>,   &measure_depths<Body>, &exit_distance<Body>};
 
 }  // namespace
 
 namespace {
 
-constexpr int columns = 13;  // of doubles
+constexpr int columns = 17;  // of doubles
 
 std::array<double**, columns> columns_of(RegionPoints& p) noexcept {
-  return {&p.x_W_m, &p.y_W_m, &p.z_W_m,   &p.x_T_m,     &p.y_T_m,   &p.z_T_m, &p.nx_T,
-          &p.ny_T,  &p.nz_T,  &p.area_m2, &p.cos_theta, &p.depth_m, &p.share};
+  return {&p.x_W_m,   &p.y_W_m,     &p.z_W_m,   &p.x_T_m,          &p.y_T_m,     &p.z_T_m,
+          &p.nx_T,    &p.ny_T,      &p.nz_T,    &p.rest_nx_W,      &p.rest_ny_W, &p.rest_nz_W,
+          &p.area_m2, &p.cos_theta, &p.depth_m, &p.depth_spread_m, &p.share};
 }
 
 }  // namespace
 
 void RegionPoints::move(int from, int to) noexcept {
   const auto i = static_cast<std::size_t>(from), k = static_cast<std::size_t>(to);
-  for (double* column : {x_W_m, y_W_m, z_W_m, x_T_m, y_T_m, z_T_m, nx_T, ny_T, nz_T, area_m2, depth_m})
+  for (double* column :
+       {x_W_m, y_W_m, z_W_m, x_T_m, y_T_m, z_T_m, nx_T, ny_T, nz_T, rest_nx_W, rest_ny_W, rest_nz_W, area_m2, depth_m})
     column[k] = column[i];
+  cell[k] = cell[i];
   sample[k] = sample[i];
 }
 
@@ -141,22 +324,27 @@ void RegionPoints::reorder(std::span<const std::int32_t> order, double* scratch)
     for (std::size_t k = 0; k < order.size(); ++k)
       column[k] = static_cast<std::remove_reference_t<decltype(*column)>>(scratch[k]);
   };
-  for (double* column : {x_W_m, y_W_m, z_W_m, x_T_m, y_T_m, z_T_m, nx_T, ny_T, nz_T, area_m2, depth_m})
+  for (double* column :
+       {x_W_m, y_W_m, z_W_m, x_T_m, y_T_m, z_T_m, nx_T, ny_T, nz_T, rest_nx_W, rest_ny_W, rest_nz_W, area_m2, depth_m})
     through_scratch(column);
   through_scratch(sample);
+  for (std::size_t k = 0; k < order.size(); ++k) cell[k] = nullptr;
   count = static_cast<int>(order.size());
 }
 
 RegionPoints RegionPoints::slice(int begin, int size) const noexcept {
   RegionPoints part = *this;
   for (double** column : columns_of(part)) *column += begin;
+  part.cell += begin;
   part.sample += begin;
   part.count = size;
   return part;
 }
 
 PointStore::PointStore(int capacity)
-    : numbers_(columns * static_cast<std::size_t>(capacity)), samples_(static_cast<std::size_t>(capacity)) {}
+    : numbers_(columns * static_cast<std::size_t>(capacity)),
+      cells_(static_cast<std::size_t>(capacity)),
+      samples_(static_cast<std::size_t>(capacity)) {}
 
 RegionPoints PointStore::window() noexcept {
   RegionPoints points;
@@ -165,8 +353,17 @@ RegionPoints PointStore::window() noexcept {
     *column = next;
     next += samples_.size();
   }
+  points.cell = cells_.data();
   points.sample = samples_.data();
   return points;
+}
+
+CellScratch::CellScratch(int samples) : now(max_cells), next(max_cells) {
+  near.reserve(static_cast<std::size_t>(std::max(samples, max_cells)));
+}
+
+std::size_t CellScratch::memory_bytes() const noexcept {
+  return (now.size() + next.size()) * sizeof(SurfaceCell) + near.capacity() * sizeof(std::int32_t);
 }
 
 Detection detection_for(scene::BodyShape shape) noexcept {

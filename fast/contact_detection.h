@@ -2,6 +2,7 @@
 // how d is chosen (sections II-B, III, appendix III: the set M).
 #pragma once
 
+#include "fast/surface_cells.h"
 #include "fast/tool_samples.h"
 #include "scene/frames.h"
 #include "scene/scene.h"
@@ -23,19 +24,43 @@ struct Placement {
 /// The points p_i of one contact region: a window on a PointStore.
 struct RegionPoints {
   int count = 0;
-  double *x_W_m = nullptr, *y_W_m = nullptr, *z_W_m = nullptr;  ///< p_i in the world
-  double *x_T_m = nullptr, *y_T_m = nullptr, *z_T_m = nullptr;  ///< p_i about the tool's mass centre
-  double *nx_T = nullptr, *ny_T = nullptr, *nz_T = nullptr;     ///< outward normal n_i of the tool
-  double* area_m2 = nullptr;                                    ///< A_i
-  double* cos_theta = nullptr;                                  ///< n_i . d, >= 0
-  double* depth_m = nullptr;                                    ///< d_i, along d from the rest surface; as found: to it
-  double* share = nullptr;                                      ///< m_i / m
-  std::int32_t* sample = nullptr;                               ///< of ToolSamples
+  double *x_W_m = nullptr, *y_W_m = nullptr, *z_W_m = nullptr;              ///< p_i in the world
+  double *x_T_m = nullptr, *y_T_m = nullptr, *z_T_m = nullptr;              ///< p_i about the tool's mass centre
+  double *nx_T = nullptr, *ny_T = nullptr, *nz_T = nullptr;                 ///< outward normal n_i of the tool
+  double *rest_nx_W = nullptr, *rest_ny_W = nullptr, *rest_nz_W = nullptr;  ///< of the rest surface, closest point
+  double* area_m2 = nullptr;                                                ///< A_i
+  double* cos_theta = nullptr;                                              ///< n_i . d, >= 0
+  double* depth_m = nullptr;           ///< d_i, along d from the rest surface; as found: to it
+  double* depth_spread_m = nullptr;    ///< standard deviation of the depth over the point's area; 0 for a sample
+  double* share = nullptr;             ///< m_i / m
+  const SurfaceCell** cell = nullptr;  ///< whole inside, so that its corners are the area's
+  std::int32_t* sample = nullptr;      ///< of ToolSamples; several may have one
 
   [[nodiscard]] scene::Vec3 p_W_m(std::size_t i) const noexcept { return {x_W_m[i], y_W_m[i], z_W_m[i]}; }
   [[nodiscard]] scene::Vec3 p_T_m(std::size_t i) const noexcept { return {x_T_m[i], y_T_m[i], z_T_m[i]}; }
   /// Copies point `from` to the place `to`, as far as detection has filled it.
   void move(int from, int to) noexcept;
+  /// Fills place k as detection does. @param distance_m signed, to the rest surface
+  void set(int k, const scene::Vec3& at_W_m, const scene::Vec3& at_T_m, const scene::Vec3& normal_T, double part_m2,
+           double distance_m, const scene::Vec3& rest_normal_W, std::int32_t of_sample,
+           const SurfaceCell* whole = nullptr) noexcept {
+    cell[k] = whole;
+    x_W_m[k] = at_W_m.x();
+    y_W_m[k] = at_W_m.y();
+    z_W_m[k] = at_W_m.z();
+    x_T_m[k] = at_T_m.x();
+    y_T_m[k] = at_T_m.y();
+    z_T_m[k] = at_T_m.z();
+    nx_T[k] = normal_T.x();
+    ny_T[k] = normal_T.y();
+    nz_T[k] = normal_T.z();
+    rest_nx_W[k] = rest_normal_W.x();
+    rest_ny_W[k] = rest_normal_W.y();
+    rest_nz_W[k] = rest_normal_W.z();
+    area_m2[k] = part_m2;
+    depth_m[k] = -distance_m;
+    sample[k] = of_sample;
+  }
   /// Puts point order[k] at place k, for all k; as far as detection has filled them. Points not named are gone.
   /// @param scratch room for as many numbers as `order` holds
   void reorder(std::span<const std::int32_t> order, double* scratch) noexcept;
@@ -51,11 +76,12 @@ class PointStore {
   [[nodiscard]] RegionPoints window() noexcept;
   [[nodiscard]] int capacity() const noexcept { return static_cast<int>(samples_.size()); }
   [[nodiscard]] std::size_t memory_bytes() const noexcept {
-    return numbers_.size() * sizeof(double) + samples_.size() * sizeof(std::int32_t);
+    return numbers_.size() * sizeof(double) + samples_.size() * (sizeof(std::int32_t) + sizeof(SurfaceCell*));
   }
 
  private:
   std::vector<double> numbers_;
+  std::vector<const SurfaceCell*> cells_;
   std::vector<std::int32_t> samples_;
 };
 
@@ -81,6 +107,32 @@ struct InsideSummary {
 using FindInside = InsideSummary (*)(const scene::Shape&, const ToolSamples&, const Placement&, double margin_m,
                                      int limit, RegionPoints&) noexcept;
 
+/// How the tool's cells become points.
+struct CellRule {
+  bool cut = true;         ///< the body's surface cuts cells; otherwise a cell is inside with its centre, or outside
+  int points = 1;          ///< fewer than these are too few
+  double rim_share = 1.0;  ///< of the area inside, in cut cells; more than that is too much
+};
+
+/// Cells of one round of halving, at most.
+inline constexpr int max_cells = 2048;
+
+/// What find_cells() writes on its way; its content does not outlast a call.
+struct CellScratch {
+  /// @param samples of the tool
+  explicit CellScratch(int samples);
+  [[nodiscard]] std::size_t memory_bytes() const noexcept;
+  std::vector<std::int32_t> near;      ///< samples whose cells are near the body
+  std::vector<SurfaceCell> now, next;  ///< max_cells
+};
+
+/// Fills `points` with what lies inside the rest surface of the tool's cells, one point for each at the middle of that
+/// part and with its area. Where the points are too few, or too much of the area is in cut cells, all cells near the
+/// body are halved, and again, as far as there is room.
+/// @param margin_m what lies outside, but for less than that, are points too, of negative depth
+using FindCells = InsideSummary (*)(const scene::Shape&, const ToolSamples&, const Placement&, const CellRule&,
+                                    double margin_m, RegionPoints&, CellScratch&) noexcept;
+
 /// The summary of points as they stand, none left out but those that are not inside.
 using Summarise = InsideSummary (*)(const scene::Shape&, const RegionPoints&) noexcept;
 
@@ -94,7 +146,8 @@ struct RegionExtent {
 
 /// Keeps the points with n_i . d >= 0 (the set M of appendix III) and gives each its depth d_i along d.
 /// @param d unit direction of deformation, into the body
-using MeasureDepths = RegionExtent (*)(const scene::Shape&, const scene::Mat3& R_WT, const scene::Vec3& d,
+/// @param spread  whether the depth varies over a point's area; otherwise a point is a sample
+using MeasureDepths = RegionExtent (*)(const scene::Shape&, const scene::Mat3& R_WT, const scene::Vec3& d, bool spread,
                                        RegionPoints&) noexcept;
 
 /// Way from a point of the body along a direction to the rest surface [m].
@@ -109,6 +162,7 @@ using PullBack = InsideSummary (*)(const scene::Shape&, const DisplacedSurface&,
 /// Detection for one shape of body.
 struct Detection {
   FindInside find_inside = nullptr;
+  FindCells find_cells = nullptr;
   Summarise summarise = nullptr;
   PullBack pull_back = nullptr;
   MeasureDepths measure_depths = nullptr;

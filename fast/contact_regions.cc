@@ -91,16 +91,16 @@ ClusterGrid cluster_grid(const ToolSamples& tool, double r_th_m) {
   return grid;
 }
 
-ClusterScratch::ClusterScratch(const ClusterGrid& grid)
+ClusterScratch::ClusterScratch(const ClusterGrid& grid, int points)
     : cells_(static_cast<std::size_t>(grid.cell_count())),
       occupied_(cells_.size()),
-      next_(grid.cell.size()),
-      of_point_(grid.cell.size()),
-      order_(grid.cell.size()),
-      rank_(grid.cell.size()),
-      begin_(grid.cell.size() + 1),
-      area_m2_(grid.cell.size()),
-      column_(grid.cell.size()) {}
+      next_(static_cast<std::size_t>(points)),
+      of_point_(next_.size()),
+      order_(next_.size()),
+      rank_(next_.size()),
+      begin_(next_.size() + 1),
+      area_m2_(next_.size()),
+      column_(next_.size()) {}
 
 std::size_t ClusterScratch::memory_bytes() const noexcept {
   return cells_.size() * (sizeof(Cell) + sizeof(std::int32_t)) +
@@ -331,8 +331,9 @@ Tracking RegionTracker::track(const RegionPoints& points, std::span<const Cluste
     centers_W_m_[r] = taken.center_W_m;
     for (int i = taken.points.begin; i < taken.points.begin + taken.points.size; ++i) {
       const std::int32_t sample = points.sample[static_cast<std::size_t>(i)];
-      label_[static_cast<std::size_t>(sample)] = static_cast<std::int16_t>(r);
-      labelled_[labelled_count_++] = sample;
+      std::int16_t& label = label_[static_cast<std::size_t>(sample)];
+      if (label < 0) labelled_[labelled_count_++] = sample;
+      label = static_cast<std::int16_t>(r);
     }
   }
   count_ = static_cast<int>(count);

@@ -58,7 +58,8 @@ struct ClusterGrid {
 /// What cluster() writes on its way; its content does not outlast a call.
 class ClusterScratch {
  public:
-  explicit ClusterScratch(const ClusterGrid& grid);
+  /// @param points at most
+  ClusterScratch(const ClusterGrid& grid, int points);
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 
  private:
@@ -91,7 +92,7 @@ struct ClusterCount {
 /// Sorts the points by cluster, the order within each kept, and describes the clusters, which come in the order of
 /// their first points. Two points are in one cluster exactly if a chain of points leads from one to the other in steps
 /// shorter than r_th, in the tool frame, whatever has been done to their world coordinates.
-/// @param all at most as many points as the tool has samples, each sample at most once, with depth_m
+/// @param all at most as many points as the scratch has room for, with depth_m; points of one sample are together
 /// @param out as many clusters as it holds are kept
 ClusterCount cluster(const ClusterGrid& grid, RegionPoints& all, ClusterScratch& scratch,
                      std::span<Cluster> out) noexcept;

@@ -1,7 +1,10 @@
 #include "fast/mass_distribution.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
+#include <span>
 
 namespace touchstone::fast {
 namespace {
@@ -25,7 +28,7 @@ void normalise(RegionPoints& points, double sum) noexcept {
 
 }  // namespace
 
-void distribute_mass_published(const Vec3& d_T, double /*r_0_m*/, RegionPoints& points) noexcept {
+void distribute_mass_published(const Vec3& d_T, RegionPoints& points) noexcept {
   double sum = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
     points.share[i] = std::sqrt(lever_arm2_m2(points, i, d_T)) * points.cos_theta[i];
@@ -34,11 +37,63 @@ void distribute_mass_published(const Vec3& d_T, double /*r_0_m*/, RegionPoints& 
   normalise(points, sum);
 }
 
-void distribute_mass_corrected(const Vec3& d_T, double r_0_m, RegionPoints& points) noexcept {
+/// Of the projected area: cells nearer than this are taken as they are.
+constexpr double near2 = 6.0;
+
+double mean_inverse_distance_per_m(double r2_m2, double disc_radius_m) noexcept {
+  const double R = disc_radius_m, R2_m2 = R * R;
+  if (r2_m2 > 9.0 * R2_m2) {
+    const double x = R2_m2 / r2_m2;
+    return (1.0 + x * (1.0 / 8.0 + x * (3.0 / 64.0 + x * (25.0 / 1024.0)))) / std::sqrt(r2_m2);
+  }
+  // The potential of a disc: complete elliptic integrals of x, the smaller of r and R over the larger, by Abramowitz
+  // and Stegun 17.3.34 and 17.3.36 (2e-8).
+  const bool beneath = r2_m2 <= R2_m2;
+  const double x2 = beneath ? r2_m2 / R2_m2 : R2_m2 / r2_m2;
+  const double m = std::max(1.0 - x2, 1e-12), log = -std::log(m);
+  const double E = 1.0 + m * (0.44325141463 + m * (0.06260601220 + m * (0.04757383546 + m * 0.01736506451))) +
+                   m * (0.24998368310 + m * (0.09200180037 + m * (0.04069697526 + m * 0.00526449639))) * log;
+  if (beneath) return 4.0 / (std::numbers::pi * R) * E;
+  const double K = 1.38629436112 + m * (0.09666344259 + m * (0.03590092383 + m * (0.03742563713 + m * 0.01451196212))) +
+                   (0.5 + m * (0.12498593597 + m * (0.06880248576 + m * (0.03328355346 + m * 0.00441787012)))) * log;
+  return 4.0 * std::sqrt(r2_m2) / (std::numbers::pi * R2_m2) * (E - m * K);
+}
+
+namespace {
+
+/// Integral of 1 / r over a polygon in the plane, r from the origin [m]: a sum over its sides.
+double inverse_distance_integral_m(std::span<const Eigen::Vector2d> corner_m) noexcept {
+  double sum_m = 0.0;
+  for (std::size_t k = 0; k < corner_m.size(); ++k) {
+    const Eigen::Vector2d &a = corner_m[k], &b = corner_m[k + 1 == corner_m.size() ? 0 : k + 1];
+    const double twice_m2 = a.x() * b.y() - a.y() * b.x(), side_m = (b - a).norm(), both_m = a.norm() + b.norm();
+    // A side in line with the origin adds nothing.
+    if (!(std::abs(twice_m2) > 1e-14 * both_m * both_m)) continue;
+    sum_m += twice_m2 / side_m * std::log((both_m + side_m) / (both_m - side_m));
+  }
+  return std::abs(sum_m);
+}
+
+}  // namespace
+
+void distribute_mass_corrected(const Vec3& d_T, RegionPoints& points) noexcept {
   double sum = 0.0;
+  const Vec3 u_T = d_T.unitOrthogonal(), v_T = d_T.cross(u_T);
   for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
-    points.share[i] =
-        points.area_m2[i] * points.cos_theta[i] / std::sqrt(lever_arm2_m2(points, i, d_T) + r_0_m * r_0_m);
+    const double projected_m2 = points.area_m2[i] * points.cos_theta[i];
+    points.share[i] = 0.0;
+    if (!(projected_m2 > 0.0)) continue;
+    const double disc_radius_m = std::sqrt(projected_m2 / std::numbers::pi);
+    const double r2_m2 = lever_arm2_m2(points, i, d_T);
+    if (const SurfaceCell* cell = points.cell[i]; cell != nullptr && r2_m2 < near2 * projected_m2) {
+      std::array<Eigen::Vector2d, 4> corner_m;
+      const auto corners = static_cast<std::size_t>(cell->corners);
+      for (std::size_t k = 0; k < corners; ++k)
+        corner_m[k] = {cell->corner_T_m[k].dot(u_T), cell->corner_T_m[k].dot(v_T)};
+      points.share[i] = inverse_distance_integral_m({corner_m.data(), corners});
+    } else {
+      points.share[i] = projected_m2 * mean_inverse_distance_per_m(r2_m2, disc_radius_m);
+    }
     sum += points.share[i];
   }
   normalise(points, sum);

@@ -8,15 +8,20 @@ namespace touchstone::fast {
 /// Sets share[i] = m_i / m of every point, from r_i (distance of p_i from the line through the tool's mass centre along
 /// d), theta_i and A_i. Shares are >= 0 and sum to 1; where all weights vanish they are uniform.
 /// @param d_T unit direction of deformation in tool coordinates
-/// @param r_0_m spacing of the tool's samples
-using DistributeMass = void (*)(const scene::Vec3& d_T, double r_0_m, RegionPoints& points) noexcept;
+using DistributeMass = void (*)(const scene::Vec3& d_T, RegionPoints& points) noexcept;
 
 /// As printed: m_i ~ r_i cos(theta_i). Errata E6: the printed formula contradicts the text beside it; a point under the
 /// mass centre gets nothing. Guarded where the sum vanishes.
-void distribute_mass_published(const scene::Vec3& d_T, double r_0_m, RegionPoints& points) noexcept;
+void distribute_mass_published(const scene::Vec3& d_T, RegionPoints& points) noexcept;
 
-/// Errata E6: m_i ~ A_i cos(theta_i) / sqrt(r_i^2 + r_0^2), which is the text's "inversely proportional", kept finite
-/// under the mass centre and free of the samples' density.
-void distribute_mass_corrected(const scene::Vec3& d_T, double r_0_m, RegionPoints& points) noexcept;
+/// Errata E6: m_i is the integral of 1 / r over the point's projected area A_i cos(theta_i), which is the text's
+/// "inversely proportional". It is exact near the mass centre; further off, and for a cut cell, the area is taken as a
+/// disc. So a point under the mass centre has a finite share, and the sum over finer points tends to the integral over
+/// the contact.
+void distribute_mass_corrected(const scene::Vec3& d_T, RegionPoints& points) noexcept;
+
+/// Mean of 1 / r over a disc [1/m], r the distance from a point of the disc's plane.
+/// @param r2_m2 squared distance of that point from the disc's centre; @param disc_radius_m > 0
+[[nodiscard]] double mean_inverse_distance_per_m(double r2_m2, double disc_radius_m) noexcept;
 
 }  // namespace touchstone::fast

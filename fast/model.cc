@@ -3,18 +3,23 @@
 namespace touchstone::fast {
 namespace {
 
+/// As the paper has it, a sample is inside or not.
+constexpr CellRule published_cells{.cut = false, .points = 1, .rim_share = 1.0};
+/// The force of the shipped tools is then within 1 % of its limit, see CellsConverge.
+constexpr CellRule corrected_cells{.cut = true, .points = 32, .rim_share = 0.2};
+
 Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
   const scene::FastSettings& fast = scene.fast;
   const SplitForce split_force = split_force_of(fast.formulation, skeleton);
   Formulas formulas;
   switch (fast.formulation) {
     case scene::Formulation::published:
-      formulas = {distribute_mass_published, resolve_friction_published,   split_force,
-                  interpolate_published,     apply_local_factor_published, several_regions_published};
+      formulas = {published_cells,       distribute_mass_published,    resolve_friction_published, split_force,
+                  interpolate_published, apply_local_factor_published, several_regions_published};
       break;
     case scene::Formulation::corrected:
-      formulas = {distribute_mass_corrected, resolve_friction_corrected,   split_force,
-                  interpolate_corrected,     apply_local_factor_corrected, several_regions_corrected};
+      formulas = {corrected_cells,       distribute_mass_corrected,    resolve_friction_corrected, split_force,
+                  interpolate_corrected, apply_local_factor_corrected, several_regions_corrected};
       break;
   }
   if (!scene.contact.friction) formulas.resolve_friction = nullptr;

@@ -17,6 +17,7 @@
 #include "scene/scene.h"
 #include "scene/surface.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -24,6 +25,7 @@ namespace touchstone::fast {
 
 /// The stages in which the published and the corrected formulation differ, chosen when the model is built.
 struct Formulas {
+  CellRule cells;  ///< how the tool's cells become points
   DistributeMass distribute_mass = nullptr;
   ResolveFriction resolve_friction = nullptr;  ///< null where the scene has no friction: there is no such stage
   SplitForce split_force = nullptr;
@@ -57,6 +59,8 @@ struct FastModel {
   std::unique_ptr<const ClusterGrid> clusters;  ///< null where the model has one region
   int max_regions = 1;                          ///< capacity; 1 for a convex tool
 
+  /// Points of a tick, at most: two for each cell, its part inside and, for several regions, the one outside.
+  [[nodiscard]] int max_points() const noexcept { return 2 * std::max(tool.count(), max_cells); }
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };
 

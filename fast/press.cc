@@ -53,11 +53,21 @@ Vec3 next_direction(const ContactRegion& region, const InsideSummary& inside) no
   return region.depth_rel < direction_kept_rel ? follow_direction(region.d, inside) : region.d;
 }
 
+InsideSummary find_points(const FastModel& model, const Placement& at, double margin_m, RegionPoints& points,
+                          FastState& state) noexcept {
+  const CellRule& rule = model.formulas.cells;
+  if (!rule.cut) {
+    const InsideSummary inside =
+        model.detection.find_inside(*model.body, model.tool, at, margin_m, model.tool.count(), points);
+    if (inside.deepest_m > 0.0) return inside;
+  }
+  return model.detection.find_cells(*model.body, model.tool, at, rule, margin_m, points, state.cells);
+}
+
 bool find_one_region(const FastModel& model, const Motion& motion, FastState& state) noexcept {
   ContactRegion& region = state.regions[0];
   RegionPoints points = state.store.window();
-  const InsideSummary inside =
-      model.detection.find_inside(*model.body, model.tool, motion.at, 0.0, model.tool.count(), points);
+  const InsideSummary inside = find_points(model, motion.at, 0.0, points, state);
   const bool created = points.count > 0 && !region.active;
   if (points.count == 0) {
     if (region.active) region.clear();
@@ -77,14 +87,15 @@ bool find_one_region(const FastModel& model, const Motion& motion, FastState& st
 }
 
 StepStatus measure(const FastModel& model, const Motion& motion, ContactRegion& region, FastState& state) noexcept {
-  region.extent = model.detection.measure_depths(*model.body, motion.at.R_WT, region.d, region.points);
+  region.extent =
+      model.detection.measure_depths(*model.body, motion.at.R_WT, region.d, model.formulas.cells.cut, region.points);
   // Only the tool's back is inside: nothing pushes, but the region lives on with its direction.
   if (region.points.count == 0) return StepStatus::ok;
   region.depth_rel = region.extent.deepest_m / region.extent.thickness_m;
   region.origin = deformation_origin(*model.body, model.detection.exit_distance_m, region.d, region.extent);
   const bool held = limit_depths(depth_limit_rel * region.extent.thickness_m, region.points);
   state.lap(Stage::detection);
-  model.formulas.distribute_mass(motion.at.R_WT.transpose() * region.d, model.tool.spacing_m, region.points);
+  model.formulas.distribute_mass(motion.at.R_WT.transpose() * region.d, region.points);
   return held ? StepStatus::depth_limited : StepStatus::ok;
 }
 

@@ -25,6 +25,11 @@ struct Motion {
 /// A region's direction in a further tick.
 [[nodiscard]] scene::Vec3 next_direction(const ContactRegion& region, const InsideSummary& inside) noexcept;
 
+/// The points of the tool that are inside the rest surface. The published form looks at the samples and, where none is
+/// inside, at smaller cells; the corrected form at cells always.
+/// @param margin_m as in FindCells
+InsideSummary find_points(const FastModel&, const Placement&, double margin_m, RegionPoints&, FastState&) noexcept;
+
 /// Finds the points and the direction of the first region, which has all of the tool that is inside.
 /// @returns whether the region has come into being in this tick; state.region_count is 0 where nothing is inside
 bool find_one_region(const FastModel&, const Motion&, FastState&) noexcept;

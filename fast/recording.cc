@@ -14,8 +14,8 @@ using scene::Vec3;
 constexpr double rounding = 1.0 + 1e-6;
 
 /// Columns of RecordedTick::numbers, in that order.
-std::array<double**, 5> columns_of(RegionPoints& p) noexcept {
-  return {&p.x_T_m, &p.y_T_m, &p.z_T_m, &p.depth_m, &p.share};
+std::array<double**, 6> columns_of(RegionPoints& p) noexcept {
+  return {&p.x_T_m, &p.y_T_m, &p.z_T_m, &p.depth_m, &p.depth_spread_m, &p.share};
 }
 
 RecordedTick record(const ContactRegion& region, const Motion& motion, bool created, int instant) {
@@ -36,7 +36,8 @@ RecordedTick record(const ContactRegion& region, const Motion& motion, bool crea
 /// Whether a tool that may have several regions has one, whatever the constants.
 class OneRegion {
  public:
-  explicit OneRegion(const FastModel& model) : model_(model), scratch_(*model.clusters), was_(samples(), 0) {}
+  explicit OneRegion(const FastModel& model)
+      : model_(model), scratch_(*model.clusters, model.max_points()), was_(samples(), 0) {}
 
   /// Asks about the tick whose points, if any, are in the state's region, found but not measured.
   [[nodiscard]] bool holds(const Motion& motion, FastState& state) {

@@ -11,7 +11,9 @@ RegionLoad region_load(const DuffingLaw& law, const RegionPoints& points, double
   RegionLoad sum;
   for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
     const double depth_m = depth_scale * points.depth_m[i];
-    const double F_i = points.share[i] * law.force_n(depth_m);
+    const double spread_m = depth_scale * points.depth_spread_m[i];
+    // Exact for a cubic law over depths that vary evenly about their mean.
+    const double F_i = points.share[i] * 0.5 * (law.force_n(depth_m - spread_m) + law.force_n(depth_m + spread_m));
     sum.force_n += F_i;
     sum.center_T_m += F_i * points.p_T_m(i);
     sum.deepest_m = std::max(sum.deepest_m, depth_m);

@@ -171,11 +171,11 @@ StepStatus press_in_order(const FastModel& model, const Motion& motion, FastStat
 }  // namespace
 
 SeveralRegionsState::SeveralRegionsState(const FastModel& model)
-    : scratch(*model.clusters),
+    : scratch(*model.clusters, model.max_points()),
       tracker(model.tool.count(), clusters_per_region * model.max_regions, model.max_regions),
       clusters(clusters_per_region * capacity(model)),
       tracked(capacity(model)),
-      pull_back(model.tool.count()),
+      pull_back(model.max_points()),
       ends(model.skeleton),
       shapes(model.rest, *model.anchors, model.max_regions),
       stress_pa(capacity(model), std::vector<BeamStress>(model.skeleton.anchor_m.size())),
@@ -190,7 +190,7 @@ std::size_t SeveralRegionsState::memory_bytes() const noexcept {
 StepStatus press_several_regions(const FastModel& model, const Motion& motion, FastState& state) noexcept {
   SeveralRegionsState& several = *state.several;
   RegionPoints all = state.store.window();
-  model.detection.find_inside(*model.body, model.tool, motion.at, several.bulge_m, model.tool.count(), all);
+  find_points(model, motion.at, several.bulge_m, all, state);
   state.lap(Stage::detection);
   const ClusterCount found = cluster(*model.clusters, all, several.scratch, several.clusters);
   const Tracking tracking = several.tracker.track(all, {several.clusters.data(), static_cast<std::size_t>(found.count)},
@@ -235,7 +235,7 @@ OrderSpread order_spread(const FastModel& model, FastState& state) {
   for (TrackedRegion& region : several.tracked) region.was = 0;
   const auto press_again = [&] {
     RegionPoints all = state.store.window();
-    model.detection.find_inside(*model.body, model.tool, still.at, several.bulge_m, model.tool.count(), all);
+    find_points(model, still.at, several.bulge_m, all, state);
     cluster(*model.clusters, all, several.scratch, several.clusters);
     for (std::size_t k = 0; k < count; ++k) {
       const PointRange range = several.clusters[static_cast<std::size_t>(several.tracked[k].cluster)].points;

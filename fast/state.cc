@@ -39,7 +39,8 @@ void ContactRegion::clear() noexcept {
 }
 
 FastState::FastState(const FastModel& model)
-    : store(model.tool.count()),
+    : store(model.max_points()),
+      cells(model.tool.count()),
       probe(model.tool.count()),
       regions(static_cast<std::size_t>(model.max_regions), ContactRegion(model.skeleton.anchor_m.size())),
       field(model.rest),
@@ -53,8 +54,8 @@ bool FastState::in_contact() const noexcept {
 }
 
 std::size_t FastState::memory_bytes() const noexcept {
-  return sizeof(FastState) + (several ? several->memory_bytes() : 0) + store.memory_bytes() + probe.memory_bytes() +
-         field.memory_bytes() +
+  return sizeof(FastState) + (several ? several->memory_bytes() : 0) + store.memory_bytes() + cells.memory_bytes() +
+         probe.memory_bytes() + field.memory_bytes() +
          regions.size() * (sizeof(ContactRegion) + 2 * regions[0].ends.force_n.size() * sizeof(Vec3));
 }
 

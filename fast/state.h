@@ -65,6 +65,7 @@ struct FastState {
   ~FastState();
 
   PointStore store;
+  CellScratch cells;
   PointStore probe;                    ///< for looking at poses between two ticks
   std::vector<ContactRegion> regions;  ///< by creation; the first `region_count` are active
   int region_count = 0;

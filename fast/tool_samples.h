@@ -3,6 +3,7 @@
 // the surface makes that true for any tool.
 #pragma once
 
+#include "fast/surface_cells.h"
 #include "scene/scene.h"
 
 #include <cstdint>
@@ -13,11 +14,12 @@ namespace touchstone::fast {
 /// Samples in a leaf of the tree, at most.
 inline constexpr std::int32_t tool_leaf_size = 8;
 
-/// A ball around the samples [begin, end) in tool coordinates. Nodes stand in depth-first order: the first child of
-/// an inner node follows it, and `next` is the node to visit when this one's samples are done with.
+/// Balls around the samples [begin, end) in tool coordinates, and around their cells. Nodes stand in depth-first order:
+/// the first child of an inner node follows it, and `next` is the node to visit when this one's samples are done with.
 struct SampleBall {
   scene::Vec3 center_T_m;
-  double radius_m = 0.0;
+  double radius_m = 0.0;        ///< of the ball with the samples
+  double cells_radius_m = 0.0;  ///< of the one with their cells
   std::int32_t begin = 0, end = 0;
   std::int32_t next = 0;
   bool leaf = true;
@@ -28,22 +30,19 @@ struct SampleBall {
 struct ToolSamples {
   std::vector<double> x_T_m, y_T_m, z_T_m;
   std::vector<double> nx_T, ny_T, nz_T;
-  std::vector<double> area_m2;   ///< A_i; sums to the surface
-  double spacing_m = 0.0;        ///< sqrt(surface / count): r_0 of errata E6
-  std::vector<SampleBall> tree;  ///< root first
+  std::vector<double> area_m2;    ///< A_i; sums to the surface
+  std::vector<SurfaceCell> cell;  ///< of each sample; together they are the surface
+  CellGroups groups;              ///< of a fine mesh
+  double spacing_m = 0.0;         ///< sqrt(surface / count)
+  std::vector<SampleBall> tree;   ///< root first
 
   [[nodiscard]] int count() const noexcept { return static_cast<int>(x_T_m.size()); }
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };
 
-/// Samples of equal area on a ball-shaped tool.
-/// @param count at least 1
-[[nodiscard]] ToolSamples sample_tool(const scene::Sphere& tool, int count);
-
 /// Samples of any tool, each for nearly the same area, together for all of it. Their number is about `count` and at
 /// most twice that, but for the least a tool needs: four in each ring, one on each face or triangle that stands alone.
-/// - sphere: as above
-/// - capsule, cylinder: rings of evenly spaced points, at least two along each piece of the profile
+/// - sphere, capsule, cylinder: rings of evenly spaced points, at least two along each piece of the profile
 /// - box: a grid on every face
 /// - mesh: triangles are halved at their longest side until small enough; of a finer mesh, neighbouring triangles that
 ///   look the same way share a sample, at the one nearest their middle. Those of a convex mesh are shared out evenly:
