@@ -127,7 +127,8 @@ class CellFinder {
     summary_.add(rest.normal, -rest.signed_distance_m, area_m2);
     ++inside_;
     inside_m2_ += area_m2;
-    points_.set(points_.count++, p_W, p_T, cell.normal_T, area_m2, rest.signed_distance_m, rest.normal, cell.sample);
+    points_.set(points_.count++, p_W, p_T, cell.normal_T, area_m2, rest.signed_distance_m, rest.normal, cell.sample,
+                area_m2 == cell.area_m2 ? &cell : nullptr);
   }
 
   void put_outside(const SurfaceCell& cell, const Vec3& p_W, const Vec3& p_T, double area_m2,

@@ -61,17 +61,18 @@ double mean_inverse_distance_per_m(double r2_m2, double disc_radius_m) noexcept 
 
 namespace {
 
-/// Integral of 1 / r over a polygon in the plane, r from the origin [m]: a sum over its sides.
-double inverse_distance_integral_m(std::span<const Eigen::Vector2d> corner_m) noexcept {
-  double sum_m = 0.0;
+/// Mean of 1 / r over a polygon in the plane, r from the origin [1/m]: sums over its sides.
+double mean_inverse_distance_per_m(std::span<const Eigen::Vector2d> corner_m) noexcept {
+  double sum_m = 0.0, area_m2 = 0.0;
   for (std::size_t k = 0; k < corner_m.size(); ++k) {
     const Eigen::Vector2d &a = corner_m[k], &b = corner_m[k + 1 == corner_m.size() ? 0 : k + 1];
     const double twice_m2 = a.x() * b.y() - a.y() * b.x(), side_m = (b - a).norm(), both_m = a.norm() + b.norm();
+    area_m2 += 0.5 * twice_m2;
     // A side in line with the origin adds nothing.
     if (!(std::abs(twice_m2) > 1e-14 * both_m * both_m)) continue;
     sum_m += twice_m2 / side_m * std::log((both_m + side_m) / (both_m - side_m));
   }
-  return std::abs(sum_m);
+  return sum_m / area_m2;
 }
 
 }  // namespace
@@ -86,11 +87,11 @@ void distribute_mass_corrected(const Vec3& d_T, RegionPoints& points) noexcept {
     const double disc_radius_m = std::sqrt(projected_m2 / std::numbers::pi);
     const double r2_m2 = lever_arm2_m2(points, i, d_T);
     if (const SurfaceCell* cell = points.cell[i]; cell != nullptr && r2_m2 < near2 * projected_m2) {
-      std::array<Eigen::Vector2d, 4> corner_m;
-      const auto corners = static_cast<std::size_t>(cell->corners);
-      for (std::size_t k = 0; k < corners; ++k)
-        corner_m[k] = {cell->corner_T_m[k].dot(u_T), cell->corner_T_m[k].dot(v_T)};
-      points.share[i] = inverse_distance_integral_m({corner_m.data(), corners});
+      const Outline border = outline(*cell);
+      std::array<Eigen::Vector2d, 10> corner_m;
+      for (std::size_t k = 0; k < border.corners; ++k)
+        corner_m[k] = {border.corner_T_m[k].dot(u_T), border.corner_T_m[k].dot(v_T)};
+      points.share[i] = projected_m2 * mean_inverse_distance_per_m({corner_m.data(), border.corners});
     } else {
       points.share[i] = projected_m2 * mean_inverse_distance_per_m(r2_m2, disc_radius_m);
     }

@@ -123,6 +123,24 @@ SurfaceCell band_cell(const Band& band) noexcept {
   return cell;
 }
 
+Outline outline(const SurfaceCell& cell) noexcept {
+  Outline border;
+  const auto add = [&](const Vec3& corner_m) { border.corner_T_m[border.corners++] = corner_m; };
+  constexpr double wide = 0.2;
+  if (!cell.curved || cell.band.turn < wide) {
+    for (int k = 0; k < cell.corners; ++k) add(cell.corner_T_m[static_cast<std::size_t>(k)]);
+    return border;
+  }
+  const Band& band = cell.band;
+  std::array<Vector2d, 5> azimuth{band.start_azimuth, {}, {}, {}, band.end_azimuth};
+  azimuth[2] = (azimuth[0] + azimuth[4]).normalized();
+  azimuth[1] = (azimuth[0] + azimuth[2]).normalized();
+  azimuth[3] = (azimuth[2] + azimuth[4]).normalized();
+  for (std::size_t k = 0; k < azimuth.size(); ++k) add(turned(band, band.start_m, azimuth[k]));
+  for (std::size_t k = azimuth.size(); k-- > 0;) add(turned(band, band.end_m, azimuth[k]));
+  return border;
+}
+
 SurfaceCell CellGroups::cell(std::int32_t child) const noexcept {
   return child >= 0 ? nodes[static_cast<std::size_t>(child)].cell
                     : flat_cell(triangles_T_m[static_cast<std::size_t>(~child)]);

@@ -44,6 +44,13 @@ struct SurfaceCell {
 [[nodiscard]] SurfaceCell flat_cell(std::span<const scene::Vec3> corners_T_m) noexcept;
 [[nodiscard]] SurfaceCell band_cell(const Band& band) noexcept;
 
+/// The cell's border as a polygon that follows wide arcs closely, in order.
+struct Outline {
+  std::array<scene::Vec3, 10> corner_T_m;
+  std::size_t corners = 0;
+};
+[[nodiscard]] Outline outline(const SurfaceCell& cell) noexcept;
+
 /// Triangles of a fine mesh that share a cell, in a binary tree.
 struct CellGroups {
   struct Node {
