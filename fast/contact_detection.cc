@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <type_traits>
 
@@ -49,37 +50,53 @@ InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, co
   return summary;
 }
 
-/// Cuts a polygon about p with the rest surface: with its tangent plane at the closest point.
-/// @param rest of p
+/// A cell at its place, as the rest surface cuts it.
+struct PlacedCell {
+  const SurfaceCell& cell;
+  const Mat3& R_WT;
+  Vec3 p_W;           ///< its centre
+  RestDistance rest;  ///< of that
+};
+
+/// Cuts a polygon, tool frame about the cell's centre, with the rest surface: with its tangent plane at the closest
+/// point, which has all of a convex body on one side.
 template <class Body>
-void cut(const Body&, const Vec3& /*p_W*/, const RestDistance& rest, CutPolygon& polygon) noexcept {
-  polygon.keep_below(rest.normal, rest.signed_distance_m);
+void cut(const Body&, const PlacedCell& at, CutPolygon& polygon) noexcept {
+  polygon.keep_below(at.R_WT.transpose() * at.rest.normal, at.rest.signed_distance_m);
 }
 
 /// Faces that meet at edges.
-void cut(const scene::Box& box, const Vec3& p_W, const RestDistance& /*rest*/, CutPolygon& polygon) noexcept {
-  const Vec3 local = p_W - box.center_m();
+void cut(const scene::Box& box, const PlacedCell& at, CutPolygon& polygon) noexcept {
+  const Vec3 local = at.p_W - box.center_m();
   for (int axis = 0; axis < 3; ++axis) {
-    polygon.keep_below(Vec3::Unit(axis), local[axis] - box.half_m()[axis]);
-    polygon.keep_below(-Vec3::Unit(axis), -local[axis] - box.half_m()[axis]);
+    const double above_m = std::abs(local[axis]) - box.half_m()[axis];
+    if (above_m <= -at.cell.radius_m) continue;
+    polygon.keep_below(std::copysign(1.0, local[axis]) * at.R_WT.row(axis).transpose(), above_m);
+    const double beneath_m = above_m + 2.0 * std::abs(local[axis]);
+    if (-2.0 * box.half_m()[axis] - above_m > -at.cell.radius_m)
+      polygon.keep_below(-std::copysign(1.0, local[axis]) * at.R_WT.row(axis).transpose(), -beneath_m);
   }
 }
 
 /// Straight pieces of the profile, of which several may cut a cell, and the tangent plane for an arc.
-void cut(const scene::Revolution& body, const Vec3& p_W, const RestDistance& rest, CutPolygon& polygon) noexcept {
-  polygon.keep_below(rest.normal, rest.signed_distance_m);
+void cut(const scene::Revolution& body, const PlacedCell& at, CutPolygon& polygon) noexcept {
+  polygon.keep_below(at.R_WT.transpose() * at.rest.normal, at.rest.signed_distance_m);
   for (int index = 0; index < body.piece_count(); ++index) {
     const scene::RevolutionPiece& piece = body.piece(index);
     if (!piece.straight()) continue;
     const Eigen::Vector2d along = (piece.end_m - piece.start_m) / piece.length_m;
     const Eigen::Vector2d normal(along.y(), -along.x());
+    const auto level_of = [&](const Vec3& p_W) {
+      const Vec3 local = p_W - body.offset_m();
+      return normal.dot(Eigen::Vector2d(std::sqrt(local.x() * local.x() + local.y() * local.y()), local.z()) -
+                        piece.start_m);
+    };
+    if (level_of(at.p_W) <= -at.cell.radius_m) continue;
     const auto corners = polygon.corners();
     std::array<double, CutPolygon::max_corners> level{};
     bool cuts = false;
     for (std::size_t k = 0; k < corners.size(); ++k) {
-      const Vec3 local = p_W + corners[k] - body.offset_m();
-      const Eigen::Vector2d rz_m(std::sqrt(local.x() * local.x() + local.y() * local.y()), local.z());
-      level[k] = normal.dot(rz_m - piece.start_m);
+      level[k] = level_of(at.p_W + at.R_WT * corners[k]);
       cuts = cuts || level[k] >= 0.0;
     }
     if (cuts) polygon.keep_below({level.data(), corners.size()});
@@ -96,24 +113,31 @@ class CellFinder {
     points.count = 0;
   }
 
-  /// Whether the cell is near the body, so that its halves need a look where this round is too coarse.
+  /// Whether some of the cell may be inside, so that its halves need a look where this round is too coarse.
   bool add(const SurfaceCell& cell) noexcept {
     const Vec3 p_W = at_.R_WT * cell.center_T_m + at_.origin_W_m;
     const double reach_m = std::max(cell.radius_m, margin_m_);
     if (surely_beyond(body_, p_W, reach_m)) return false;
-    const RestDistance rest = rest_distance(body_, p_W);
-    const double distance_m = rest.signed_distance_m;
+    const PlacedCell here{cell, at_.R_WT, p_W, rest_distance(body_, p_W)};
+    const double distance_m = here.rest.signed_distance_m;
     if (!(distance_m < reach_m)) return false;
-    if (distance_m <= -cell.radius_m || !rule_.cut) {
-      if (distance_m < 0.0) {
-        put_inside(cell, p_W, cell.center_T_m, cell.area_m2, rest);
-      } else {
-        put_outside(cell, p_W, cell.center_T_m, cell.area_m2, rest);
-      }
-    } else {
-      add_cut(cell, p_W, rest);
+    if (distance_m <= -cell.radius_m) {
+      put_inside(here, Vec3::Zero(), cell.area_m2);
+      return true;
     }
-    return distance_m < cell.radius_m;
+    const Vec3 normal_T = at_.R_WT.transpose() * here.rest.normal;
+    double lowest_m = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < cell.corners; ++k)
+      lowest_m = std::min(lowest_m, distance_m + normal_T.dot(cell.corner_m[static_cast<std::size_t>(k)]));
+    const bool near = lowest_m - cell.bulge_m < 0.0;
+    if (rule_.cut && lowest_m < 0.0) {
+      add_cut(here);
+    } else if (distance_m < 0.0) {
+      put_inside(here, Vec3::Zero(), cell.area_m2);
+    } else {
+      put_outside(here, Vec3::Zero(), cell.area_m2);
+    }
+    return near;
   }
 
   [[nodiscard]] bool fine_enough() const noexcept {
@@ -122,47 +146,50 @@ class CellFinder {
   [[nodiscard]] const InsideSummary& summary() const noexcept { return summary_; }
 
  private:
-  void put_inside(const SurfaceCell& cell, const Vec3& p_W, const Vec3& p_T, double area_m2,
-                  const RestDistance& rest) noexcept {
+  /// @param off_m of the part's middle from the cell's centre, tool frame
+  void put_inside(const PlacedCell& here, const Vec3& off_m, double area_m2) noexcept {
+    const SurfaceCell& cell = here.cell;
+    const bool whole = area_m2 == cell.area_m2;
+    RestDistance rest = here.rest;
+    Vec3 p_W = here.p_W;
+    if (!whole) {
+      p_W += at_.R_WT * off_m;
+      rest = rest_distance(body_, p_W);
+      // A curved surface may pass beneath the middle of the part under its tangent plane.
+      rest.signed_distance_m = std::min(rest.signed_distance_m, -std::numeric_limits<double>::min());
+      rim_m2_ += area_m2;
+    }
     summary_.add(rest.normal, -rest.signed_distance_m, area_m2);
     ++inside_;
     inside_m2_ += area_m2;
-    points_.set(points_.count++, p_W, p_T, cell.normal_T, area_m2, rest.signed_distance_m, rest.normal, cell.sample,
-                area_m2 == cell.area_m2 ? &cell : nullptr);
+    points_.set(points_.count++, p_W, cell.center_T_m + off_m, cell.normal_T, area_m2, rest.signed_distance_m,
+                rest.normal, cell.sample, whole ? &cell : nullptr);
   }
 
-  void put_outside(const SurfaceCell& cell, const Vec3& p_W, const Vec3& p_T, double area_m2,
-                   const RestDistance& rest) noexcept {
+  void put_outside(const PlacedCell& here, const Vec3& off_m, double area_m2) noexcept {
+    if (!(margin_m_ > 0.0)) return;
+    const Vec3 p_W = here.p_W + at_.R_WT * off_m;
+    const RestDistance rest = rest_distance(body_, p_W);
     if (!(rest.signed_distance_m < margin_m_)) return;
-    points_.set(points_.count++, p_W, p_T, cell.normal_T, area_m2, std::max(0.0, rest.signed_distance_m), rest.normal,
-                cell.sample);
+    points_.set(points_.count++, p_W, here.cell.center_T_m + off_m, here.cell.normal_T, area_m2,
+                std::max(0.0, rest.signed_distance_m), rest.normal, here.cell.sample);
   }
 
-  void add_cut(const SurfaceCell& cell, const Vec3& p_W, const RestDistance& rest) noexcept {
-    std::array<Vec3, 4> corner_m;
-    const auto corners = static_cast<std::size_t>(cell.corners);
-    for (std::size_t k = 0; k < corners; ++k) corner_m[k] = at_.R_WT * (cell.corner_T_m[k] - cell.center_T_m);
-    CutPolygon polygon({corner_m.data(), corners});
-    const CutPolygon::Moments whole = polygon.moments();
-    cut(body_, p_W, rest, polygon);
+  void add_cut(const PlacedCell& here) noexcept {
+    const SurfaceCell& cell = here.cell;
+    CutPolygon polygon({cell.corner_m.data(), static_cast<std::size_t>(cell.corners)});
+    cut(body_, here, polygon);
+    if (!polygon.is_cut() && here.rest.signed_distance_m < 0.0) return put_inside(here, Vec3::Zero(), cell.area_m2);
     const CutPolygon::Moments kept = polygon.moments();
+    const CutPolygon::Moments whole =
+        CutPolygon({cell.corner_m.data(), static_cast<std::size_t>(cell.corners)}).moments();
     const double share = whole.area_m2 > 0.0 ? kept.area_m2 / whole.area_m2 : 0.0;
-    if (share >= 1.0 - 1e-9) {
-      if (rest.signed_distance_m < 0.0) return put_inside(cell, p_W, cell.center_T_m, cell.area_m2, rest);
-    } else if (share <= 0.0) {
-      return put_outside(cell, p_W, cell.center_T_m, cell.area_m2, rest);
-    }
-    const auto place_T = [&](const Vec3& off_W_m) -> Vec3 { return cell.center_T_m + at_.R_WT.transpose() * off_W_m; };
+    if (!(share > 0.0)) return put_outside(here, Vec3::Zero(), cell.area_m2);
+    // A part of nearly all is told from the whole.
+    const double part = std::min(share, 1.0 - 1e-9);
     const Vec3 off_m = kept.center_m - whole.center_m;
-    RestDistance there = rest_distance(body_, p_W + off_m);
-    // A curved surface may pass beneath the middle of the part under its tangent plane.
-    there.signed_distance_m = std::min(there.signed_distance_m, -1e-300);
-    put_inside(cell, p_W + off_m, place_T(off_m), share * cell.area_m2, there);
-    rim_m2_ += share * cell.area_m2;
-    if (margin_m_ > 0.0 && share < 1.0 - 1e-9) {
-      const Vec3 out_m = -share / (1.0 - share) * off_m;
-      put_outside(cell, p_W + out_m, place_T(out_m), (1.0 - share) * cell.area_m2, rest_distance(body_, p_W + out_m));
-    }
+    put_inside(here, off_m, part * cell.area_m2);
+    put_outside(here, -part / (1.0 - part) * off_m, (1.0 - part) * cell.area_m2);
   }
 
   const Body& body_;

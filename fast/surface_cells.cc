@@ -42,8 +42,7 @@ MeridianMoments meridian_moments(const Band& band) noexcept {
 double farthest_m(const SurfaceCell& cell) noexcept {
   double farthest2_m2 = 0.0;
   for (int k = 0; k < cell.corners; ++k)
-    farthest2_m2 =
-        std::max(farthest2_m2, (cell.corner_T_m[static_cast<std::size_t>(k)] - cell.center_T_m).squaredNorm());
+    farthest2_m2 = std::max(farthest2_m2, cell.corner_m[static_cast<std::size_t>(k)].squaredNorm());
   return std::sqrt(farthest2_m2);
 }
 
@@ -70,7 +69,9 @@ std::array<SurfaceCell, 2> band_halves(const SurfaceCell& cell) noexcept {
 }
 
 std::array<SurfaceCell, 2> flat_halves(const SurfaceCell& cell) noexcept {
-  const auto corner = [&](int k) -> const Vec3& { return cell.corner_T_m[static_cast<std::size_t>(k % cell.corners)]; };
+  const auto corner = [&](int k) -> Vec3 {
+    return cell.center_T_m + cell.corner_m[static_cast<std::size_t>(k % cell.corners)];
+  };
   int longest = 0;
   double length2_m2 = -1.0;
   for (int side = 0; side < cell.corners; ++side) {
@@ -80,10 +81,10 @@ std::array<SurfaceCell, 2> flat_halves(const SurfaceCell& cell) noexcept {
     length2_m2 = here_m2;
     longest = side;
   }
-  const Vec3 &a = corner(longest), &b = corner(longest + 1), &c = corner(longest + 2);
+  const Vec3 a = corner(longest), b = corner(longest + 1), c = corner(longest + 2);
   const Vec3 middle = 0.5 * (a + b);
   if (cell.corners == 3) return {flat_cell(std::array{a, middle, c}), flat_cell(std::array{middle, b, c})};
-  const Vec3& d = corner(longest + 3);
+  const Vec3 d = corner(longest + 3);
   const Vec3 opposite = 0.5 * (c + d);
   return {flat_cell(std::array{a, middle, opposite, d}), flat_cell(std::array{middle, b, c, opposite})};
 }
@@ -93,10 +94,10 @@ std::array<SurfaceCell, 2> flat_halves(const SurfaceCell& cell) noexcept {
 SurfaceCell flat_cell(std::span<const Vec3> corners_T_m) noexcept {
   SurfaceCell cell;
   cell.corners = static_cast<int>(corners_T_m.size());
-  std::copy(corners_T_m.begin(), corners_T_m.end(), cell.corner_T_m.begin());
   // Parallelograms and triangles: the mean of the corners is that of the surface.
   cell.center_T_m.setZero();
   for (const Vec3& corner : corners_T_m) cell.center_T_m += corner / cell.corners;
+  for (std::size_t k = 0; k < corners_T_m.size(); ++k) cell.corner_m[k] = corners_T_m[k] - cell.center_T_m;
   const Vec3 across = (corners_T_m[1] - corners_T_m[0]).cross(corners_T_m[2] - corners_T_m[0]);
   const double length_m2 = across.norm();
   cell.area_m2 = cell.corners == 3 ? 0.5 * length_m2 : length_m2;
@@ -104,6 +105,13 @@ SurfaceCell flat_cell(std::span<const Vec3> corners_T_m) noexcept {
   cell.radius_m = farthest_m(cell);
   return cell;
 }
+
+namespace {
+
+/// How far an arc's middle stands off its chord, at most.
+double cell_sagitta_m(const Band& band) noexcept { return 0.125 * band.arc_radius_m * band.arc_angle * band.arc_angle; }
+
+}  // namespace
 
 SurfaceCell band_cell(const Band& band) noexcept {
   SurfaceCell cell;
@@ -116,10 +124,13 @@ SurfaceCell band_cell(const Band& band) noexcept {
   cell.center_T_m = turned(band, {r_m, z_m}, azimuth);
   const Vector2d normal = (band.start_normal + band.end_normal).normalized();
   cell.normal_T = Vec3(normal.x() * azimuth.x(), normal.x() * azimuth.y(), normal.y());
-  cell.corner_T_m = {turned(band, band.start_m, band.start_azimuth), turned(band, band.start_m, band.end_azimuth),
-                     turned(band, band.end_m, band.end_azimuth), turned(band, band.end_m, band.start_azimuth)};
-  // Between its corners it bulges.
-  cell.radius_m = 1.1 * farthest_m(cell);
+  cell.corner_m = {turned(band, band.start_m, band.start_azimuth), turned(band, band.start_m, band.end_azimuth),
+                   turned(band, band.end_m, band.end_azimuth), turned(band, band.end_m, band.start_azimuth)};
+  for (Vec3& corner_m : cell.corner_m) corner_m -= cell.center_T_m;
+  // Sagittas around and along, each at most an eighth of the angle squared.
+  const double r_m_most = std::max(band.start_m.x(), band.end_m.x());
+  cell.bulge_m = 0.125 * ((r_m_most + cell_sagitta_m(band)) * band.turn * band.turn) + cell_sagitta_m(band);
+  cell.radius_m = farthest_m(cell) + cell.bulge_m;
   return cell;
 }
 
@@ -128,7 +139,7 @@ Outline outline(const SurfaceCell& cell) noexcept {
   const auto add = [&](const Vec3& corner_m) { border.corner_T_m[border.corners++] = corner_m; };
   constexpr double wide = 0.2;
   if (!cell.curved || cell.band.turn < wide) {
-    for (int k = 0; k < cell.corners; ++k) add(cell.corner_T_m[static_cast<std::size_t>(k)]);
+    for (int k = 0; k < cell.corners; ++k) add(cell.center_T_m + cell.corner_m[static_cast<std::size_t>(k)]);
     return border;
   }
   const Band& band = cell.band;
@@ -169,16 +180,24 @@ SurfaceCell CellGroups::around(std::span<const std::int32_t> triangles) const {
       farthest2_m2 = std::max(farthest2_m2, off_m.squaredNorm());
     };
     add(part.center_T_m, 0.75 * part.area_m2);
-    for (int k = 0; k < 3; ++k) add(part.corner_T_m[static_cast<std::size_t>(k)], part.area_m2 / 12.0);
+    for (int k = 0; k < 3; ++k) add(part.center_T_m + part.corner_m[static_cast<std::size_t>(k)], part.area_m2 / 12.0);
   }
   const Eigen::SelfAdjointEigenSolver<scene::Mat3> axes(spread);
   const Vec3 u = axes.eigenvectors().col(2), v = cell.normal_T.cross(u).normalized();
   const double length2 = std::max(axes.eigenvalues()[2], 0.0), width2 = std::max(axes.eigenvalues()[1], 0.0);
   const double ratio = width2 > 1e-12 * length2 ? std::sqrt(length2 / width2) : 1e6;
   const double half_u_m = 0.5 * std::sqrt(cell.area_m2 * ratio), half_v_m = 0.5 * std::sqrt(cell.area_m2 / ratio);
-  cell.corner_T_m = {cell.center_T_m - half_u_m * u - half_v_m * v, cell.center_T_m + half_u_m * u - half_v_m * v,
-                     cell.center_T_m + half_u_m * u + half_v_m * v, cell.center_T_m - half_u_m * u + half_v_m * v};
+  cell.corner_m = {-half_u_m * u - half_v_m * v, half_u_m * u - half_v_m * v, half_u_m * u + half_v_m * v,
+                   -half_u_m * u + half_v_m * v};
   cell.radius_m = std::max(std::sqrt(farthest2_m2), farthest_m(cell));
+  for (const std::int32_t i : triangles) {
+    for (const Vec3& corner_T_m : triangles_T_m[static_cast<std::size_t>(i)]) {
+      const Vec3 off_m = corner_T_m - cell.center_T_m;
+      const Vec3 beyond_m(std::max(0.0, std::abs(off_m.dot(u)) - half_u_m),
+                          std::max(0.0, std::abs(off_m.dot(v)) - half_v_m), off_m.dot(cell.normal_T));
+      cell.bulge_m = std::max(cell.bulge_m, beyond_m.norm());
+    }
+  }
   return cell;
 }
 
@@ -204,6 +223,7 @@ CutPolygon::CutPolygon(std::span<const Vec3> corners_m) noexcept : count_(static
 
 void CutPolygon::keep_below(std::span<const double> level) noexcept {
   std::array<Vec3, max_corners> kept;
+  cut_ = true;
   std::size_t count = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(count_); ++k) {
     const std::size_t next = k + 1 == static_cast<std::size_t>(count_) ? 0 : k + 1;

@@ -31,12 +31,13 @@ struct SurfaceCell {
   scene::Vec3 center_T_m;  ///< mean of its surface, so a little below a curved one
   scene::Vec3 normal_T;    ///< outward, mean
   double area_m2 = 0.0;
-  double radius_m = 0.0;                  ///< about the centre, of a ball with all of it
-  std::array<scene::Vec3, 4> corner_T_m;  ///< in order
-  int corners = 4;                        ///< 3 or 4
-  std::int32_t sample = 0;                ///< of ToolSamples, whose cell this is or was cut from
-  std::int32_t group = -1;                ///< of CellGroups: neighbouring triangles of a fine mesh
-  bool curved = false;                    ///< `band` says how; without group: flat
+  double radius_m = 0.0;                ///< about the centre, of a ball with all of it
+  std::array<scene::Vec3, 4> corner_m;  ///< from the centre, in order
+  double bulge_m = 0.0;                 ///< no point of it is further from the polygon of its corners
+  int corners = 4;                      ///< 3 or 4
+  std::int32_t sample = 0;              ///< of ToolSamples, whose cell this is or was cut from
+  std::int32_t group = -1;              ///< of CellGroups: neighbouring triangles of a fine mesh
+  bool curved = false;                  ///< `band` says how; without group: flat
   Band band;
 };
 
@@ -82,6 +83,8 @@ class CutPolygon {
   [[nodiscard]] std::span<const scene::Vec3> corners() const noexcept {
     return {corner_m_.data(), static_cast<std::size_t>(count_)};
   }
+  /// Something was taken away.
+  [[nodiscard]] bool is_cut() const noexcept { return cut_; }
   struct Moments {
     double area_m2 = 0.0;
     scene::Vec3 center_m = scene::Vec3::Zero();
@@ -91,6 +94,7 @@ class CutPolygon {
  private:
   std::array<scene::Vec3, max_corners> corner_m_;
   int count_ = 0;
+  bool cut_ = false;
 };
 
 }  // namespace touchstone::fast

@@ -211,7 +211,8 @@ class Grouping {
     // By the axis they look along first: the two sides of a thin sheet never share a sample.
     std::array<std::vector<std::size_t>, 6> looking;
     for (const SurfaceCell& cell : fine.cells)
-      coarse_.groups.triangles_T_m.push_back({cell.corner_T_m[0], cell.corner_T_m[1], cell.corner_T_m[2]});
+      coarse_.groups.triangles_T_m.push_back(
+          {cell.center_T_m + cell.corner_m[0], cell.center_T_m + cell.corner_m[1], cell.center_T_m + cell.corner_m[2]});
     for (std::size_t i = 0; i < fine.points_m.size(); ++i) {
       std::size_t axis = 0;
       fine.normals[i].cwiseAbs().maxCoeff(&axis);
