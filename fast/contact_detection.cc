@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <type_traits>
 
 namespace touchstone::fast {
@@ -15,9 +16,6 @@ namespace {
 
 using scene::Mat3;
 using scene::Vec3;
-
-/// A cell of a thousand times the body's size is then a millionth of it.
-constexpr int most_halvings = 60;
 
 template <class Body>
 InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, const Placement& at, double margin_m,
@@ -114,30 +112,29 @@ class CellFinder {
   }
 
   /// Whether some of the cell may be inside, so that its halves need a look where this round is too coarse.
+  [[nodiscard]] bool is_near(const SurfaceCell& cell) const noexcept {
+    const std::optional<PlacedCell> here = place(cell, cell.radius_m);
+    return here && (here->rest.signed_distance_m <= -cell.radius_m || lowest_m(*here) < cell.bulge_m);
+  }
+
+  /// The same, and takes what is inside of the cell.
   bool add(const SurfaceCell& cell) noexcept {
-    const Vec3 p_W = at_.R_WT * cell.center_T_m + at_.origin_W_m;
-    const double reach_m = std::max(cell.radius_m, margin_m_);
-    if (surely_beyond(body_, p_W, reach_m)) return false;
-    const PlacedCell here{cell, at_.R_WT, p_W, rest_distance(body_, p_W)};
-    const double distance_m = here.rest.signed_distance_m;
-    if (!(distance_m < reach_m)) return false;
+    const std::optional<PlacedCell> here = place(cell, std::max(cell.radius_m, margin_m_));
+    if (!here) return false;
+    const double distance_m = here->rest.signed_distance_m;
     if (distance_m <= -cell.radius_m) {
-      put_inside(here, Vec3::Zero(), cell.area_m2);
+      put_inside(*here, Vec3::Zero(), cell.area_m2);
       return true;
     }
-    const Vec3 normal_T = at_.R_WT.transpose() * here.rest.normal;
-    double lowest_m = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < cell.corners; ++k)
-      lowest_m = std::min(lowest_m, distance_m + normal_T.dot(cell.corner_m[static_cast<std::size_t>(k)]));
-    const bool near = lowest_m - cell.bulge_m < 0.0;
-    if (rule_.cut && lowest_m < 0.0) {
-      add_cut(here);
+    const double lowest = lowest_m(*here);
+    if (rule_.cut && lowest < 0.0) {
+      add_cut(*here);
     } else if (distance_m < 0.0) {
-      put_inside(here, Vec3::Zero(), cell.area_m2);
+      put_inside(*here, Vec3::Zero(), cell.area_m2);
     } else {
-      put_outside(here, Vec3::Zero(), cell.area_m2);
+      put_outside(*here, Vec3::Zero(), cell.area_m2);
     }
-    return near;
+    return lowest < cell.bulge_m;
   }
 
   [[nodiscard]] bool fine_enough() const noexcept {
@@ -146,6 +143,24 @@ class CellFinder {
   [[nodiscard]] const InsideSummary& summary() const noexcept { return summary_; }
 
  private:
+  /// Nothing if the cell's centre is further out than that.
+  [[nodiscard]] std::optional<PlacedCell> place(const SurfaceCell& cell, double reach_m) const noexcept {
+    const Vec3 p_W = at_.R_WT * cell.center_T_m + at_.origin_W_m;
+    if (surely_beyond(body_, p_W, reach_m)) return std::nullopt;
+    const RestDistance rest = rest_distance(body_, p_W);
+    if (!(rest.signed_distance_m < reach_m)) return std::nullopt;
+    return PlacedCell{cell, at_.R_WT, p_W, rest};
+  }
+
+  /// Signed distance of the cell's lowest corner from the tangent plane of the rest surface.
+  [[nodiscard]] double lowest_m(const PlacedCell& here) const noexcept {
+    const Vec3 normal_T = at_.R_WT.transpose() * here.rest.normal;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < here.cell.corners; ++k)
+      lowest = std::min(lowest, normal_T.dot(here.cell.corner_m[static_cast<std::size_t>(k)]));
+    return here.rest.signed_distance_m + lowest;
+  }
+
   /// @param off_m of the part's middle from the cell's centre, tool frame
   void put_inside(const PlacedCell& here, const Vec3& off_m, double area_m2) noexcept {
     const SurfaceCell& cell = here.cell;
@@ -224,24 +239,30 @@ InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, con
   }
   if (found.fine_enough() || near.empty()) return found.summary();
 
-  // The points hold on to the cells of the last round.
-  const auto halve = [&](const SurfaceCell* cells, std::vector<SurfaceCell>& into) {
-    std::size_t count = 0;
-    for (const std::int32_t i : near)
-      for (const SurfaceCell& half : halves(cells[i], tool.groups)) into[count++] = half;
-    return count;
-  };
-  if (2 * near.size() > scratch.now.size()) return found.summary();
-  std::size_t count = halve(tool.cell.data(), scratch.now);
-  for (int round = 0;; ++round) {
+  scratch.begin();
+  scratch.now.clear();
+  for (const std::int32_t i : near) {
+    const std::int32_t first = scratch.halves_of_sample(tool, i);
+    scratch.now.insert(scratch.now.end(), {first, first + 1});
+    if (scratch.now.size() > max_cells / 2) return found.summary();
+  }
+  for (std::size_t looked_at = scratch.now.size();;) {
     CellFinder<Body> finer(body, at, rule, margin_m, points);
     near.clear();
-    for (std::size_t k = 0; k < count; ++k)
-      if (finer.add(scratch.now[k])) near.push_back(static_cast<std::int32_t>(k));
-    if (finer.fine_enough() || near.empty() || 2 * near.size() > scratch.now.size() || round == most_halvings)
-      return finer.summary();
-    count = halve(scratch.now.data(), scratch.next);
-    std::swap(scratch.now, scratch.next);
+    // Too few cells to be fine enough: which of them are near is all there is to know.
+    const bool last = looked_at + 2 * scratch.now.size() > max_cells;
+    const bool coarse = scratch.now.size() < static_cast<std::size_t>(rule.points) && !last;
+    for (const std::int32_t k : scratch.now) {
+      const SurfaceCell& cell = scratch.half(k);
+      if (coarse ? finer.is_near(cell) : finer.add(cell)) near.push_back(k);
+    }
+    if (last || near.empty() || (!coarse && finer.fine_enough())) return finer.summary();
+    scratch.now.clear();
+    for (const std::int32_t k : near) {
+      const std::int32_t first = scratch.halves_of_half(tool, k);
+      scratch.now.insert(scratch.now.end(), {first, first + 1});
+    }
+    looked_at += scratch.now.size();
   }
 }
 
@@ -328,6 +349,9 @@ namespace {
 
 constexpr int columns = 17;  // of doubles
 
+/// Columns that lie a power of two apart would share a few lines of the cache.
+std::size_t stride(std::size_t capacity) noexcept { return (capacity / 8 | 1) * 8 + 16; }
+
 std::array<double**, columns> columns_of(RegionPoints& p) noexcept {
   return {&p.x_W_m,   &p.y_W_m,     &p.z_W_m,   &p.x_T_m,          &p.y_T_m,     &p.z_T_m,
           &p.nx_T,    &p.ny_T,      &p.nz_T,    &p.rest_nx_W,      &p.rest_ny_W, &p.rest_nz_W,
@@ -370,7 +394,7 @@ RegionPoints RegionPoints::slice(int begin, int size) const noexcept {
 }
 
 PointStore::PointStore(int capacity)
-    : numbers_(columns * static_cast<std::size_t>(capacity)),
+    : numbers_(columns * stride(static_cast<std::size_t>(capacity))),
       cells_(static_cast<std::size_t>(capacity)),
       samples_(static_cast<std::size_t>(capacity)) {}
 
@@ -379,19 +403,49 @@ RegionPoints PointStore::window() noexcept {
   double* next = numbers_.data();
   for (double** column : columns_of(points)) {
     *column = next;
-    next += samples_.size();
+    next += stride(samples_.size());
   }
   points.cell = cells_.data();
   points.sample = samples_.data();
   return points;
 }
 
-CellScratch::CellScratch(int samples) : now(max_cells), next(max_cells) {
+CellScratch::CellScratch(int samples)
+    : halves_(2 * max_cells), of_half_(halves_.size(), -1), of_sample_(static_cast<std::size_t>(samples), -1) {
+  now.reserve(max_cells);
   near.reserve(static_cast<std::size_t>(std::max(samples, max_cells)));
 }
 
+void CellScratch::begin() noexcept {
+  if (used_ + max_cells <= halves_.size()) return;
+  std::fill(of_sample_.begin(), of_sample_.end(), -1);
+  used_ = 0;
+}
+
+std::int32_t CellScratch::halves_of(const ToolSamples& tool, const SurfaceCell& cell, std::int32_t& first) noexcept {
+  if (first < 0) {
+    first = static_cast<std::int32_t>(used_);
+    for (const SurfaceCell& half : fast::halves(cell, tool.groups)) {
+      of_half_[used_] = -1;
+      halves_[used_++] = half;
+    }
+  }
+  return first;
+}
+
+std::int32_t CellScratch::halves_of_sample(const ToolSamples& tool, std::int32_t sample) noexcept {
+  const auto i = static_cast<std::size_t>(sample);
+  return halves_of(tool, tool.cell[i], of_sample_[i]);
+}
+
+std::int32_t CellScratch::halves_of_half(const ToolSamples& tool, std::int32_t half) noexcept {
+  const auto i = static_cast<std::size_t>(half);
+  return halves_of(tool, halves_[i], of_half_[i]);
+}
+
 std::size_t CellScratch::memory_bytes() const noexcept {
-  return (now.size() + next.size()) * sizeof(SurfaceCell) + near.capacity() * sizeof(std::int32_t);
+  return halves_.size() * (sizeof(SurfaceCell) + sizeof(std::int32_t)) +
+         (of_sample_.size() + now.capacity() + near.capacity()) * sizeof(std::int32_t);
 }
 
 Detection detection_for(scene::BodyShape shape) noexcept {

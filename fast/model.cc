@@ -6,7 +6,7 @@ namespace {
 /// As the paper has it, a sample is inside or not.
 constexpr CellRule published_cells{.cut = false, .points = 1, .rim_share = 1.0};
 /// The force of the shipped tools is then within 1 % of its limit, see CellsConverge.
-constexpr CellRule corrected_cells{.cut = true, .points = 32, .rim_share = 0.2};
+constexpr CellRule corrected_cells{.cut = true, .points = 100, .rim_share = 0.25};
 
 Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
   const scene::FastSettings& fast = scene.fast;

@@ -60,7 +60,7 @@ struct FastModel {
   int max_regions = 1;                          ///< capacity; 1 for a convex tool
 
   /// Points of a tick, at most: two for each cell, its part inside and, for several regions, the one outside.
-  [[nodiscard]] int max_points() const noexcept { return 2 * std::max(tool.count(), max_cells); }
+  [[nodiscard]] int max_points() const noexcept { return 2 * std::max(tool.count(), max_cells / 2); }
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };
 
