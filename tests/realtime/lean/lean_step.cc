@@ -25,15 +25,15 @@ void bare_tick(const FastModel& model, const scene::Pose& pose, FastState& state
   ContactRegion& region = state.regions[0];
   fast::RegionPoints points = state.store.window();
   const fast::InsideSummary inside =
-      model.detection.find_inside(*model.body, model.tool, at, 0.0, model.tool.count(), points);
+      model.detection.find_cells(*model.body, model.tool, at, model.formulas.cells, 0.0, points, state.cells);
   if (points.count == 0) return;
   region.d = region.active ? fast::follow_direction(region.d, inside) : fast::direction_from(inside, region.d);
   region.active = true;
   region.points = points;
-  region.extent = model.detection.measure_depths(*model.body, at.R_WT, region.d, region.points);
+  region.extent = model.detection.measure_depths(*model.body, at.R_WT, region.d, true, region.points);
   region.origin = fast::deformation_origin(*model.body, model.detection.exit_distance_m, region.d, region.extent);
   fast::limit_depths(fast::depth_limit_rel * region.extent.thickness_m, region.points);
-  model.formulas.distribute_mass(at.R_WT.transpose() * region.d, model.tool.spacing_m, region.points);
+  model.formulas.distribute_mass(at.R_WT.transpose() * region.d, region.points);
   const fast::DuffingLaw law = model.law.at(fast::contact_radius_m(region.extent.area_m2));
   region.force = fast::region_force(law, at.R_WT, region.d, region.points);
   region.displacement_m = law.depth_m(region.force.magnitude_n) * region.d;

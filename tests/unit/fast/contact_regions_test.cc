@@ -85,7 +85,7 @@ TEST(Clusters, AreThoseOfEveryPairLookedAt) {
     const ToolSamples tool = samples_at(points_m);
     for (const double r_th_m : {1e-9, 2e-4, 5e-4, 1e-3, 1.25e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 5e-3, 0.01, 0.05}) {
       const ClusterGrid grid = cluster_grid(tool, r_th_m);
-      ClusterScratch scratch(grid);
+      ClusterScratch scratch(grid, tool.count());
       test::OwnedPoints points(tool.count());
       std::vector<Cluster> out(600);
       for (const double part : {0.02, 0.1, 0.3, 1.0}) {
@@ -127,7 +127,7 @@ TEST(Clusters, BeyondTheCapacityLoseTheLeastArea) {
   const ToolSamples tool = samples_at(
       {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1.1, 0, 0), Vec3(2, 0, 0), Vec3(3, 0, 0), Vec3(3.1, 0, 0), Vec3(3.2, 0, 0)});
   const ClusterGrid grid = cluster_grid(tool, 0.2);
-  ClusterScratch scratch(grid);
+  ClusterScratch scratch(grid, tool.count());
   test::OwnedPoints points(tool.count());
   std::vector<Cluster> out(2);
   for (int repeat = 0; repeat < 2; ++repeat) {
@@ -247,7 +247,7 @@ TEST(ContactRegions, OfAToolWithThreeFeet) {
   const scene::Box block(Vec3(0.0, 0.0, 0.03), Vec3(0.08, 0.06, 0.06));
   const Detection detection = detection_for(scene::BodyShape::box);
   const ClusterGrid grid = cluster_grid(samples, 0.004);
-  ClusterScratch scratch(grid);
+  ClusterScratch scratch(grid, samples.count());
   RegionTracker tracker(samples.count(), 20, 10);
   test::OwnedPoints points(samples.count());
   std::vector<Cluster> clusters(20);

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace touchstone::fast {
@@ -33,14 +35,32 @@ double sum(const RegionPoints& points) { return std::accumulate(points.share, po
 TEST(MassDistribution, CorrectedBalancesTheLever) {
   // Supports at lever arms 1 : 3 carry 3/4 and 1/4, and the load's centre is the mass centre (errata E6).
   test::OwnedPoints points = flat({Vec3(0.01, 0.0, 0.0), Vec3(-0.03, 0.0, 0.0)});
-  distribute_mass_corrected(down, 1e-9, points);
+  distribute_mass_corrected(down, points);
   EXPECT_NEAR(points.share[0], 0.75, 1e-12);
   EXPECT_NEAR(points.share[1], 0.25, 1e-12);
 }
 
+TEST(MassDistribution, MeanOfTheInverseDistanceOverADisc) {
+  constexpr double radius_m = 0.3;
+  for (const double r_m : {0.0, 0.05, 0.29, 0.31, 0.5, 0.89, 0.91, 2.0, 50.0}) {
+    // In polar coordinates about the point the integrand is 1: the mean length of the chords, and 0 outside the disc.
+    constexpr int rays = 200000;
+    double sum_m2 = 0.0;
+    for (int k = 0; k < rays; ++k) {
+      const double angle = 2.0 * std::numbers::pi * (k + 0.5) / rays, along_m = r_m * std::cos(angle);
+      const double half2_m2 = radius_m * radius_m - r_m * r_m + along_m * along_m;
+      if (half2_m2 <= 0.0) continue;
+      const double half_m = std::sqrt(half2_m2);
+      sum_m2 += std::max(0.0, along_m + half_m) - std::max(0.0, along_m - half_m);
+    }
+    const double mean_per_m = sum_m2 * 2.0 * std::numbers::pi / rays / (std::numbers::pi * radius_m * radius_m);
+    EXPECT_NEAR(mean_inverse_distance_per_m(r_m * r_m, radius_m) / mean_per_m, 1.0, 2e-4) << r_m;
+  }
+}
+
 TEST(MassDistribution, PublishedSwapsTheLever) {
   test::OwnedPoints points = flat({Vec3(0.01, 0.0, 0.0), Vec3(-0.03, 0.0, 0.0)});
-  distribute_mass_published(down, 1e-9, points);
+  distribute_mass_published(down, points);
   EXPECT_NEAR(points.share[0], 0.25, 1e-12);
   EXPECT_NEAR(points.share[1], 0.75, 1e-12);
 }
@@ -49,15 +69,18 @@ TEST(MassDistribution, SumsToOneAndFollowsTheFormulas) {
   test::OwnedPoints points = flat({Vec3(0.0, 0.0, 0.0), Vec3(0.001, 0.002, 0.0), Vec3(-0.004, 0.001, 0.0)});
   points.cos_theta[1] = 0.5;
   points.area_m2[2] = 3e-6;
-  const double r_0 = 0.001;
+  // Discs of the points' projected areas.
+  const auto weight = [](double area_m2, double r_m) {
+    return area_m2 * mean_inverse_distance_per_m(r_m * r_m, std::sqrt(area_m2 / std::numbers::pi));
+  };
   const double r1 = std::hypot(0.001, 0.002), r2 = std::hypot(0.004, 0.001);
 
-  distribute_mass_corrected(down, r_0, points);
+  distribute_mass_corrected(down, points);
   EXPECT_NEAR(sum(points), 1.0, 1e-15);
-  EXPECT_NEAR(points.share[1] / points.share[0], 0.5 * r_0 / std::hypot(r1, r_0), 1e-12);
-  EXPECT_NEAR(points.share[2] / points.share[0], 3.0 * r_0 / std::hypot(r2, r_0), 1e-12);
+  EXPECT_NEAR(points.share[1] / points.share[0], weight(0.5e-6, r1) / weight(1e-6, 0.0), 1e-12);
+  EXPECT_NEAR(points.share[2] / points.share[0], weight(3e-6, r2) / weight(1e-6, 0.0), 1e-12);
 
-  distribute_mass_published(down, r_0, points);
+  distribute_mass_published(down, points);
   EXPECT_NEAR(sum(points), 1.0, 1e-15);
   EXPECT_EQ(points.share[0], 0.0);
   EXPECT_NEAR(points.share[2] / points.share[1], r2 / (0.5 * r1), 1e-12);
@@ -66,7 +89,7 @@ TEST(MassDistribution, SumsToOneAndFollowsTheFormulas) {
 TEST(MassDistribution, LeverArmsAreTakenAcrossTheDirection) {
   test::OwnedPoints points = flat({Vec3(0.01, 0.0, 0.0), Vec3(0.0, 0.01, 0.0)});
   // Seen along x, the second point's arm is sqrt(0.01^2 + 0.01^2), the first one's 0.01 (both are 10 mm low).
-  distribute_mass_published(Vec3::UnitX(), 1e-3, points);
+  distribute_mass_published(Vec3::UnitX(), points);
   EXPECT_NEAR(points.share[1] / points.share[0], std::sqrt(2.0), 1e-12);
 }
 
@@ -74,7 +97,7 @@ TEST(MassDistribution, IsUniformWhereAllWeightsVanish) {
   for (const DistributeMass distribute : {distribute_mass_published, distribute_mass_corrected}) {
     test::OwnedPoints points = flat({Vec3(0.001, 0.0, 0.0), Vec3(0.0, 0.002, 0.0)});
     points.cos_theta[0] = points.cos_theta[1] = 0.0;
-    distribute(down, 1e-3, points);
+    distribute(down, points);
     EXPECT_EQ(points.share[0], 0.5);
     EXPECT_EQ(points.share[1], 0.5);
   }
@@ -83,7 +106,7 @@ TEST(MassDistribution, IsUniformWhereAllWeightsVanish) {
 TEST(MassDistribution, OnePointUnderTheMassCentreCarriesAll) {
   for (const DistributeMass distribute : {distribute_mass_published, distribute_mass_corrected}) {
     test::OwnedPoints points = flat({Vec3::Zero()});
-    distribute(down, 1e-3, points);
+    distribute(down, points);
     EXPECT_EQ(points.share[0], 1.0);
   }
 }

@@ -51,6 +51,14 @@ inline scene::Scene ball_on_sphere(scene::Formulation formulation = scene::Formu
   return scene;
 }
 
+/// A ball about its mass centre.
+inline scene::Tool ball(double radius_m) {
+  scene::Tool tool;
+  tool.shape = scene::ToolShape::sphere;
+  tool.radius_m = radius_m;
+  return tool;
+}
+
 /// A rotation without any special axis.
 inline Eigen::Quaterniond tilted() {
   return Eigen::Quaterniond(Eigen::AngleAxisd(1.1, scene::Vec3(0.3, -0.7, 0.5).normalized()));

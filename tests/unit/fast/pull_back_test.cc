@@ -3,6 +3,7 @@
 #include "fast/tool_samples.h"
 #include "unit/fast/deformed_surface.h"
 #include "unit/fast/points.h"
+#include "unit/fast/press.h"
 
 #include <gtest/gtest.h>
 
@@ -47,7 +48,7 @@ constexpr int samples_max = 4000;
 
 constexpr double tool_radius_m = 0.008;
 const ToolSamples& ball() {
-  static const ToolSamples tool = sample_tool(scene::Sphere(Vec3::Zero(), tool_radius_m), 1000);
+  static const ToolSamples tool = sample_tool(test::ball(tool_radius_m), 1000);
   return tool;
 }
 

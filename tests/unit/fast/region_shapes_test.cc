@@ -171,7 +171,7 @@ TEST(RegionShapes, ALaterRegionMeetsTheShapeOfTheEarlierOnes) {
     return std::uniform_real_distribution<double>(low, high)(random);
   };
   const double tool_radius_m = 0.005;
-  const ToolSamples ball = sample_tool(scene::Sphere(Vec3::Zero(), tool_radius_m), 500);
+  const ToolSamples ball = sample_tool(test::ball(tool_radius_m), 500);
   PullBackScratch scratch(ball.count());
   test::OwnedPoints points(ball.count());
   for (const auto& scene : {test::ball_on_cube(), test::ball_on_sphere()}) {

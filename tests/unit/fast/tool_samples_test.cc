@@ -1,6 +1,7 @@
 #include "fast/tool_samples.h"
 
 #include "scene/surface.h"
+#include "unit/fast/press.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,7 @@ using scene::Vec3;
 
 constexpr double radius_m = 0.01;
 
-ToolSamples sample(int count) { return sample_tool(scene::Sphere(Vec3::Zero(), radius_m), count); }
+ToolSamples sample(int count) { return sample_tool(test::ball(radius_m), count); }
 
 Vec3 point(const ToolSamples& tool, int i) {
   const auto k = static_cast<std::size_t>(i);
