@@ -127,10 +127,8 @@ class CellFinder {
       return true;
     }
     const double lowest = lowest_m(*here);
-    if (rule_.cut && lowest < 0.0) {
+    if (lowest < 0.0) {
       add_cut(*here);
-    } else if (distance_m < 0.0) {
-      put_inside(*here, Vec3::Zero(), cell.area_m2);
     } else {
       put_outside(*here, Vec3::Zero(), cell.area_m2);
     }
@@ -411,7 +409,10 @@ RegionPoints PointStore::window() noexcept {
 }
 
 CellScratch::CellScratch(int samples)
-    : halves_(2 * max_cells), of_half_(halves_.size(), -1), of_sample_(static_cast<std::size_t>(samples), -1) {
+    : halves_(samples > 0 ? 2 * max_cells : 0),
+      of_half_(halves_.size(), -1),
+      of_sample_(static_cast<std::size_t>(samples), -1) {
+  if (samples == 0) return;
   now.reserve(max_cells);
   near.reserve(static_cast<std::size_t>(std::max(samples, max_cells)));
 }

@@ -109,7 +109,6 @@ using FindInside = InsideSummary (*)(const scene::Shape&, const ToolSamples&, co
 
 /// How the tool's cells become points.
 struct CellRule {
-  bool cut = true;         ///< the body's surface cuts cells; otherwise a cell is inside with its centre, or outside
   int points = 1;          ///< fewer than these are too few
   double rim_share = 1.0;  ///< of the area inside, in cut cells; more than that is too much
 };
@@ -121,7 +120,7 @@ inline constexpr int max_cells = 4096;
 /// answer never depends on which are.
 class CellScratch {
  public:
-  /// @param samples of the tool
+  /// @param samples of the tool; 0 where cells are not asked for
   explicit CellScratch(int samples);
   /// Makes room for a tick's halves.
   void begin() noexcept;

@@ -3,10 +3,8 @@
 namespace touchstone::fast {
 namespace {
 
-/// As the paper has it, a sample is inside or not.
-constexpr CellRule published_cells{.cut = false, .points = 1, .rim_share = 1.0};
 /// The force of the shipped tools is then within 1 % of its limit, see CellsConverge.
-constexpr CellRule corrected_cells{.cut = true, .points = 100, .rim_share = 0.25};
+constexpr CellRule corrected_cells{.points = 100, .rim_share = 0.25};
 
 Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
   const scene::FastSettings& fast = scene.fast;
@@ -14,7 +12,7 @@ Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
   Formulas formulas;
   switch (fast.formulation) {
     case scene::Formulation::published:
-      formulas = {published_cells,       distribute_mass_published,    resolve_friction_published, split_force,
+      formulas = {std::nullopt,          distribute_mass_published,    resolve_friction_published, split_force,
                   interpolate_published, apply_local_factor_published, several_regions_published};
       break;
     case scene::Formulation::corrected:
@@ -32,7 +30,8 @@ Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
 FastModel::FastModel(const scene::Scene& scene)
     : body(scene::body_shape(scene.body)),
       detection(detection_for(scene.body.shape)),
-      tool(sample_tool(scene.tool, scene.fast.tool_samples)),
+      tool(scene.fast.formulation == scene::Formulation::corrected ? cell_tool(scene.tool, scene.fast.tool_samples)
+                                                                   : sample_tool(scene.tool, scene.fast.tool_samples)),
       law(scene.contact),
       friction(scene.contact.friction ? std::optional<FrictionLaw>(*scene.contact.friction) : std::nullopt),
       anchors(anchor_points(scene.body, *body)),

@@ -25,7 +25,7 @@ namespace touchstone::fast {
 
 /// The stages in which the published and the corrected formulation differ, chosen when the model is built.
 struct Formulas {
-  CellRule cells;  ///< how the tool's cells become points
+  std::optional<CellRule> cells;  ///< how the tool's cells become points; without, its samples are the points
   DistributeMass distribute_mass = nullptr;
   ResolveFriction resolve_friction = nullptr;  ///< null where the scene has no friction: there is no such stage
   SplitForce split_force = nullptr;
@@ -60,7 +60,9 @@ struct FastModel {
   int max_regions = 1;                          ///< capacity; 1 for a convex tool
 
   /// Points of a tick, at most: two for each cell, its part inside and, for several regions, the one outside.
-  [[nodiscard]] int max_points() const noexcept { return 2 * std::max(tool.count(), max_cells / 2); }
+  [[nodiscard]] int max_points() const noexcept {
+    return formulas.cells ? 2 * std::max(tool.count(), max_cells / 2) : tool.count();
+  }
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };
 

@@ -55,13 +55,10 @@ Vec3 next_direction(const ContactRegion& region, const InsideSummary& inside) no
 
 InsideSummary find_points(const FastModel& model, const Placement& at, double margin_m, RegionPoints& points,
                           FastState& state) noexcept {
-  const CellRule& rule = model.formulas.cells;
-  if (!rule.cut) {
-    const InsideSummary inside =
-        model.detection.find_inside(*model.body, model.tool, at, margin_m, model.tool.count(), points);
-    if (inside.deepest_m > 0.0) return inside;
-  }
-  return model.detection.find_cells(*model.body, model.tool, at, rule, margin_m, points, state.cells);
+  const Detection& detection = model.detection;
+  if (model.formulas.cells)
+    return detection.find_cells(*model.body, model.tool, at, *model.formulas.cells, margin_m, points, state.cells);
+  return detection.find_inside(*model.body, model.tool, at, margin_m, model.tool.count(), points);
 }
 
 bool find_one_region(const FastModel& model, const Motion& motion, FastState& state) noexcept {
@@ -87,8 +84,8 @@ bool find_one_region(const FastModel& model, const Motion& motion, FastState& st
 }
 
 StepStatus measure(const FastModel& model, const Motion& motion, ContactRegion& region, FastState& state) noexcept {
-  region.extent =
-      model.detection.measure_depths(*model.body, motion.at.R_WT, region.d, model.formulas.cells.cut, region.points);
+  region.extent = model.detection.measure_depths(*model.body, motion.at.R_WT, region.d,
+                                                 model.formulas.cells.has_value(), region.points);
   // Only the tool's back is inside: nothing pushes, but the region lives on with its direction.
   if (region.points.count == 0) return StepStatus::ok;
   region.depth_rel = region.extent.deepest_m / region.extent.thickness_m;

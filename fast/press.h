@@ -25,8 +25,7 @@ struct Motion {
 /// A region's direction in a further tick.
 [[nodiscard]] scene::Vec3 next_direction(const ContactRegion& region, const InsideSummary& inside) noexcept;
 
-/// The points of the tool that are inside the rest surface. The published form looks at the samples and, where none is
-/// inside, at smaller cells; the corrected form at cells always.
+/// The points of the tool that are inside the rest surface: samples in the published form, cells in the corrected one.
 /// @param margin_m as in FindCells
 InsideSummary find_points(const FastModel&, const Placement&, double margin_m, RegionPoints&, FastState&) noexcept;
 

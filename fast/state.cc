@@ -40,7 +40,7 @@ void ContactRegion::clear() noexcept {
 
 FastState::FastState(const FastModel& model)
     : store(model.max_points()),
-      cells(model.tool.count()),
+      cells(model.formulas.cells ? model.tool.count() : 0),
       probe(model.tool.count()),
       regions(static_cast<std::size_t>(model.max_regions), ContactRegion(model.skeleton.anchor_m.size())),
       field(model.rest),

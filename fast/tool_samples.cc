@@ -37,8 +37,9 @@ class TreeBuilder {
     SampleBall ball;
     ball.center_T_m = 0.5 * (lower_m + upper_m);
     for (std::int32_t i = begin; i < end; ++i) {
-      const SurfaceCell& cell = cells_[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])];
       ball.radius_m = std::max(ball.radius_m, (at(i) - ball.center_T_m).norm());
+      if (cells_.empty()) continue;
+      const SurfaceCell& cell = cells_[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])];
       ball.cells_radius_m = std::max(ball.cells_radius_m, (cell.center_T_m - ball.center_T_m).norm() + cell.radius_m);
     }
     // Rounding must not prune a sample that lies on the ball.
@@ -88,8 +89,8 @@ ToolSamples in_tree_order(Cloud&& cloud, double surface_m2) {
   TreeBuilder builder(cloud.points_m, cloud.cells);
   ToolSamples samples;
   for (const std::int32_t i : builder.order()) {
-    samples.cell.push_back(cloud.cells[static_cast<std::size_t>(i)]);
-    samples.cell.back().sample = static_cast<std::int32_t>(samples.cell.size()) - 1;
+    if (!cloud.cells.empty()) samples.cell.push_back(cloud.cells[static_cast<std::size_t>(i)]);
+    if (!cloud.cells.empty()) samples.cell.back().sample = static_cast<std::int32_t>(samples.cell.size()) - 1;
     const Vec3 &p = cloud.points_m[static_cast<std::size_t>(i)], &n = cloud.normals[static_cast<std::size_t>(i)];
     samples.x_T_m.push_back(p.x());
     samples.y_T_m.push_back(p.y());
@@ -107,6 +108,31 @@ ToolSamples in_tree_order(Cloud&& cloud, double surface_m2) {
 
 int pieces(double length_m, double spacing_m, int least) {
   return std::max(least, static_cast<int>(std::lround(length_m / spacing_m)));
+}
+
+/// Samples of equal area on a ball-shaped tool.
+ToolSamples sample_sphere(const scene::Sphere& tool, int count) {
+  // Rings of equal area, four points on each, each ring a golden angle (of a quarter turn) further: every point stands
+  // for the same area, and a press along the axis has no side force or torque of the sampling's own making.
+  // A last ring short of points is the topmost.
+  constexpr int on_ring = 4;
+  const int rings = (count + on_ring - 1) / on_ring;
+  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
+  Cloud cloud;
+  for (int i = 0; i < count; ++i) {
+    const int ring = i / on_ring;
+    const double z = -1.0 + (2.0 * ring + 1.0) / rings;
+    const double across = std::sqrt(1.0 - z * z);
+    const double turn = std::fmod(golden * ring, 1.0);
+    const double x = across * std::cos(0.5 * std::numbers::pi * turn),
+                 y = across * std::sin(0.5 * std::numbers::pi * turn);
+    const std::array<Vec3, on_ring> quarter{Vec3(x, y, z), Vec3(-y, x, z), Vec3(-x, -y, z), Vec3(y, -x, z)};
+    const Vec3& normal = quarter[static_cast<std::size_t>(i % on_ring)];
+    cloud.points_m.push_back(tool.center_m() + tool.radius_m() * normal);
+    cloud.normals.push_back(normal);
+    cloud.area_m2.push_back(tool.area_m2() / count);
+  }
+  return in_tree_order(std::move(cloud), tool.area_m2());
 }
 
 /// The sphere as two arcs turned about z.
@@ -332,7 +358,7 @@ std::size_t ToolSamples::memory_bytes() const noexcept {
          groups.memory_bytes();
 }
 
-ToolSamples sample_tool(const scene::Tool& tool, int count) {
+ToolSamples cell_tool(const scene::Tool& tool, int count) {
   if (tool.shape == scene::ToolShape::mesh) return sample_mesh(scene::tool_mesh(tool), count);
   const auto shape = scene::tool_shape(tool);
   switch (tool.shape) {
@@ -343,6 +369,15 @@ ToolSamples sample_tool(const scene::Tool& tool, int count) {
     default:
       return sample_revolution(static_cast<const scene::Revolution&>(*shape), count);
   }
+}
+
+ToolSamples sample_tool(const scene::Tool& tool, int count) {
+  if (tool.shape == scene::ToolShape::sphere)
+    return sample_sphere(static_cast<const scene::Sphere&>(*scene::tool_shape(tool)), count);
+  ToolSamples samples = cell_tool(tool, count);
+  samples.cell = {};
+  samples.groups = {};
+  return samples;
 }
 
 }  // namespace touchstone::fast

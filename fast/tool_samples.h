@@ -31,7 +31,7 @@ struct ToolSamples {
   std::vector<double> x_T_m, y_T_m, z_T_m;
   std::vector<double> nx_T, ny_T, nz_T;
   std::vector<double> area_m2;    ///< A_i; sums to the surface
-  std::vector<SurfaceCell> cell;  ///< of each sample; together they are the surface
+  std::vector<SurfaceCell> cell;  ///< of each sample, together the surface; only of cell_tool()
   CellGroups groups;              ///< of a fine mesh
   double spacing_m = 0.0;         ///< sqrt(surface / count)
   std::vector<SampleBall> tree;   ///< root first
@@ -42,7 +42,8 @@ struct ToolSamples {
 
 /// Samples of any tool, each for nearly the same area, together for all of it. Their number is about `count` and at
 /// most twice that, but for the least a tool needs: four in each ring, one on each face or triangle that stands alone.
-/// - sphere, capsule, cylinder: rings of evenly spaced points, at least two along each piece of the profile
+/// - sphere: of equal area
+/// - capsule, cylinder: rings of evenly spaced points, at least two along each piece of the profile
 /// - box: a grid on every face
 /// - mesh: triangles are halved at their longest side until small enough; of a finer mesh, neighbouring triangles that
 ///   look the same way share a sample, at the one nearest their middle. Those of a convex mesh are shared out evenly:
@@ -50,5 +51,8 @@ struct ToolSamples {
 /// The pattern is mirrored where the tool is, so a straight press has no side force or torque of the sampling's making.
 /// Samples stand within the faces, none on an edge or corner.
 [[nodiscard]] ToolSamples sample_tool(const scene::Tool& tool, int count);
+
+/// The same with their cells; of a sphere in rings, too.
+[[nodiscard]] ToolSamples cell_tool(const scene::Tool& tool, int count);
 
 }  // namespace touchstone::fast

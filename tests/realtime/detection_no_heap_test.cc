@@ -31,7 +31,7 @@ TEST_P(DetectionWithoutHeap, FindsSplitsFollowsAndTakesBack) {
   scene.tool.size_m = Vec3(0.08, 0.01, 0.01);
   const auto body = scene::body_shape(scene.body);
   const Detection detection = detection_for(GetParam());
-  const ToolSamples tool = sample_tool(scene.tool, 2000);
+  const ToolSamples tool = cell_tool(scene.tool, 2000);
   const ClusterGrid grid = cluster_grid(tool, 0.002);
   ClusterScratch scratch(grid, tool.count());
   PullBackScratch scratch_back(tool.count());
@@ -49,7 +49,7 @@ TEST_P(DetectionWithoutHeap, FindsSplitsFollowsAndTakesBack) {
       Placement at;
       at.R_WT = Eigen::AngleAxisd(0.6 * std::sin(3.0 * s), Vec3::UnitY()).toRotationMatrix();
       at.origin_W_m = Vec3(0.01 * std::sin(s), 0.0, top_m + 0.002 * std::cos(2.0 * s));
-      detection.find_cells(*body, tool, at, {true, 100, 0.25}, 1e-4, fine_points, cells);
+      detection.find_cells(*body, tool, at, {100, 0.25}, 1e-4, fine_points, cells);
       detection.find_inside(*body, tool, at, 1e-4, tool.count(), points);
       ticks_in_contact += points.count > 0;
       const ClusterCount found = cluster(grid, points, scratch, clusters);

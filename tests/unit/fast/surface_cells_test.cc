@@ -57,7 +57,7 @@ std::vector<NamedTool> tools(double radius_m) {
 class CellsOf : public testing::TestWithParam<NamedTool> {};
 
 TEST_P(CellsOf, AreTheSurfaceHoweverOftenTheyAreHalved) {
-  const ToolSamples samples = sample_tool(GetParam().tool, 300);
+  const ToolSamples samples = cell_tool(GetParam().tool, 300);
   double area_m2 = 0.0, sampled_m2 = 0.0;
   Vec3 projected_m2 = Vec3::Zero();
   for (std::size_t i = 0; i < samples.cell.size(); ++i) {
@@ -144,7 +144,7 @@ TEST(CellsConverge, TheForceIsWithinOnePercentOfItsLimit) {
   bodies[2].semi_axes_m = Vec3(0.04, 0.03, 0.025);
   bodies[3].shape = scene::BodyShape::revolution;
   bodies[3].profile = scene::cylinder_profile(0.03, 0.06, 0.0);
-  const CellRule finest{.cut = true, .points = 1000000, .rim_share = 0.0};
+  const CellRule finest{.points = 1000000, .rim_share = 0.0};
   for (const scene::Body& body : bodies) {
     for (const double ratio : {1e-3, 1e-2, 0.1, 0.5, 1.0, 10.0, 100.0, 1000.0}) {
       for (const NamedTool& tool : tools(0.03 * ratio)) {
