@@ -31,8 +31,8 @@ constexpr std::int32_t left_over = -2;  ///< a cluster with such samples, not ta
 }  // namespace
 
 std::size_t ClusterGrid::memory_bytes() const noexcept {
-  return (cell.size() + neighbour_begin.size()) * sizeof(std::int32_t) + neighbours.size() * sizeof(Neighbour) +
-         box.size() * sizeof(SampleBox);
+  return sample_T_m.size() * sizeof(Vec3) + (cell.size() + neighbour_begin.size()) * sizeof(std::int32_t) +
+         neighbours.size() * sizeof(Neighbour) + box.size() * sizeof(SampleBox);
 }
 
 ClusterGrid cluster_grid(const ToolSamples& tool, double r_th_m) {
@@ -55,6 +55,7 @@ ClusterGrid cluster_grid(const ToolSamples& tool, double r_th_m) {
 
   ClusterGrid grid;
   grid.r_th_m = r_th_m;
+  for (std::size_t i = 0; i < samples; ++i) grid.sample_T_m.push_back(point(i));
   grid.cell.resize(samples);
   std::vector<Box>& boxes = grid.box;
   std::map<Place, std::pair<std::int32_t, std::int32_t>> cells_at;
@@ -125,11 +126,14 @@ bool ClusterScratch::near(const ClusterGrid& grid, const RegionPoints& points, s
                           std::int32_t b) const noexcept {
   const double r2_m2 = grid.r_th_m * grid.r_th_m, loose2_m2 = (1.0 + rounding) * r2_m2;
   const Box& box = grid.box[static_cast<std::size_t>(b)];
+  const auto place = [&](std::int32_t i) -> const Vec3& {
+    return grid.sample_T_m[static_cast<std::size_t>(points.sample[static_cast<std::size_t>(i)])];
+  };
   for (std::int32_t i = cells_[static_cast<std::size_t>(a)].first; i >= 0; i = next_[static_cast<std::size_t>(i)]) {
-    const Vec3 p_m = points.p_T_m(static_cast<std::size_t>(i));
+    const Vec3& p_m = place(i);
     if (nearest2_m2(p_m, p_m, box.lower_m, box.upper_m) > loose2_m2) continue;
     for (std::int32_t k = cells_[static_cast<std::size_t>(b)].first; k >= 0; k = next_[static_cast<std::size_t>(k)])
-      if ((points.p_T_m(static_cast<std::size_t>(k)) - p_m).squaredNorm() < r2_m2) return true;
+      if ((place(k) - p_m).squaredNorm() < r2_m2) return true;
   }
   return false;
 }

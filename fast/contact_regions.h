@@ -44,6 +44,7 @@ struct ClusterGrid {
     }
   };
   double r_th_m = 0.0;
+  std::vector<scene::Vec3> sample_T_m;        ///< places of the samples
   std::vector<std::int32_t> cell;             ///< per sample
   std::vector<SampleBox> box;                 ///< per cell
   std::vector<std::int32_t> neighbour_begin;  ///< size cells + 1
@@ -71,7 +72,7 @@ class ClusterScratch {
   friend struct ClusterCount cluster(const ClusterGrid&, RegionPoints&, ClusterScratch&, std::span<Cluster>) noexcept;
   [[nodiscard]] std::int32_t root(std::int32_t cell) noexcept;
   void join(std::int32_t a, std::int32_t b) noexcept;
-  /// Whether a point of cell a is nearer than r_th to one of cell b.
+  /// Whether a point's sample of cell a is nearer than r_th to one of cell b.
   [[nodiscard]] bool near(const ClusterGrid& grid, const RegionPoints& points, std::int32_t a,
                           std::int32_t b) const noexcept;
 
@@ -90,8 +91,8 @@ struct ClusterCount {
 };
 
 /// Sorts the points by cluster, the order within each kept, and describes the clusters, which come in the order of
-/// their first points. Two points are in one cluster exactly if a chain of points leads from one to the other in steps
-/// shorter than r_th, in the tool frame, whatever has been done to their world coordinates.
+/// their first points. Two points are in one cluster exactly if a chain of samples with points leads from one to the
+/// other in steps shorter than r_th, in the tool frame, whatever has been done to the points' world coordinates.
 /// @param all at most as many points as the scratch has room for, with depth_m; points of one sample are together
 /// @param out as many clusters as it holds are kept
 ClusterCount cluster(const ClusterGrid& grid, RegionPoints& all, ClusterScratch& scratch,

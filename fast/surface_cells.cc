@@ -23,7 +23,7 @@ struct MeridianMoments {
 };
 
 MeridianMoments meridian_moments(const Band& band) noexcept {
-  // Simpson's rule, exact for a straight part; an arc's area is known in closed form.
+  // Simpson's rule, exact for a straight part. Means from it lie within the surface they are means of.
   const double r0 = band.start_m.x(), z0 = band.start_m.y(), r1 = band.end_m.x(), z1 = band.end_m.y();
   Vector2d middle = 0.5 * (band.start_m + band.end_m);
   double length_m = (band.end_m - band.start_m).norm();
@@ -32,11 +32,15 @@ MeridianMoments meridian_moments(const Band& band) noexcept {
     length_m = band.arc_radius_m * band.arc_angle;
   }
   const double r = middle.x(), z = middle.y(), part_m = length_m / 6.0;
-  const double r_m2 = band.arc_radius_m > 0.0
-                          ? band.arc_radius_m * (band.arc_center_m.x() * band.arc_angle +
-                                                 band.arc_radius_m * (band.end_normal.y() - band.start_normal.y()))
-                          : part_m * (r0 + 4.0 * r + r1);
-  return {r_m2, part_m * (r0 * r0 + 4.0 * r * r + r1 * r1), part_m * (r0 * z0 + 4.0 * r * z + r1 * z1)};
+  return {part_m * (r0 + 4.0 * r + r1), part_m * (r0 * r0 + 4.0 * r * r + r1 * r1),
+          part_m * (r0 * z0 + 4.0 * r * z + r1 * z1)};
+}
+
+/// Integral of r along the meridian's part: exact.
+double area_per_turn_m2(const Band& band, const MeridianMoments& moments) noexcept {
+  if (band.arc_radius_m == 0.0) return moments.r_m2;
+  return band.arc_radius_m * (band.arc_center_m.x() * band.arc_angle +
+                              band.arc_radius_m * (band.end_normal.y() - band.start_normal.y()));
 }
 
 double farthest_m(const SurfaceCell& cell) noexcept {
@@ -118,7 +122,7 @@ SurfaceCell band_cell(const Band& band) noexcept {
   cell.band = band;
   cell.curved = true;
   const MeridianMoments moments = meridian_moments(band);
-  cell.area_m2 = band.turn * moments.r_m2;
+  cell.area_m2 = band.turn * area_per_turn_m2(band, moments);
   const Vector2d azimuth = (band.start_azimuth + band.end_azimuth).normalized();
   const double r_m = moments.r2_m3 / moments.r_m2 * sinc(0.5 * band.turn), z_m = moments.rz_m3 / moments.r_m2;
   cell.center_T_m = turned(band, {r_m, z_m}, azimuth);
