@@ -66,11 +66,14 @@ double mean_inverse_distance_per_m(std::span<const Eigen::Vector2d> corner_m) no
   double sum_m = 0.0, area_m2 = 0.0;
   for (std::size_t k = 0; k < corner_m.size(); ++k) {
     const Eigen::Vector2d &a = corner_m[k], &b = corner_m[k + 1 == corner_m.size() ? 0 : k + 1];
-    const double twice_m2 = a.x() * b.y() - a.y() * b.x(), side_m = (b - a).norm(), both_m = a.norm() + b.norm();
+    const double twice_m2 = a.x() * b.y() - a.y() * b.x(), dot_m2 = a.dot(b), product_m2 = a.norm() * b.norm();
+    const double side_m = (b - a).norm(), both_m = a.norm() + b.norm();
     area_m2 += 0.5 * twice_m2;
     // A side in line with the origin adds nothing.
     if (!(std::abs(twice_m2) > 1e-14 * both_m * both_m)) continue;
-    sum_m += twice_m2 / side_m * std::log((both_m + side_m) / (both_m - side_m));
+    // ((|a| + |b|)^2 - |b - a|^2) / 2, without cancellation for an origin close to the side.
+    const double beyond_m2 = dot_m2 < 0.0 ? twice_m2 * twice_m2 / (product_m2 - dot_m2) : product_m2 + dot_m2;
+    sum_m += twice_m2 / side_m * std::log((both_m + side_m) * (both_m + side_m) / (2.0 * beyond_m2));
   }
   return sum_m / area_m2;
 }
