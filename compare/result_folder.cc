@@ -45,6 +45,8 @@ Json read_object(const std::filesystem::path& file) {
     if (json.is_object()) return json;
   } catch (const Json::parse_error& error) {
     throw scene::InputError({{file.string(), line_of(text, error.byte), 0, "is not JSON; was it cut off or edited?"}});
+  } catch (const Json::out_of_range&) {
+    throw scene::InputError({{file.string(), 0, 0, "holds a number that is too large; was it edited?"}});
   }
   throw scene::InputError({{file.string(), 1, 0, "expected one JSON object"}});
 }

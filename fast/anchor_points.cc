@@ -12,8 +12,6 @@ namespace {
 
 using scene::Vec3;
 
-constexpr int bottom_face = 4;
-
 /// The one of the found anchor points that lies at a patch's corner.
 const FoundAnchor& nearest(const std::vector<FoundAnchor>& found, const Vec3& corner_m) {
   return *std::min_element(found.begin(), found.end(), [&](const FoundAnchor& a, const FoundAnchor& b) {

@@ -88,7 +88,8 @@ StepStatus measure(const FastModel& model, const Motion& motion, ContactRegion& 
                                                  model.formulas.cells.has_value(), region.points);
   // Only the tool's back is inside: nothing pushes, but the region lives on with its direction.
   if (region.points.count == 0) return StepStatus::ok;
-  region.depth_rel = region.extent.deepest_m / region.extent.thickness_m;
+  // A tip of no thickness is touched without depth.
+  region.depth_rel = region.extent.thickness_m > 0.0 ? region.extent.deepest_m / region.extent.thickness_m : 0.0;
   region.origin = deformation_origin(*model.body, model.detection.exit_distance_m, region.d, region.extent);
   const bool held = limit_depths(depth_limit_rel * region.extent.thickness_m, region.points);
   state.lap(Stage::detection);

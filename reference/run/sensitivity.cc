@@ -99,7 +99,9 @@ class Repeat {
         },
         tool_anywhere);
     std::pair<Solved<dim>, Step> result;
-    auto& [solved, step] = result;
+    // By name: clang 14 lets no lambda capture a structured binding.
+    Solved<dim>& solved = result.first;
+    Step& step = result.second;
     const std::size_t last = given_.times_s.size() - 1;
     const double lead_s = last > 0 ? given_.times_s[1] - given_.times_s[0] : 1.0;
     const auto follow = [&](Solved<dim> current, std::size_t first) {

@@ -63,8 +63,12 @@ inline Result solved(const scene::Scene& scene) {
     const scene::InstantRecord& instant = result.instants[i];
     EXPECT_TRUE(instant.force_n().allFinite()) << i;
     EXPECT_TRUE(instant.displacement_m.allFinite()) << i;
-    if (!scene.contact.friction) EXPECT_GE(instant.force_n().z(), 0.0) << i << ": the body pulls";
-    if (instant.force_n().norm() > 0.0) EXPECT_LT(result.equilibrium_rel[i], 1e-6) << i << ": out of balance";
+    if (!scene.contact.friction) {
+      EXPECT_GE(instant.force_n().z(), 0.0) << i << ": the body pulls";
+    }
+    if (instant.force_n().norm() > 0.0) {
+      EXPECT_LT(result.equilibrium_rel[i], 1e-6) << i << ": out of balance";
+    }
   }
   return result;
 }

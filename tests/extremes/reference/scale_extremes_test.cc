@@ -48,8 +48,12 @@ TEST(ReferenceScale, PoissonsRatioFromZeroToAHalf) {
     scene.body.material.poissons_ratio = nu;
     const Result result = solved(scene);
     EXPECT_GT(last_n(result), before_n) << nu;
-    if (nu > 0.49) EXPECT_LT(last_n(result), 1.05 * before_n) << nu;
-    if (nu == 0.5) EXPECT_LT(std::abs(result.volume_change_rel.back()), 1e-6);
+    if (nu > 0.49) {
+      EXPECT_LT(last_n(result), 1.05 * before_n) << nu;
+    }
+    if (nu == 0.5) {
+      EXPECT_LT(std::abs(result.volume_change_rel.back()), 1e-6);
+    }
     before_n = last_n(result);
   }
 }
@@ -99,7 +103,9 @@ TEST(ReferenceScale, ToolFarLargerThanTheBody) {
     scene.track = {at(0.0, {0.0, 0.0, 0.0605 + radius_m}), at(1.0, {0.0, 0.0, 0.059 + radius_m})};
     const double force_n = last_n(solved(scene));
     EXPECT_GT(force_n, before_n) << radius_m;
-    if (radius_m == 10.0) EXPECT_LT(force_n, 1.01 * before_n) << "a plane's";
+    if (radius_m == 10.0) {
+      EXPECT_LT(force_n, 1.01 * before_n) << "a plane's";
+    }
     before_n = force_n;
   }
 }

@@ -597,7 +597,7 @@ class InputOfAVerb : public testing::Test {
 TEST_F(InputOfAVerb, ThatIsAFolderIsBadInput) {
   const std::string program = program_of("/touchstone compare"), dir = dir_.string();
   if (program.empty()) GTEST_SKIP() << "built without the reference";
-  for (const std::string verb :
+  for (const std::string& verb :
        {"study expand " + dir, "tune " + dir, "fast " + dir, "gate --gates " + dir + "/gates",
         "compare " + scene + " --parameters " + dir, "live " + scene + " --device replay --log " + dir}) {
     const Answer answer = run(program + " " + verb + " --out " + dir + "/out");
@@ -614,7 +614,7 @@ TEST_F(InputOfAVerb, MayHaveANameThatIsNoText) {
   const Answer answer =
       run(program + " live " + scene + " --device replay --log " + dir + "/l\xff.csv --out " + dir + "/b");
   EXPECT_EQ(answer.exit_code, 0) << answer.output;
-  EXPECT_NO_THROW((void)nlohmann::json::parse(std::ifstream(dir_ / "b" / "manifest.json")));
+  EXPECT_TRUE(nlohmann::json::accept(std::ifstream(dir_ / "b" / "manifest.json")));
 }
 
 }  // namespace

@@ -78,6 +78,8 @@ TEST_F(ResultFolderTest, NamesEveryFileThatIsMissing) {
 TEST_F(ResultFolderTest, NamesTheLineOfADamage) {
   scene::write_file(folder_.path() / "summary.json", "{\n\"a\": 1,\n\"b\": \n");
   EXPECT_THAT(fault(), ::testing::ContainsRegex("summary\\.json:[34]: "));
+  scene::write_file(folder_.path() / "summary.json", "{\"a\": 1e999}");
+  EXPECT_THAT(fault(), HasSubstr("summary.json: holds a number that is too large"));
   scene::write_file(folder_.path() / "curve.csv", "time_s,depth_m\n0,1\n1\n");
   EXPECT_THAT(fault(), HasSubstr("curve.csv:3: has 1 values, expected 2"));
   scene::write_file(folder_.path() / "curve.csv", "time_s,depth_m\n0,1\n1,2x\n");

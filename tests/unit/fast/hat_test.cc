@@ -178,16 +178,19 @@ TEST(Hat, OverAPoleSpreadsOverAllItsPatchesAlike) {
 }
 
 TEST(Hat, ChangesLittleWhenItsPointComesToAnEdgeOrAnAnchorPoint) {
-  for (const auto& [name, patch] : {std::pair("box", 5), std::pair("sphere", 0)}) {
-    const Hatted on(body_named(name));
+  for (const auto& body : {std::pair("box", 5), std::pair("sphere", 0)}) {
+    // clang 14 lets no lambda capture a structured binding.
+    const int patch = body.second;
+    const Hatted on(body_named(body.first));
     // Towards an edge and towards a corner of the patch.
-    for (const auto& [u, v] : {std::pair(0.0, 0.4), std::pair(0.0, 0.0)}) {
+    for (const auto& place : {std::pair(0.0, 0.4), std::pair(0.0, 0.0)}) {
+      const double u = place.first, v = place.second;
       const auto over = [&](double off) {
         const Vec3 p_m = on.shape->at(patch, u + off, v + (v == 0.0 ? off : 0.0)).point_m;
         return on.over(static_cast<std::size_t>(patch), on.anchors->at(patch, p_m));
       };
       const std::vector<float> there = over(0.0), near = over(0.002);
-      for (std::size_t k = 0; k < there.size(); ++k) EXPECT_NEAR(near[k], there[k], 0.05) << name;
+      for (std::size_t k = 0; k < there.size(); ++k) EXPECT_NEAR(near[k], there[k], 0.05) << body.first;
     }
   }
 }

@@ -1,0 +1,44 @@
+// Closed paths of the tool, and the work that the contact does along them.
+#pragma once
+
+#include "fast/model.h"
+#include "fast/state.h"
+#include "scene/scene.h"
+#include "soak/random_device.h"
+
+#include <functional>
+#include <vector>
+
+namespace touchstone::soak {
+
+/// Ticks of one round.
+inline constexpr int ticks_per_round = 100;
+
+enum class PathKind {
+  level,           ///< no turning; sideways any way, and in depth the same on the way out as on the way in
+  there_and_back,  ///< any way with turning, and back through the same poses
+  loop             ///< any way with turning
+};
+
+struct ClosedPath {
+  PathKind kind;
+  std::vector<scene::Pose> poses;  ///< of a round; the last is the first
+  Touch touch;                     ///< where the tool was put
+};
+[[nodiscard]] ClosedPath closed_path(PathKind kind, const fast::FastModel& model, Random& random);
+
+/// What the contact did in the second of two rounds.
+struct RoundWork {
+  double gained_j = 0.0;       ///< by the tool: sum of F dx + T dphi, forces by the mean of two ticks
+  double turned_over_j = 0.0;  ///< sum of the parts' sizes
+  bool always_in_contact = true;
+  bool steady = true;  ///< one region at a time, pressing or not, against Touch::normal to 1e-9 all along
+  /// All samples below the plane of the touch were in the body, and the way out was through that plane.
+  bool flat = true;
+  double deepest_rel = 0.0;  ///< largest depth over the body's thickness
+};
+/// @param step  steps the state to a pose
+[[nodiscard]] RoundWork go_round(const fast::FastModel& model, const fast::FastState& state, const ClosedPath& path,
+                                 const std::function<void(const scene::Pose&)>& step);
+
+}  // namespace touchstone::soak
