@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -121,12 +122,12 @@ class CellFinder {
   bool add(const SurfaceCell& cell) noexcept {
     const std::optional<PlacedCell> here = place(cell, std::max(cell.radius_m, margin_m_));
     if (!here) return false;
-    const double distance_m = here->rest.signed_distance_m;
-    if (distance_m <= -cell.radius_m) {
-      put_inside(*here, Vec3::Zero(), cell.area_m2);
+    if (here->rest.signed_distance_m <= -cell.radius_m) {
+      put_inside(*here);
       return true;
     }
     const double lowest = lowest_m(*here);
+    if (cell.group >= 0) return add_group(*here) || lowest < cell.bulge_m;
     if (lowest < 0.0) {
       add_cut(*here);
     } else {
@@ -159,50 +160,87 @@ class CellFinder {
     return here.rest.signed_distance_m + lowest;
   }
 
-  /// @param off_m of the part's middle from the cell's centre, tool frame
-  void put_inside(const PlacedCell& here, const Vec3& off_m, double area_m2) noexcept {
+  /// The cut of a surface whose shape is not known, as that of a rectangle with two sides along the water line, of the
+  /// same area, middle and spread. @return whether some of it is inside
+  bool add_group(const PlacedCell& here) noexcept {
     const SurfaceCell& cell = here.cell;
-    const bool whole = area_m2 == cell.area_m2;
-    RestDistance rest = here.rest;
-    Vec3 p_W = here.p_W;
-    if (!whole) {
-      p_W += at_.R_WT * off_m;
-      rest = rest_distance(body_, p_W);
-      // A curved surface may pass beneath the middle of the part under its tangent plane.
-      rest.signed_distance_m = std::min(rest.signed_distance_m, -std::numeric_limits<double>::min());
-      rim_m2_ += area_m2;
+    const Vec3 normal_T = at_.R_WT.transpose() * here.rest.normal;
+    const double rise1_m = normal_T.dot(cell.spread_m[0]), rise2_m = normal_T.dot(cell.spread_m[1]);
+    const double rise_m = std::sqrt(rise1_m * rise1_m + rise2_m * rise2_m), half_m = std::numbers::sqrt3 * rise_m;
+    const double middle_m = here.rest.signed_distance_m, lowest_m = middle_m - half_m;
+    if (lowest_m >= 0.0) {
+      put_outside(here, Vec3::Zero(), cell.area_m2);
+      return false;
     }
+    if (middle_m + half_m <= 0.0) {
+      put_inside(here);
+      return true;
+    }
+    const double share = -lowest_m / (2.0 * half_m);
+    const Vec3 up_m = (rise1_m * cell.spread_m[0] + rise2_m * cell.spread_m[1]) / rise_m;
+    const Vec3 level_m = (rise1_m * cell.spread_m[1] - rise2_m * cell.spread_m[0]) / rise_m;
+    CutPolygon::Moments part;
+    part.area_m2 = share * cell.area_m2;
+    part.center_m = (0.5 * lowest_m - middle_m) / rise_m * up_m;
+    part.spread_m = {share * up_m, level_m};
+    put_rim(here, part);
+    put_outside(here, -share / (1.0 - share) * part.center_m, (1.0 - share) * cell.area_m2);
+    return true;
+  }
+
+  void put_inside(const PlacedCell& here) noexcept {
+    const SurfaceCell& cell = here.cell;
+    if (put(here.p_W, cell.center_T_m, cell, cell.area_m2, here.rest))
+      points_.set_spread(points_.count++, cell.spread_m, &cell);
+  }
+
+  /// @param part  about the cell's centre, tool frame
+  void put_rim(const PlacedCell& here, const CutPolygon::Moments& part) noexcept {
+    const SurfaceCell& cell = here.cell;
+    const Vec3 p_W = here.p_W + at_.R_WT * part.center_m;
+    RestDistance rest = rest_distance(body_, p_W);
+    // A curved surface may pass beneath the middle of the part under its tangent plane.
+    rest.signed_distance_m = std::min(rest.signed_distance_m, -std::numeric_limits<double>::min());
+    rim_m2_ += part.area_m2;
+    if (put(p_W, cell.center_T_m + part.center_m, cell, part.area_m2, rest))
+      points_.set_spread(points_.count++, part.spread_m, nullptr);
+  }
+
+  bool put(const Vec3& p_W, const Vec3& p_T, const SurfaceCell& cell, double area_m2,
+           const RestDistance& rest) noexcept {
     summary_.add(rest.normal, -rest.signed_distance_m, area_m2);
     ++inside_;
     inside_m2_ += area_m2;
-    points_.set(points_.count++, p_W, cell.center_T_m + off_m, cell.normal_T, area_m2, rest.signed_distance_m,
-                rest.normal, cell.sample, whole ? &cell : nullptr);
+    if (points_.count == points_.capacity) return false;
+    points_.set(points_.count, p_W, p_T, cell.normal_T, area_m2, rest.signed_distance_m, rest.normal, cell.sample);
+    return true;
   }
 
   void put_outside(const PlacedCell& here, const Vec3& off_m, double area_m2) noexcept {
-    if (!(margin_m_ > 0.0)) return;
+    if (!(margin_m_ > 0.0) || points_.count == points_.capacity) return;
     const Vec3 p_W = here.p_W + at_.R_WT * off_m;
     const RestDistance rest = rest_distance(body_, p_W);
     if (!(rest.signed_distance_m < margin_m_)) return;
-    points_.set(points_.count++, p_W, here.cell.center_T_m + off_m, here.cell.normal_T, area_m2,
+    points_.set(points_.count, p_W, here.cell.center_T_m + off_m, here.cell.normal_T, area_m2,
                 std::max(0.0, rest.signed_distance_m), rest.normal, here.cell.sample);
+    points_.set_spread(points_.count++, here.cell.spread_m, nullptr);
   }
 
   void add_cut(const PlacedCell& here) noexcept {
     const SurfaceCell& cell = here.cell;
     CutPolygon polygon({cell.corner_m.data(), static_cast<std::size_t>(cell.corners)});
     cut(body_, here, polygon);
-    if (!polygon.is_cut() && here.rest.signed_distance_m < 0.0) return put_inside(here, Vec3::Zero(), cell.area_m2);
-    const CutPolygon::Moments kept = polygon.moments();
+    if (!polygon.is_cut() && here.rest.signed_distance_m < 0.0) return put_inside(here);
+    CutPolygon::Moments part = polygon.moments();
     const CutPolygon::Moments whole =
         CutPolygon({cell.corner_m.data(), static_cast<std::size_t>(cell.corners)}).moments();
-    const double share = whole.area_m2 > 0.0 ? kept.area_m2 / whole.area_m2 : 0.0;
+    const double share = whole.area_m2 > 0.0 ? part.area_m2 / whole.area_m2 : 0.0;
     if (!(share > 0.0)) return put_outside(here, Vec3::Zero(), cell.area_m2);
-    // A part of nearly all is told from the whole.
-    const double part = std::min(share, 1.0 - 1e-9);
-    const Vec3 off_m = kept.center_m - whole.center_m;
-    put_inside(here, off_m, part * cell.area_m2);
-    put_outside(here, -part / (1.0 - part) * off_m, (1.0 - part) * cell.area_m2);
+    // The polygon's, moved to the surface that bulges from it.
+    part.center_m -= whole.center_m;
+    part.area_m2 = share * cell.area_m2;
+    put_rim(here, part);
+    if (share < 1.0) put_outside(here, -share / (1.0 - share) * part.center_m, (1.0 - share) * cell.area_m2);
   }
 
   const Body& body_;
@@ -275,20 +313,16 @@ InsideSummary summarise(const scene::Shape& shape, const RegionPoints& points) n
   return summary;
 }
 
-/// How the depth varies over a small square beneath a plane, both with their slope at the point.
-double depth_spread_m(const RegionPoints& points, std::size_t k, const Vec3& d_T, const Mat3& R_WT, const Vec3& d,
-                      double depth_m) noexcept {
-  const double cos_tool = points.cos_theta[k];
-  const Vec3 n_T(points.nx_T[k], points.ny_T[k], points.nz_T[k]);
-  Vec3 slope = R_WT * (n_T - cos_tool * d_T);  // times cos_tool
+/// Sets how the depth changes along the two vectors of the point's spread. From the tool's surface, which they lie in,
+/// d leads to the rest surface's tangent plane.
+void set_rises(RegionPoints& points, std::size_t k, const Mat3& R_WT, const Vec3& d) noexcept {
   const Vec3 n_W(points.rest_nx_W[k], points.rest_ny_W[k], points.rest_nz_W[k]);
   const double cos_body = -n_W.dot(d);
   // The closest point may be on another side than the one that d leads away from.
-  if (cos_body > 0.3) slope += cos_tool / cos_body * (n_W + cos_body * d);
-  // Of a square of side h, variance h^2 slope^2 / 12; its projected area is h^2 = A cos_tool.
-  const double spread_m = std::sqrt(slope.squaredNorm() * points.area_m2[k] / (12.0 * std::max(cos_tool, 1e-3)));
-  // A ramp that begins at depth 0.
-  return std::min(spread_m, depth_m / std::numbers::sqrt3);
+  const Vec3 slope_T = R_WT.transpose() * (cos_body > 0.3 ? Vec3(-n_W / cos_body) : d);
+  const Spread spread_T_m = points.spread_T_m(k);
+  points.rise1_m[k] = slope_T.dot(spread_T_m[0]);
+  points.rise2_m[k] = slope_T.dot(spread_T_m[1]);
 }
 
 template <class Body>
@@ -311,7 +345,11 @@ RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const V
     points.cos_theta[k] = cos_theta;
     points.depth_m[k] = depth_m;
     const double projected_m2 = points.area_m2[k] * cos_theta;
-    points.depth_spread_m[k] = spread ? depth_spread_m(points, k, d_T, R_WT, d, depth_m) : 0.0;
+    if (spread) {
+      set_rises(points, k, R_WT, d);
+    } else {
+      points.rise1_m[k] = points.rise2_m[k] = 0.0;
+    }
     const Vec3 on_surface_m = p_W - depth_m * d;
     if (kept == 1 || depth_m > extent.deepest_m) {
       extent.deepest_m = depth_m;
@@ -345,24 +383,30 @@ constexpr Detection detection_of{&find_inside<Body>, &find_cells<Body>,     &sum
 
 namespace {
 
-constexpr int columns = 17;  // of doubles
+constexpr int columns = 24;  // of doubles
 
 /// Columns that lie a power of two apart would share a few lines of the cache.
 std::size_t stride(std::size_t capacity) noexcept { return (capacity / 8 | 1) * 8 + 16; }
 
 std::array<double**, columns> columns_of(RegionPoints& p) noexcept {
-  return {&p.x_W_m,   &p.y_W_m,     &p.z_W_m,   &p.x_T_m,          &p.y_T_m,     &p.z_T_m,
-          &p.nx_T,    &p.ny_T,      &p.nz_T,    &p.rest_nx_W,      &p.rest_ny_W, &p.rest_nz_W,
-          &p.area_m2, &p.cos_theta, &p.depth_m, &p.depth_spread_m, &p.share};
+  return {&p.x_W_m,   &p.y_W_m,     &p.z_W_m,     &p.x_T_m,     &p.y_T_m,     &p.z_T_m,   &p.nx_T,    &p.ny_T,
+          &p.nz_T,    &p.rest_nx_W, &p.rest_ny_W, &p.rest_nz_W, &p.e1x_T_m,   &p.e1y_T_m, &p.e1z_T_m, &p.e2x_T_m,
+          &p.e2y_T_m, &p.e2z_T_m,   &p.area_m2,   &p.depth_m,   &p.cos_theta, &p.rise1_m, &p.rise2_m, &p.share};
+}
+
+/// Those that detection fills.
+std::array<double**, columns - 4> found_columns_of(RegionPoints& p) noexcept {
+  std::array<double**, columns - 4> found{};
+  const auto all = columns_of(p);
+  std::copy_n(all.begin(), found.size(), found.begin());
+  return found;
 }
 
 }  // namespace
 
 void RegionPoints::move(int from, int to) noexcept {
   const auto i = static_cast<std::size_t>(from), k = static_cast<std::size_t>(to);
-  for (double* column :
-       {x_W_m, y_W_m, z_W_m, x_T_m, y_T_m, z_T_m, nx_T, ny_T, nz_T, rest_nx_W, rest_ny_W, rest_nz_W, area_m2, depth_m})
-    column[k] = column[i];
+  for (double** column : found_columns_of(*this)) (*column)[k] = (*column)[i];
   cell[k] = cell[i];
   sample[k] = sample[i];
 }
@@ -374,11 +418,11 @@ void RegionPoints::reorder(std::span<const std::int32_t> order, double* scratch)
     for (std::size_t k = 0; k < order.size(); ++k)
       column[k] = static_cast<std::remove_reference_t<decltype(*column)>>(scratch[k]);
   };
-  for (double* column :
-       {x_W_m, y_W_m, z_W_m, x_T_m, y_T_m, z_T_m, nx_T, ny_T, nz_T, rest_nx_W, rest_ny_W, rest_nz_W, area_m2, depth_m})
-    through_scratch(column);
+  for (double** column : found_columns_of(*this)) through_scratch(*column);
   through_scratch(sample);
-  for (std::size_t k = 0; k < order.size(); ++k) cell[k] = nullptr;
+  for (std::size_t k = 0; k < order.size(); ++k)
+    scratch[k] = std::bit_cast<double>(cell[static_cast<std::size_t>(order[k])]);
+  for (std::size_t k = 0; k < order.size(); ++k) cell[k] = std::bit_cast<const SurfaceCell*>(scratch[k]);
   count = static_cast<int>(order.size());
 }
 
@@ -387,7 +431,7 @@ RegionPoints RegionPoints::slice(int begin, int size) const noexcept {
   for (double** column : columns_of(part)) *column += begin;
   part.cell += begin;
   part.sample += begin;
-  part.count = size;
+  part.count = part.capacity = size;
   return part;
 }
 
@@ -405,6 +449,7 @@ RegionPoints PointStore::window() noexcept {
   }
   points.cell = cells_.data();
   points.sample = samples_.data();
+  points.capacity = capacity();
   return points;
 }
 

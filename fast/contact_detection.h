@@ -8,6 +8,7 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -23,28 +24,44 @@ struct Placement {
 
 /// The points p_i of one contact region: a window on a PointStore.
 struct RegionPoints {
-  int count = 0;
+  int count = 0, capacity = 0;
   double *x_W_m = nullptr, *y_W_m = nullptr, *z_W_m = nullptr;              ///< p_i in the world
   double *x_T_m = nullptr, *y_T_m = nullptr, *z_T_m = nullptr;              ///< p_i about the tool's mass centre
   double *nx_T = nullptr, *ny_T = nullptr, *nz_T = nullptr;                 ///< outward normal n_i of the tool
   double *rest_nx_W = nullptr, *rest_ny_W = nullptr, *rest_nz_W = nullptr;  ///< of the rest surface, closest point
   double* area_m2 = nullptr;                                                ///< A_i
   double* cos_theta = nullptr;                                              ///< n_i . d, >= 0
-  double* depth_m = nullptr;           ///< d_i, along d from the rest surface; as found: to it
-  double* depth_spread_m = nullptr;    ///< standard deviation of the depth over the point's area; 0 for a sample
-  double* share = nullptr;             ///< m_i / m
-  const SurfaceCell** cell = nullptr;  ///< whole inside, so that its corners are the area's
-  std::int32_t* sample = nullptr;      ///< of ToolSamples; several may have one
+  double *e1x_T_m = nullptr, *e1y_T_m = nullptr, *e1z_T_m = nullptr;        ///< Spread of A_i, first vector; of cells
+  double *e2x_T_m = nullptr, *e2y_T_m = nullptr, *e2z_T_m = nullptr;        ///< second
+  double* depth_m = nullptr;                      ///< d_i, along d from the rest surface; as found: to it
+  double *rise1_m = nullptr, *rise2_m = nullptr;  ///< of the depth along the two vectors; 0 for a sample
+  double* share = nullptr;                        ///< m_i / m
+  const SurfaceCell** cell = nullptr;             ///< that is wholly the point
+  std::int32_t* sample = nullptr;                 ///< of ToolSamples; several may have one
 
   [[nodiscard]] scene::Vec3 p_W_m(std::size_t i) const noexcept { return {x_W_m[i], y_W_m[i], z_W_m[i]}; }
   [[nodiscard]] scene::Vec3 p_T_m(std::size_t i) const noexcept { return {x_T_m[i], y_T_m[i], z_T_m[i]}; }
   /// Copies point `from` to the place `to`, as far as detection has filled it.
   void move(int from, int to) noexcept;
+  [[nodiscard]] Spread spread_T_m(std::size_t i) const noexcept {
+    return {scene::Vec3(e1x_T_m[i], e1y_T_m[i], e1z_T_m[i]), scene::Vec3(e2x_T_m[i], e2y_T_m[i], e2z_T_m[i])};
+  }
+  /// Standard deviation of the depth over the point's area.
+  [[nodiscard]] double depth_spread_m(std::size_t i) const noexcept {
+    return std::sqrt(rise1_m[i] * rise1_m[i] + rise2_m[i] * rise2_m[i]);
+  }
+  void set_spread(int k, const Spread& spread_T_m, const SurfaceCell* whole) noexcept {
+    cell[k] = whole;
+    e1x_T_m[k] = spread_T_m[0].x();
+    e1y_T_m[k] = spread_T_m[0].y();
+    e1z_T_m[k] = spread_T_m[0].z();
+    e2x_T_m[k] = spread_T_m[1].x();
+    e2y_T_m[k] = spread_T_m[1].y();
+    e2z_T_m[k] = spread_T_m[1].z();
+  }
   /// Fills place k as detection does. @param distance_m signed, to the rest surface
   void set(int k, const scene::Vec3& at_W_m, const scene::Vec3& at_T_m, const scene::Vec3& normal_T, double part_m2,
-           double distance_m, const scene::Vec3& rest_normal_W, std::int32_t of_sample,
-           const SurfaceCell* whole = nullptr) noexcept {
-    cell[k] = whole;
+           double distance_m, const scene::Vec3& rest_normal_W, std::int32_t of_sample) noexcept {
     x_W_m[k] = at_W_m.x();
     y_W_m[k] = at_W_m.y();
     z_W_m[k] = at_W_m.z();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 
@@ -28,7 +29,7 @@ void normalise(RegionPoints& points, double sum) noexcept {
 
 }  // namespace
 
-void distribute_mass_published(const Vec3& d_T, RegionPoints& points) noexcept {
+void distribute_mass_published(const Vec3& d_T, const CellGroups&, RegionPoints& points) noexcept {
   double sum = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
     points.share[i] = std::sqrt(lever_arm2_m2(points, i, d_T)) * points.cos_theta[i];
@@ -36,9 +37,6 @@ void distribute_mass_published(const Vec3& d_T, RegionPoints& points) noexcept {
   }
   normalise(points, sum);
 }
-
-/// Of the projected area: cells nearer than this are taken as they are.
-constexpr double near2 = 6.0;
 
 double mean_inverse_distance_per_m(double r2_m2, double disc_radius_m) noexcept {
   const double R = disc_radius_m, R2_m2 = R * R;
@@ -62,7 +60,7 @@ double mean_inverse_distance_per_m(double r2_m2, double disc_radius_m) noexcept 
 namespace {
 
 /// Mean of 1 / r over a polygon in the plane, r from the origin [1/m]: sums over its sides.
-double mean_inverse_distance_per_m(std::span<const Eigen::Vector2d> corner_m) noexcept {
+double mean_over_polygon_per_m(std::span<const Eigen::Vector2d> corner_m) noexcept {
   double sum_m = 0.0, area_m2 = 0.0;
   for (std::size_t k = 0; k < corner_m.size(); ++k) {
     const Eigen::Vector2d &a = corner_m[k], &b = corner_m[k + 1 == corner_m.size() ? 0 : k + 1];
@@ -78,27 +76,71 @@ double mean_inverse_distance_per_m(std::span<const Eigen::Vector2d> corner_m) no
   return sum_m / area_m2;
 }
 
+/// Moments of a piece of surface projected along d, about the line through the mass centre.
+struct Projected {
+  double area_m2;
+  double r2_m2;                 ///< squared distance of its middle
+  double along1_m2, along2_m2;  ///< its spread's two vectors times the middle's place
+  double variance_m2;           ///< its spread across d
+
+  Projected(double part_m2, const Vec3& center_T_m, const Spread& spread_m, const Vec3& d_T) noexcept
+      : area_m2(part_m2) {
+    const double on_line_m = center_T_m.dot(d_T), up1_m = spread_m[0].dot(d_T), up2_m = spread_m[1].dot(d_T);
+    r2_m2 = std::max(0.0, center_T_m.squaredNorm() - on_line_m * on_line_m);
+    along1_m2 = spread_m[0].dot(center_T_m) - up1_m * on_line_m;
+    along2_m2 = spread_m[1].dot(center_T_m) - up2_m * on_line_m;
+    variance_m2 = spread_m[0].squaredNorm() + spread_m[1].squaredNorm() - up1_m * up1_m - up2_m * up2_m;
+  }
+  /// Too near for the first terms of a series.
+  [[nodiscard]] bool near() const noexcept { return !(r2_m2 > 6.0 * variance_m2); }
+  /// Integral of 1 / r [m], where that is not near.
+  [[nodiscard]] double over_distance_m() const noexcept {
+    const double inverse_per_m2 = 1.0 / r2_m2;
+    const double across_m2 = 3.0 * (along1_m2 * along1_m2 + along2_m2 * along2_m2) * inverse_per_m2 - variance_m2;
+    return area_m2 * std::sqrt(inverse_per_m2) * (1.0 + 0.5 * across_m2 * inverse_per_m2);
+  }
+};
+
+/// Integral of 1 / r over a whole cell, by its shape where it is near [m].
+double over_distance_m(const SurfaceCell& cell, const CellGroups& groups, const Vec3& d_T) noexcept {
+  const double area_m2 = cell.area_m2 * cell.normal_T.dot(d_T);
+  if (!(area_m2 > 0.0)) return 0.0;
+  const Projected whole(area_m2, cell.center_T_m, cell.spread_m, d_T);
+  if (!whole.near()) return whole.over_distance_m();
+  if (cell.group >= 0) {
+    double sum_m = 0.0;
+    for (const SurfaceCell& half : halves(cell, groups)) sum_m += over_distance_m(half, groups, d_T);
+    return sum_m;
+  }
+  const Vec3 u_T = d_T.unitOrthogonal(), v_T = d_T.cross(u_T);
+  const Outline border = outline(cell);
+  std::array<Eigen::Vector2d, 10> corner_m;
+  for (std::size_t k = 0; k < border.corners; ++k)
+    corner_m[k] = {border.corner_T_m[k].dot(u_T), border.corner_T_m[k].dot(v_T)};
+  return area_m2 * mean_over_polygon_per_m({corner_m.data(), border.corners});
+}
+
 }  // namespace
 
-void distribute_mass_corrected(const Vec3& d_T, RegionPoints& points) noexcept {
+void distribute_mass_corrected(const Vec3& d_T, const CellGroups& groups, RegionPoints& points) noexcept {
   double sum = 0.0;
-  const Vec3 u_T = d_T.unitOrthogonal(), v_T = d_T.cross(u_T);
   for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
-    const double projected_m2 = points.area_m2[i] * points.cos_theta[i];
     points.share[i] = 0.0;
-    if (!(projected_m2 > 0.0)) continue;
-    const double disc_radius_m = std::sqrt(projected_m2 / std::numbers::pi);
-    const double r2_m2 = lever_arm2_m2(points, i, d_T);
-    if (const SurfaceCell* cell = points.cell[i]; cell != nullptr && r2_m2 < near2 * projected_m2) {
-      const Outline border = outline(*cell);
-      std::array<Eigen::Vector2d, 10> corner_m;
-      for (std::size_t k = 0; k < border.corners; ++k)
-        corner_m[k] = {border.corner_T_m[k].dot(u_T), border.corner_T_m[k].dot(v_T)};
-      points.share[i] = projected_m2 * mean_inverse_distance_per_m({corner_m.data(), border.corners});
+    const double area_m2 = points.area_m2[i] * points.cos_theta[i];
+    if (!(area_m2 > 0.0)) continue;
+    const Projected part(area_m2, points.p_T_m(i), points.spread_T_m(i), d_T);
+    if (!part.near()) {
+      points.share[i] = part.over_distance_m();
+    } else if (points.cell[i] != nullptr) {
+      points.share[i] = over_distance_m(*points.cell[i], groups, d_T);
     } else {
-      points.share[i] = projected_m2 * mean_inverse_distance_per_m(r2_m2, disc_radius_m);
+      points.share[i] = area_m2 * mean_inverse_distance_per_m(part.r2_m2, std::sqrt(area_m2 / std::numbers::pi));
     }
     sum += points.share[i];
+    // Depth and 1 / r vary together over the point's area.
+    const double shift_m = (points.rise1_m[i] * part.along1_m2 + points.rise2_m[i] * part.along2_m2) /
+                           std::max({part.r2_m2, part.variance_m2, std::numeric_limits<double>::min()});
+    points.depth_m[i] = std::max(0.0, points.depth_m[i] - shift_m);
   }
   normalise(points, sum);
 }

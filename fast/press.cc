@@ -93,7 +93,7 @@ StepStatus measure(const FastModel& model, const Motion& motion, ContactRegion& 
   region.origin = deformation_origin(*model.body, model.detection.exit_distance_m, region.d, region.extent);
   const bool held = limit_depths(depth_limit_rel * region.extent.thickness_m, region.points);
   state.lap(Stage::detection);
-  model.formulas.distribute_mass(motion.at.R_WT.transpose() * region.d, region.points);
+  model.formulas.distribute_mass(motion.at.R_WT.transpose() * region.d, model.tool.groups, region.points);
   return held ? StepStatus::depth_limited : StepStatus::ok;
 }
 

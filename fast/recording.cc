@@ -14,8 +14,8 @@ using scene::Vec3;
 constexpr double rounding = 1.0 + 1e-6;
 
 /// Columns of RecordedTick::numbers, in that order.
-std::array<double**, 6> columns_of(RegionPoints& p) noexcept {
-  return {&p.x_T_m, &p.y_T_m, &p.z_T_m, &p.depth_m, &p.depth_spread_m, &p.share};
+std::array<double**, 7> columns_of(RegionPoints& p) noexcept {
+  return {&p.x_T_m, &p.y_T_m, &p.z_T_m, &p.depth_m, &p.rise1_m, &p.rise2_m, &p.share};
 }
 
 RecordedTick record(const ContactRegion& region, const Motion& motion, bool created, int instant) {

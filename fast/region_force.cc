@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace touchstone::fast {
 
@@ -11,7 +12,8 @@ RegionLoad region_load(const DuffingLaw& law, const RegionPoints& points, double
   RegionLoad sum;
   for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
     const double depth_m = depth_scale * points.depth_m[i];
-    const double spread_m = depth_scale * points.depth_spread_m[i];
+    // A ramp begins at depth 0.
+    const double spread_m = std::min(depth_scale * points.depth_spread_m(i), depth_m / std::numbers::sqrt3);
     // Exact for a cubic law over depths that vary evenly about their mean.
     const double F_i = points.share[i] * 0.5 * (law.force_n(depth_m - spread_m) + law.force_n(depth_m + spread_m));
     sum.force_n += F_i;

@@ -39,8 +39,20 @@ MeridianMoments meridian_moments(const Band& band) noexcept {
 /// Integral of r along the meridian's part: exact.
 double area_per_turn_m2(const Band& band, const MeridianMoments& moments) noexcept {
   if (band.arc_radius_m == 0.0) return moments.r_m2;
-  return band.arc_radius_m * (band.arc_center_m.x() * band.arc_angle +
-                              band.arc_radius_m * (band.end_normal.y() - band.start_normal.y()));
+  return band.arc_radius_m *
+         (band.arc_center_m.x() * band.arc_angle + band.arc_radius_m * (band.end_normal.y() - band.start_normal.y()));
+}
+
+/// @param second_m2  mean of x x^T over a surface; what is not in a plane is left out
+Spread spread_of(scene::Mat3 second_m2) noexcept {
+  Spread spread_m;
+  for (Vec3& axis_m : spread_m) {
+    Eigen::Index largest = 0;
+    const double most_m2 = second_m2.diagonal().maxCoeff(&largest);
+    axis_m = most_m2 > 0.0 ? Vec3(second_m2.col(largest) / std::sqrt(most_m2)) : Vec3(Vec3::Zero());
+    second_m2 -= axis_m * axis_m.transpose();
+  }
+  return spread_m;
 }
 
 double farthest_m(const SurfaceCell& cell) noexcept {
@@ -107,6 +119,12 @@ SurfaceCell flat_cell(std::span<const Vec3> corners_T_m) noexcept {
   cell.area_m2 = cell.corners == 3 ? 0.5 * length_m2 : length_m2;
   cell.normal_T = length_m2 > 0.0 ? Vec3(across / length_m2) : Vec3(Vec3::UnitZ());
   cell.radius_m = farthest_m(cell);
+  if (cell.corners == 3) {
+    cell.spread_m = {(cell.corner_m[1] - cell.corner_m[0]) / std::sqrt(24.0), cell.corner_m[2] / std::sqrt(8.0)};
+  } else {
+    cell.spread_m = {(cell.corner_m[1] - cell.corner_m[0]) / std::sqrt(12.0),
+                     (cell.corner_m[2] - cell.corner_m[1]) / std::sqrt(12.0)};
+  }
   return cell;
 }
 
@@ -135,6 +153,7 @@ SurfaceCell band_cell(const Band& band) noexcept {
   const double r_m_most = std::max(band.start_m.x(), band.end_m.x());
   cell.bulge_m = 0.125 * ((r_m_most + cell_sagitta_m(band)) * band.turn * band.turn) + cell_sagitta_m(band);
   cell.radius_m = farthest_m(cell) + cell.bulge_m;
+  cell.spread_m = CutPolygon(cell.corner_m).moments().spread_m;
   return cell;
 }
 
@@ -171,37 +190,31 @@ SurfaceCell CellGroups::around(std::span<const std::int32_t> triangles) const {
     normal_sum += part.area_m2 * part.normal_T;
   }
   cell.center_T_m = center_sum / cell.area_m2;
+  const double surface_m2 = cell.area_m2;
+  cell.area_m2 = normal_sum.norm();
   cell.normal_T = normal_sum.normalized();
-  // Second moments of a triangle: a twelfth of its area for each corner and nine for the centre.
-  scene::Mat3 spread = scene::Mat3::Zero();
-  double farthest2_m2 = 0.0;
+  scene::Mat3 second_m2 = scene::Mat3::Zero();
   for (const std::int32_t i : triangles) {
     const SurfaceCell part = flat_cell(triangles_T_m[static_cast<std::size_t>(i)]);
-    const auto add = [&](const Vec3& p_m, double weight_m2) {
-      const Vec3 off_m = p_m - cell.center_T_m;
-      const Vec3 flat_m = off_m - off_m.dot(cell.normal_T) * cell.normal_T;
-      spread += weight_m2 * flat_m * flat_m.transpose();
-      farthest2_m2 = std::max(farthest2_m2, off_m.squaredNorm());
-    };
-    add(part.center_T_m, 0.75 * part.area_m2);
-    for (int k = 0; k < 3; ++k) add(part.center_T_m + part.corner_m[static_cast<std::size_t>(k)], part.area_m2 / 12.0);
+    const Vec3 off_m = part.center_T_m - cell.center_T_m;
+    second_m2 += part.area_m2 / surface_m2 *
+                 (off_m * off_m.transpose() + part.spread_m[0] * part.spread_m[0].transpose() +
+                  part.spread_m[1] * part.spread_m[1].transpose());
   }
-  const Eigen::SelfAdjointEigenSolver<scene::Mat3> axes(spread);
-  const Vec3 u = axes.eigenvectors().col(2), v = cell.normal_T.cross(u).normalized();
-  const double length2 = std::max(axes.eigenvalues()[2], 0.0), width2 = std::max(axes.eigenvalues()[1], 0.0);
-  const double ratio = width2 > 1e-12 * length2 ? std::sqrt(length2 / width2) : 1e6;
-  const double half_u_m = 0.5 * std::sqrt(cell.area_m2 * ratio), half_v_m = 0.5 * std::sqrt(cell.area_m2 / ratio);
-  cell.corner_m = {-half_u_m * u - half_v_m * v, half_u_m * u - half_v_m * v, half_u_m * u + half_v_m * v,
-                   -half_u_m * u + half_v_m * v};
-  cell.radius_m = std::max(std::sqrt(farthest2_m2), farthest_m(cell));
+  cell.spread_m = spread_of(second_m2);
+  const Eigen::SelfAdjointEigenSolver<scene::Mat3> axes(second_m2);
+  const Vec3 u = axes.eigenvectors().col(2), v = cell.normal_T.cross(u).normalized(), w = u.cross(v);
+  Vec3 half_m = Vec3::Zero();
   for (const std::int32_t i : triangles) {
     for (const Vec3& corner_T_m : triangles_T_m[static_cast<std::size_t>(i)]) {
       const Vec3 off_m = corner_T_m - cell.center_T_m;
-      const Vec3 beyond_m(std::max(0.0, std::abs(off_m.dot(u)) - half_u_m),
-                          std::max(0.0, std::abs(off_m.dot(v)) - half_v_m), off_m.dot(cell.normal_T));
-      cell.bulge_m = std::max(cell.bulge_m, beyond_m.norm());
+      half_m = half_m.cwiseMax(Vec3(off_m.dot(u), off_m.dot(v), off_m.dot(w)).cwiseAbs());
+      cell.radius_m = std::max(cell.radius_m, off_m.norm());
     }
   }
+  cell.corner_m = {-half_m.x() * u - half_m.y() * v, half_m.x() * u - half_m.y() * v, half_m.x() * u + half_m.y() * v,
+                   -half_m.x() * u + half_m.y() * v};
+  cell.bulge_m = half_m.z();
   return cell;
 }
 
@@ -253,13 +266,21 @@ void CutPolygon::keep_below(const Vec3& normal, double level) noexcept {
 CutPolygon::Moments CutPolygon::moments() const noexcept {
   Moments sum;
   if (count_ < 3) return sum;
+  // About the first corner.
   Vec3 center_sum = Vec3::Zero();
+  scene::Mat3 second_sum = scene::Mat3::Zero();
   for (std::size_t k = 1; k + 1 < static_cast<std::size_t>(count_); ++k) {
-    const double area_m2 = 0.5 * (corner_m_[k] - corner_m_[0]).cross(corner_m_[k + 1] - corner_m_[0]).norm();
+    const Vec3 a = corner_m_[k] - corner_m_[0], b = corner_m_[k + 1] - corner_m_[0];
+    const double area_m2 = 0.5 * a.cross(b).norm();
     sum.area_m2 += area_m2;
-    center_sum += area_m2 / 3.0 * (corner_m_[0] + corner_m_[k] + corner_m_[k + 1]);
+    center_sum += area_m2 / 3.0 * (a + b);
+    const Vec3 both = a + b;
+    second_sum += area_m2 / 12.0 * (a * a.transpose() + b * b.transpose() + both * both.transpose());
   }
-  if (sum.area_m2 > 0.0) sum.center_m = center_sum / sum.area_m2;
+  if (!(sum.area_m2 > 0.0)) return sum;
+  const Vec3 off_m = center_sum / sum.area_m2;
+  sum.center_m = corner_m_[0] + off_m;
+  sum.spread_m = spread_of(second_sum / sum.area_m2 - off_m * off_m.transpose());
   return sum;
 }
 

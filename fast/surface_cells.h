@@ -26,18 +26,23 @@ struct Band {
   scene::Vec3 axis_T_m = scene::Vec3::Zero();                       ///< where (0, 0) is
 };
 
-/// Frame T.
-struct SurfaceCell {
+/// How a surface is spread about its middle: the mean of x x^T over it is the sum of a a^T over these two vectors, x
+/// from the middle.
+using Spread = std::array<scene::Vec3, 2>;
+
+/// Frame T. A cell that is wholly inside asks for the first two lines of the cache only.
+struct alignas(64) SurfaceCell {
   scene::Vec3 center_T_m;  ///< mean of its surface, so a little below a curved one
   scene::Vec3 normal_T;    ///< outward, mean
-  double area_m2 = 0.0;
+  Spread spread_m;
+  double area_m2 = 0.0;                 ///< of triangles that look different ways: projected along their normal_T
   double radius_m = 0.0;                ///< about the centre, of a ball with all of it
-  std::array<scene::Vec3, 4> corner_m;  ///< from the centre, in order
-  double bulge_m = 0.0;                 ///< no point of it is further from the polygon of its corners
-  int corners = 4;                      ///< 3 or 4
   std::int32_t sample = 0;              ///< of ToolSamples, whose cell this is or was cut from
   std::int32_t group = -1;              ///< of CellGroups: neighbouring triangles of a fine mesh
+  std::int8_t corners = 4;              ///< 3 or 4
   bool curved = false;                  ///< `band` says how; without group: flat
+  std::array<scene::Vec3, 4> corner_m;  ///< from the centre, in order; of a group: of a rectangle around it
+  double bulge_m = 0.0;                 ///< no point of it is further from the polygon of its corners
   Band band;
 };
 
@@ -45,7 +50,7 @@ struct SurfaceCell {
 [[nodiscard]] SurfaceCell flat_cell(std::span<const scene::Vec3> corners_T_m) noexcept;
 [[nodiscard]] SurfaceCell band_cell(const Band& band) noexcept;
 
-/// The cell's border as a polygon that follows wide arcs closely, in order.
+/// A cell's border, but of a group, as a polygon that follows wide arcs closely, in order.
 struct Outline {
   std::array<scene::Vec3, 10> corner_T_m;
   std::size_t corners = 0;
@@ -63,7 +68,7 @@ struct CellGroups {
 
   /// A node's or a triangle's cell.
   [[nodiscard]] SurfaceCell cell(std::int32_t child) const noexcept;
-  /// The cell of some triangles: a rectangle of their area, as long and wide as they spread.
+  /// The cell of some triangles, with their area, middle and spread.
   [[nodiscard]] SurfaceCell around(std::span<const std::int32_t> triangles) const;
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };
@@ -88,6 +93,7 @@ class CutPolygon {
   struct Moments {
     double area_m2 = 0.0;
     scene::Vec3 center_m = scene::Vec3::Zero();
+    Spread spread_m{scene::Vec3::Zero(), scene::Vec3::Zero()};
   };
   [[nodiscard]] Moments moments() const noexcept;
 

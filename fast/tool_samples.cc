@@ -336,13 +336,13 @@ class Grouping {
   Cloud coarse_;
 };
 
-ToolSamples sample_mesh(const scene::TriangleMesh& mesh, int count) {
+/// @param even  no more samples of a convex mesh than of the shape it may stand for: put together from smaller parts
+ToolSamples sample_mesh(const scene::TriangleMesh& mesh, int count, bool even) {
   const double surface_m2 = mesh.area_m2(), limit_m2 = surface_m2 / count;
-  // A convex mesh may stand for a shape, so its samples are no more than the shape's: put together from smaller parts.
   constexpr double parts_per_sample = 8.0;
   Cloud cloud;
   for (const auto& triangle : mesh.triangles)
-    halve_until(mesh.convex ? limit_m2 / parts_per_sample : limit_m2,
+    halve_until(even && mesh.convex ? limit_m2 / parts_per_sample : limit_m2,
                 flat_cell(std::array<Vec3, 3>{mesh.points_m.col(triangle[0]), mesh.points_m.col(triangle[1]),
                                               mesh.points_m.col(triangle[2])}),
                 cloud);
@@ -359,7 +359,7 @@ std::size_t ToolSamples::memory_bytes() const noexcept {
 }
 
 ToolSamples cell_tool(const scene::Tool& tool, int count) {
-  if (tool.shape == scene::ToolShape::mesh) return sample_mesh(scene::tool_mesh(tool), count);
+  if (tool.shape == scene::ToolShape::mesh) return sample_mesh(scene::tool_mesh(tool), count, false);
   const auto shape = scene::tool_shape(tool);
   switch (tool.shape) {
     case scene::ToolShape::sphere:
@@ -374,7 +374,8 @@ ToolSamples cell_tool(const scene::Tool& tool, int count) {
 ToolSamples sample_tool(const scene::Tool& tool, int count) {
   if (tool.shape == scene::ToolShape::sphere)
     return sample_sphere(static_cast<const scene::Sphere&>(*scene::tool_shape(tool)), count);
-  ToolSamples samples = cell_tool(tool, count);
+  ToolSamples samples =
+      tool.shape == scene::ToolShape::mesh ? sample_mesh(scene::tool_mesh(tool), count, true) : cell_tool(tool, count);
   samples.cell = {};
   samples.groups = {};
   return samples;
