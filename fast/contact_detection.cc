@@ -160,14 +160,28 @@ class CellFinder {
     return here.rest.signed_distance_m + lowest;
   }
 
-  /// The cut of a surface whose shape is not known, as that of a rectangle with two sides along the water line, of the
-  /// same area, middle and spread. @return whether some of it is inside
+  /// A cell's spread in two vectors, of which one is level and the other shows how the surface rises.
+  struct Slope {
+    double rise_m;  ///< over the tangent plane of the rest surface, along `up_m`
+    Vec3 up_m, level_m;
+  };
+  [[nodiscard]] Slope slope(const PlacedCell& here) const noexcept {
+    const Spread& spread_m = here.cell.spread_m;
+    const Vec3 normal_T = at_.R_WT.transpose() * here.rest.normal;
+    const double rise1_m = normal_T.dot(spread_m[0]), rise2_m = normal_T.dot(spread_m[1]);
+    const double rise_m = std::sqrt(rise1_m * rise1_m + rise2_m * rise2_m);
+    if (!(rise_m > 0.0)) return {0.0, spread_m[0], spread_m[1]};
+    return {rise_m, (rise1_m * spread_m[0] + rise2_m * spread_m[1]) / rise_m,
+            (rise1_m * spread_m[1] - rise2_m * spread_m[0]) / rise_m};
+  }
+
+  /// The cut of a surface whose shape is not known: that of a rectangle with two level sides, of the same area, middle
+  /// and spread. @return whether some of it is inside
   bool add_group(const PlacedCell& here) noexcept {
     const SurfaceCell& cell = here.cell;
-    const Vec3 normal_T = at_.R_WT.transpose() * here.rest.normal;
-    const double rise1_m = normal_T.dot(cell.spread_m[0]), rise2_m = normal_T.dot(cell.spread_m[1]);
-    const double rise_m = std::sqrt(rise1_m * rise1_m + rise2_m * rise2_m), half_m = std::numbers::sqrt3 * rise_m;
-    const double middle_m = here.rest.signed_distance_m, lowest_m = middle_m - half_m;
+    const Slope slope = this->slope(here);
+    const double half_m = std::numbers::sqrt3 * slope.rise_m, middle_m = here.rest.signed_distance_m;
+    const double lowest_m = middle_m - half_m;
     if (lowest_m >= 0.0) {
       put_outside(here, Vec3::Zero(), cell.area_m2);
       return false;
@@ -176,15 +190,7 @@ class CellFinder {
       put_inside(here);
       return true;
     }
-    const double share = -lowest_m / (2.0 * half_m);
-    const Vec3 up_m = (rise1_m * cell.spread_m[0] + rise2_m * cell.spread_m[1]) / rise_m;
-    const Vec3 level_m = (rise1_m * cell.spread_m[1] - rise2_m * cell.spread_m[0]) / rise_m;
-    CutPolygon::Moments part;
-    part.area_m2 = share * cell.area_m2;
-    part.center_m = (0.5 * lowest_m - middle_m) / rise_m * up_m;
-    part.spread_m = {share * up_m, level_m};
-    put_rim(here, part);
-    put_outside(here, -share / (1.0 - share) * part.center_m, (1.0 - share) * cell.area_m2);
+    put_rim(here, slope, -lowest_m / (2.0 * half_m), (0.5 * lowest_m - middle_m) / slope.rise_m * slope.up_m);
     return true;
   }
 
@@ -194,16 +200,18 @@ class CellFinder {
       points_.set_spread(points_.count++, cell.spread_m, &cell);
   }
 
-  /// @param part  about the cell's centre, tool frame
-  void put_rim(const PlacedCell& here, const CutPolygon::Moments& part) noexcept {
+  /// @param off_m  from the cell's centre to the middle of the share that is inside, tool frame
+  void put_rim(const PlacedCell& here, const Slope& slope, double share, const Vec3& off_m) noexcept {
     const SurfaceCell& cell = here.cell;
-    const Vec3 p_W = here.p_W + at_.R_WT * part.center_m;
+    const double area_m2 = share * cell.area_m2;
+    const Vec3 p_W = here.p_W + at_.R_WT * off_m;
     RestDistance rest = rest_distance(body_, p_W);
     // A curved surface may pass beneath the middle of the part under its tangent plane.
     rest.signed_distance_m = std::min(rest.signed_distance_m, -std::numeric_limits<double>::min());
-    rim_m2_ += part.area_m2;
-    if (put(p_W, cell.center_T_m + part.center_m, cell, part.area_m2, rest))
-      points_.set_spread(points_.count++, part.spread_m, nullptr);
+    rim_m2_ += area_m2;
+    if (put(p_W, cell.center_T_m + off_m, cell, area_m2, rest))
+      points_.set_spread(points_.count++, {share * slope.up_m, slope.level_m}, nullptr);
+    if (share < 1.0) put_outside(here, -share / (1.0 - share) * off_m, (1.0 - share) * cell.area_m2);
   }
 
   bool put(const Vec3& p_W, const Vec3& p_T, const SurfaceCell& cell, double area_m2,
@@ -231,16 +239,11 @@ class CellFinder {
     CutPolygon polygon({cell.corner_m.data(), static_cast<std::size_t>(cell.corners)});
     cut(body_, here, polygon);
     if (!polygon.is_cut() && here.rest.signed_distance_m < 0.0) return put_inside(here);
-    CutPolygon::Moments part = polygon.moments();
-    const CutPolygon::Moments whole =
-        CutPolygon({cell.corner_m.data(), static_cast<std::size_t>(cell.corners)}).moments();
-    const double share = whole.area_m2 > 0.0 ? part.area_m2 / whole.area_m2 : 0.0;
+    const CutPolygon::Moments part = polygon.moments();
+    const double share = cell.polygon_m2 > 0.0 ? std::min(1.0, part.area_m2 / cell.polygon_m2) : 0.0;
     if (!(share > 0.0)) return put_outside(here, Vec3::Zero(), cell.area_m2);
     // The polygon's, moved to the surface that bulges from it.
-    part.center_m -= whole.center_m;
-    part.area_m2 = share * cell.area_m2;
-    put_rim(here, part);
-    if (share < 1.0) put_outside(here, -share / (1.0 - share) * part.center_m, (1.0 - share) * cell.area_m2);
+    put_rim(here, slope(here), share, part.center_m - cell.polygon_center_m);
   }
 
   const Body& body_;

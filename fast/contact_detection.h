@@ -131,7 +131,7 @@ struct CellRule {
 };
 
 /// Halved cells that find_cells() looks at in a tick, at most.
-inline constexpr int max_cells = 4096;
+inline constexpr int max_cells = 1024;
 
 /// What find_cells() writes on its way. Halves are kept, since a contact mostly asks for those of the last tick; the
 /// answer never depends on which are.

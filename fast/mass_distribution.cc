@@ -117,7 +117,10 @@ double over_distance_m(const SurfaceCell& cell, const CellGroups& groups, const 
   std::array<Eigen::Vector2d, 10> corner_m;
   for (std::size_t k = 0; k < border.corners; ++k)
     corner_m[k] = {border.corner_T_m[k].dot(u_T), border.corner_T_m[k].dot(v_T)};
-  return area_m2 * mean_over_polygon_per_m({corner_m.data(), border.corners});
+  const double mean_per_m = mean_over_polygon_per_m({corner_m.data(), border.corners});
+  // No shape has more than the disc about the line; one seen from its edge has rounding in place of an area.
+  const double most_per_m = 2.0 * std::sqrt(std::numbers::pi / area_m2);
+  return area_m2 * (mean_per_m > 0.0 && mean_per_m < most_per_m ? mean_per_m : most_per_m);
 }
 
 }  // namespace

@@ -3,8 +3,17 @@
 namespace touchstone::fast {
 namespace {
 
-/// The force of the shipped tools is then within 1 % of its limit, see CellsConverge.
-constexpr CellRule corrected_cells{.points = 100, .rim_share = 0.25};
+/// The force is then within about 1 % of its limit, see CellsConverge.
+constexpr CellRule corrected_cells{.points = 64, .rim_share = 0.33};
+
+/// A cell says as much as several samples, and finer ones are made where they are needed.
+constexpr int samples_per_cell = 4;
+
+ToolSamples samples_of(const scene::Scene& scene) {
+  const int count = scene.fast.tool_samples;
+  if (scene.fast.formulation == scene::Formulation::published) return sample_tool(scene.tool, count);
+  return cell_tool(scene.tool, std::max(1, count / samples_per_cell));
+}
 
 Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
   const scene::FastSettings& fast = scene.fast;
@@ -30,8 +39,7 @@ Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
 FastModel::FastModel(const scene::Scene& scene)
     : body(scene::body_shape(scene.body)),
       detection(detection_for(scene.body.shape)),
-      tool(scene.fast.formulation == scene::Formulation::corrected ? cell_tool(scene.tool, scene.fast.tool_samples)
-                                                                   : sample_tool(scene.tool, scene.fast.tool_samples)),
+      tool(samples_of(scene)),
       law(scene.contact),
       friction(scene.contact.friction ? std::optional<FrictionLaw>(*scene.contact.friction) : std::nullopt),
       anchors(anchor_points(scene.body, *body)),

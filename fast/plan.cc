@@ -119,9 +119,10 @@ scene::Plan plan(const scene::Scene& scene) {
     plan.push_back({part, false, std::move(reason), "nothing"});
   };
   models("contact detection",
-         text("%d samples of the tool, %.3g mm apart, against the exact rest shape; %d points inside at the track's "
+         text("%d %s of the tool, %.3g mm apart, against the exact rest shape%s; %d points inside at the track's "
               "deepest instant",
-              model.tool.count(), model.tool.spacing_m * 1e3, measured.points) +
+              model.tool.count(), published ? "samples" : "cells", model.tool.spacing_m * 1e3,
+              published ? "" : ", and smaller ones where few are inside", measured.points) +
              (measured.deepest_m > 0.0 && !measured.contact
                   ? text("; CONTACT MISSED: the tool is %.3g mm deep there, so the force is missing; raise "
                          "fast.tool_samples",

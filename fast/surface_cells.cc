@@ -55,6 +55,23 @@ Spread spread_of(scene::Mat3 second_m2) noexcept {
   return spread_m;
 }
 
+/// Of a flat quadrilateral that may have two corners in one: of its two triangles together.
+Spread quadrilateral_spread(const std::array<Vec3, 4>& corner_m) noexcept {
+  Vec3 center_sum = Vec3::Zero();
+  scene::Mat3 second_sum = scene::Mat3::Zero();
+  double area_m2 = 0.0;
+  for (std::size_t k = 1; k < 3; ++k) {
+    const Vec3 a = corner_m[k] - corner_m[0], b = corner_m[k + 1] - corner_m[0], both = a + b;
+    const double part_m2 = 0.5 * a.cross(b).norm();
+    area_m2 += part_m2;
+    center_sum += part_m2 / 3.0 * both;
+    second_sum += part_m2 / 12.0 * (a * a.transpose() + b * b.transpose() + both * both.transpose());
+  }
+  if (!(area_m2 > 0.0)) return {Vec3::Zero(), Vec3::Zero()};
+  const Vec3 center_m = center_sum / area_m2;
+  return spread_of(second_sum / area_m2 - center_m * center_m.transpose());
+}
+
 double farthest_m(const SurfaceCell& cell) noexcept {
   double farthest2_m2 = 0.0;
   for (int k = 0; k < cell.corners; ++k)
@@ -119,6 +136,8 @@ SurfaceCell flat_cell(std::span<const Vec3> corners_T_m) noexcept {
   cell.area_m2 = cell.corners == 3 ? 0.5 * length_m2 : length_m2;
   cell.normal_T = length_m2 > 0.0 ? Vec3(across / length_m2) : Vec3(Vec3::UnitZ());
   cell.radius_m = farthest_m(cell);
+  cell.polygon_m2 = cell.area_m2;
+  cell.polygon_center_m.setZero();
   if (cell.corners == 3) {
     cell.spread_m = {(cell.corner_m[1] - cell.corner_m[0]) / std::sqrt(24.0), cell.corner_m[2] / std::sqrt(8.0)};
   } else {
@@ -153,7 +172,10 @@ SurfaceCell band_cell(const Band& band) noexcept {
   const double r_m_most = std::max(band.start_m.x(), band.end_m.x());
   cell.bulge_m = 0.125 * ((r_m_most + cell_sagitta_m(band)) * band.turn * band.turn) + cell_sagitta_m(band);
   cell.radius_m = farthest_m(cell) + cell.bulge_m;
-  cell.spread_m = CutPolygon(cell.corner_m).moments().spread_m;
+  const CutPolygon::Moments polygon = CutPolygon(cell.corner_m).moments();
+  cell.polygon_m2 = polygon.area_m2;
+  cell.polygon_center_m = polygon.center_m;
+  cell.spread_m = quadrilateral_spread(cell.corner_m);
   return cell;
 }
 
@@ -266,21 +288,13 @@ void CutPolygon::keep_below(const Vec3& normal, double level) noexcept {
 CutPolygon::Moments CutPolygon::moments() const noexcept {
   Moments sum;
   if (count_ < 3) return sum;
-  // About the first corner.
   Vec3 center_sum = Vec3::Zero();
-  scene::Mat3 second_sum = scene::Mat3::Zero();
   for (std::size_t k = 1; k + 1 < static_cast<std::size_t>(count_); ++k) {
-    const Vec3 a = corner_m_[k] - corner_m_[0], b = corner_m_[k + 1] - corner_m_[0];
-    const double area_m2 = 0.5 * a.cross(b).norm();
+    const double area_m2 = 0.5 * (corner_m_[k] - corner_m_[0]).cross(corner_m_[k + 1] - corner_m_[0]).norm();
     sum.area_m2 += area_m2;
-    center_sum += area_m2 / 3.0 * (a + b);
-    const Vec3 both = a + b;
-    second_sum += area_m2 / 12.0 * (a * a.transpose() + b * b.transpose() + both * both.transpose());
+    center_sum += area_m2 / 3.0 * (corner_m_[0] + corner_m_[k] + corner_m_[k + 1]);
   }
-  if (!(sum.area_m2 > 0.0)) return sum;
-  const Vec3 off_m = center_sum / sum.area_m2;
-  sum.center_m = corner_m_[0] + off_m;
-  sum.spread_m = spread_of(second_sum / sum.area_m2 - off_m * off_m.transpose());
+  if (sum.area_m2 > 0.0) sum.center_m = center_sum / sum.area_m2;
   return sum;
 }
 

@@ -42,6 +42,8 @@ struct alignas(64) SurfaceCell {
   std::int8_t corners = 4;              ///< 3 or 4
   bool curved = false;                  ///< `band` says how; without group: flat
   std::array<scene::Vec3, 4> corner_m;  ///< from the centre, in order; of a group: of a rectangle around it
+  double polygon_m2 = 0.0;              ///< area of the polygon of its corners
+  scene::Vec3 polygon_center_m;         ///< from the centre
   double bulge_m = 0.0;                 ///< no point of it is further from the polygon of its corners
   Band band;
 };
@@ -93,7 +95,6 @@ class CutPolygon {
   struct Moments {
     double area_m2 = 0.0;
     scene::Vec3 center_m = scene::Vec3::Zero();
-    Spread spread_m{scene::Vec3::Zero(), scene::Vec3::Zero()};
   };
   [[nodiscard]] Moments moments() const noexcept;
 

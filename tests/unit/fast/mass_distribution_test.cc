@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 namespace touchstone::fast {
 namespace {
@@ -35,7 +37,7 @@ double sum(const RegionPoints& points) { return std::accumulate(points.share, po
 TEST(MassDistribution, CorrectedBalancesTheLever) {
   // Supports at lever arms 1 : 3 carry 3/4 and 1/4, and the load's centre is the mass centre (errata E6).
   test::OwnedPoints points = flat({Vec3(0.01, 0.0, 0.0), Vec3(-0.03, 0.0, 0.0)});
-  distribute_mass_corrected(down, points);
+  distribute_mass_corrected(down, {}, points);
   EXPECT_NEAR(points.share[0], 0.75, 1e-12);
   EXPECT_NEAR(points.share[1], 0.25, 1e-12);
 }
@@ -58,9 +60,59 @@ TEST(MassDistribution, MeanOfTheInverseDistanceOverADisc) {
   }
 }
 
+/// A cell with its depth below a plane that rises along x and falls along y.
+void put(const SurfaceCell& cell, test::OwnedPoints& points) {
+  constexpr double rise = 0.3, fall = -0.2, at_axis_m = 0.002;
+  const int k = points.count++;
+  const Vec3& at_m = cell.center_T_m;
+  points.set(k, at_m, at_m, cell.normal_T, cell.area_m2, -(at_axis_m + rise * at_m.x() + fall * at_m.y()),
+             Vec3::UnitZ(), 0);
+  points.set_spread(k, cell.spread_m, &cell);
+  points.cos_theta[k] = 1.0;
+  points.rise1_m[k] = rise * cell.spread_m[0].x() + fall * cell.spread_m[0].y();
+  points.rise2_m[k] = rise * cell.spread_m[1].x() + fall * cell.spread_m[1].y();
+}
+
+/// @return the cell's share beside one of 1 mm^2 far off, and its depth
+std::pair<double, double> share_and_depth_m(const std::vector<SurfaceCell>& parts) {
+  test::OwnedPoints points(static_cast<int>(parts.size()) + 1);
+  for (const SurfaceCell& part : parts) put(part, points);
+  SurfaceCell far = parts.front();
+  far.center_T_m = Vec3(1.0, 0.0, 0.0);
+  far.area_m2 = 1e-6;
+  far.spread_m = {Vec3::Zero(), Vec3::Zero()};
+  put(far, points);
+  distribute_mass_corrected(down, {}, points);
+  double share = 0.0, depth_m = 0.0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    share += points.share[i];
+    depth_m += points.share[i] * points.depth_m[i];
+  }
+  return {share / points.share[parts.size()], depth_m / share};
+}
+
+TEST(MassDistribution, ACellIsAsItsManyParts) {
+  for (const double x_mm : {0.0, 0.3, 0.6, 1.0, 1.5, 3.0, 10.0}) {
+    const Vec3 corner_m(1e-3 * (x_mm - 0.5), -0.3e-3, -0.01), a_m(0.0, 1e-3, 0.0), b_m(1e-3, 0.0, 0.0);
+    const std::vector<SurfaceCell> whole{
+        flat_cell(std::array<Vec3, 4>{corner_m, corner_m + a_m, corner_m + a_m + b_m, corner_m + b_m})};
+    std::vector<SurfaceCell> parts = whole;
+    for (int round = 0; round < 10; ++round) {
+      std::vector<SurfaceCell> finer;
+      for (const SurfaceCell& part : parts)
+        for (const SurfaceCell& half : halves(part, {})) finer.push_back(half);
+      parts = std::move(finer);
+    }
+    const auto [share, depth_m] = share_and_depth_m(whole);
+    const auto [exact_share, exact_depth_m] = share_and_depth_m(parts);
+    EXPECT_NEAR(share / exact_share, 1.0, 4e-3) << x_mm;
+    EXPECT_NEAR(depth_m, exact_depth_m, 2e-5) << x_mm;
+  }
+}
+
 TEST(MassDistribution, PublishedSwapsTheLever) {
   test::OwnedPoints points = flat({Vec3(0.01, 0.0, 0.0), Vec3(-0.03, 0.0, 0.0)});
-  distribute_mass_published(down, points);
+  distribute_mass_published(down, {}, points);
   EXPECT_NEAR(points.share[0], 0.25, 1e-12);
   EXPECT_NEAR(points.share[1], 0.75, 1e-12);
 }
@@ -69,18 +121,16 @@ TEST(MassDistribution, SumsToOneAndFollowsTheFormulas) {
   test::OwnedPoints points = flat({Vec3(0.0, 0.0, 0.0), Vec3(0.001, 0.002, 0.0), Vec3(-0.004, 0.001, 0.0)});
   points.cos_theta[1] = 0.5;
   points.area_m2[2] = 3e-6;
-  // Discs of the points' projected areas.
-  const auto weight = [](double area_m2, double r_m) {
-    return area_m2 * mean_inverse_distance_per_m(r_m * r_m, std::sqrt(area_m2 / std::numbers::pi));
-  };
   const double r1 = std::hypot(0.001, 0.002), r2 = std::hypot(0.004, 0.001);
 
-  distribute_mass_corrected(down, points);
+  distribute_mass_corrected(down, {}, points);
   EXPECT_NEAR(sum(points), 1.0, 1e-15);
-  EXPECT_NEAR(points.share[1] / points.share[0], weight(0.5e-6, r1) / weight(1e-6, 0.0), 1e-12);
-  EXPECT_NEAR(points.share[2] / points.share[0], weight(3e-6, r2) / weight(1e-6, 0.0), 1e-12);
+  EXPECT_NEAR(points.share[2] / points.share[1], (3e-6 / r2) / (0.5e-6 / r1), 1e-12);
+  // A point under the mass centre is a disc.
+  const double disc_m = 1e-6 * mean_inverse_distance_per_m(0.0, std::sqrt(1e-6 / std::numbers::pi));
+  EXPECT_NEAR(points.share[0] / points.share[1], disc_m / (0.5e-6 / r1), 1e-12);
 
-  distribute_mass_published(down, points);
+  distribute_mass_published(down, {}, points);
   EXPECT_NEAR(sum(points), 1.0, 1e-15);
   EXPECT_EQ(points.share[0], 0.0);
   EXPECT_NEAR(points.share[2] / points.share[1], r2 / (0.5 * r1), 1e-12);
@@ -89,7 +139,7 @@ TEST(MassDistribution, SumsToOneAndFollowsTheFormulas) {
 TEST(MassDistribution, LeverArmsAreTakenAcrossTheDirection) {
   test::OwnedPoints points = flat({Vec3(0.01, 0.0, 0.0), Vec3(0.0, 0.01, 0.0)});
   // Seen along x, the second point's arm is sqrt(0.01^2 + 0.01^2), the first one's 0.01 (both are 10 mm low).
-  distribute_mass_published(Vec3::UnitX(), points);
+  distribute_mass_published(Vec3::UnitX(), {}, points);
   EXPECT_NEAR(points.share[1] / points.share[0], std::sqrt(2.0), 1e-12);
 }
 
@@ -97,7 +147,7 @@ TEST(MassDistribution, IsUniformWhereAllWeightsVanish) {
   for (const DistributeMass distribute : {distribute_mass_published, distribute_mass_corrected}) {
     test::OwnedPoints points = flat({Vec3(0.001, 0.0, 0.0), Vec3(0.0, 0.002, 0.0)});
     points.cos_theta[0] = points.cos_theta[1] = 0.0;
-    distribute(down, points);
+    distribute(down, {}, points);
     EXPECT_EQ(points.share[0], 0.5);
     EXPECT_EQ(points.share[1], 0.5);
   }
@@ -106,7 +156,7 @@ TEST(MassDistribution, IsUniformWhereAllWeightsVanish) {
 TEST(MassDistribution, OnePointUnderTheMassCentreCarriesAll) {
   for (const DistributeMass distribute : {distribute_mass_published, distribute_mass_corrected}) {
     test::OwnedPoints points = flat({Vec3::Zero()});
-    distribute(down, points);
+    distribute(down, {}, points);
     EXPECT_EQ(points.share[0], 1.0);
   }
 }

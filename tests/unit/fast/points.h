@@ -6,7 +6,7 @@
 namespace touchstone::test {
 
 struct OwnedPoints : fast::RegionPoints {
-  explicit OwnedPoints(int capacity) : store(capacity) { RegionPoints::operator=(store.window()); }
+  explicit OwnedPoints(int places) : store(places) { RegionPoints::operator=(store.window()); }
   OwnedPoints(OwnedPoints&&) = default;
   fast::PointStore store;
 };
