@@ -102,6 +102,34 @@ void cut(const scene::Revolution& body, const PlacedCell& at, CutPolygon& polygo
   }
 }
 
+/// Mean of the rest surface's normal at the closest points of a piece of surface.
+template <class Body>
+Vec3 mean_normal(const Body&, const Mat3&, const Vec3&, const RestDistance& rest, const Spread&) noexcept {
+  return rest.normal;
+}
+
+/// Of pieces that are nearer to one face in one part and to another in the rest.
+Vec3 mean_normal(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
+                 const Spread& spread_T_m) noexcept {
+  const Vec3 local = p_W - box.center_m(), above_m = local.cwiseAbs() - box.half_m();
+  const Vec3 under_m = (Vec3::Constant(above_m.maxCoeff()) - above_m).cwiseMax(0.0);
+  const double second_m = under_m.sum() - under_m.maxCoeff();
+  if (second_m * second_m > 6.0 * (spread_T_m[0].squaredNorm() + spread_T_m[1].squaredNorm())) return rest.normal;
+  Mat3 normal = Mat3::Zero();
+  for (int axis = 0; axis < 3; ++axis) normal(axis, axis) = std::copysign(1.0, local[axis]);
+  const Vec3 e1_m = normal * (R_WT * spread_T_m[0]), e2_m = normal * (R_WT * spread_T_m[1]);
+  // Share of the piece that is nearer to face a than to face b.
+  const auto nearer = [&](int a, int b) {
+    const double half_m = std::numbers::sqrt3 * std::hypot(e1_m[a] - e1_m[b], e2_m[a] - e2_m[b]);
+    const double by_m = above_m[a] - above_m[b];
+    return half_m > std::abs(by_m) ? 0.5 + 0.5 * by_m / half_m : (by_m > 0.0 ? 1.0 : (by_m < 0.0 ? 0.0 : 0.5));
+  };
+  const double xy = nearer(0, 1), yz = nearer(1, 2), zx = nearer(2, 0);
+  const Vec3 share(xy * (1.0 - zx), yz * (1.0 - xy), zx * (1.0 - yz));
+  const double sum = share.sum();
+  return sum > 0.0 ? Vec3(normal * share / sum) : rest.normal;
+}
+
 /// Cells of the tool, one by one, and what is inside of them.
 template <class Body>
 class CellFinder {
@@ -196,8 +224,7 @@ class CellFinder {
 
   void put_inside(const PlacedCell& here) noexcept {
     const SurfaceCell& cell = here.cell;
-    if (put(here.p_W, cell.center_T_m, cell, cell.area_m2, here.rest))
-      points_.set_spread(points_.count++, cell.spread_m, &cell);
+    put(here.p_W, cell.center_T_m, cell, cell.area_m2, here.rest, cell.spread_m, &cell);
   }
 
   /// @param off_m  from the cell's centre to the middle of the share that is inside, tool frame
@@ -209,19 +236,19 @@ class CellFinder {
     // A curved surface may pass beneath the middle of the part under its tangent plane.
     rest.signed_distance_m = std::min(rest.signed_distance_m, -std::numeric_limits<double>::min());
     rim_m2_ += area_m2;
-    if (put(p_W, cell.center_T_m + off_m, cell, area_m2, rest))
-      points_.set_spread(points_.count++, {share * slope.up_m, slope.level_m}, nullptr);
+    put(p_W, cell.center_T_m + off_m, cell, area_m2, rest, {share * slope.up_m, slope.level_m}, nullptr);
     if (share < 1.0) put_outside(here, -share / (1.0 - share) * off_m, (1.0 - share) * cell.area_m2);
   }
 
-  bool put(const Vec3& p_W, const Vec3& p_T, const SurfaceCell& cell, double area_m2,
-           const RestDistance& rest) noexcept {
-    summary_.add(rest.normal, -rest.signed_distance_m, area_m2);
+  /// @param whole  the cell, if all of it is the point
+  void put(const Vec3& p_W, const Vec3& p_T, const SurfaceCell& cell, double area_m2, const RestDistance& rest,
+           const Spread& spread_m, const SurfaceCell* whole) noexcept {
+    summary_.add(mean_normal(body_, at_.R_WT, p_W, rest, spread_m), -rest.signed_distance_m, area_m2);
     ++inside_;
     inside_m2_ += area_m2;
-    if (points_.count == points_.capacity) return false;
+    if (points_.count == points_.capacity) return;
     points_.set(points_.count, p_W, p_T, cell.normal_T, area_m2, rest.signed_distance_m, rest.normal, cell.sample);
-    return true;
+    points_.set_spread(points_.count++, spread_m, whole);
   }
 
   void put_outside(const PlacedCell& here, const Vec3& off_m, double area_m2) noexcept {
@@ -316,13 +343,24 @@ InsideSummary summarise(const scene::Shape& shape, const RegionPoints& points) n
   return summary;
 }
 
+/// Outward normal of the rest surface where the way from a point against d leads to.
+template <class Body, class WayOut>
+Vec3 exit_normal(const Body& body, const WayOut&, const Vec3& p_W, double depth_m, const Vec3& d,
+                 const Vec3& closest_normal) noexcept {
+  // The closest surface may be another side.
+  if (-closest_normal.dot(d) > 0.5) return closest_normal;
+  return rest_distance(body, Vec3(p_W - depth_m * d)).normal;
+}
+template <class WayOut>
+Vec3 exit_normal(const scene::Box&, const WayOut& way_out, const Vec3& p_W, double, const Vec3&, const Vec3&) noexcept {
+  return way_out.normal(p_W);
+}
+
 /// Sets how the depth changes along the two vectors of the point's spread. From the tool's surface, which they lie in,
 /// d leads to the rest surface's tangent plane.
-void set_rises(RegionPoints& points, std::size_t k, const Mat3& R_WT, const Vec3& d) noexcept {
-  const Vec3 n_W(points.rest_nx_W[k], points.rest_ny_W[k], points.rest_nz_W[k]);
-  const double cos_body = -n_W.dot(d);
-  // The closest point may be on another side than the one that d leads away from.
-  const Vec3 slope_T = R_WT.transpose() * (cos_body > 0.3 ? Vec3(-n_W / cos_body) : d);
+void set_rises(RegionPoints& points, std::size_t k, const Mat3& R_WT, const Vec3& d, const Vec3& exit_normal) noexcept {
+  // A way that grazes the surface ends soon.
+  const Vec3 slope_T = R_WT.transpose() * (exit_normal / std::min(exit_normal.dot(d), -0.3));
   const Spread spread_T_m = points.spread_T_m(k);
   points.rise1_m[k] = slope_T.dot(spread_T_m[0]);
   points.rise2_m[k] = slope_T.dot(spread_T_m[1]);
@@ -349,7 +387,8 @@ RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const V
     points.depth_m[k] = depth_m;
     const double projected_m2 = points.area_m2[k] * cos_theta;
     if (spread) {
-      set_rises(points, k, R_WT, d);
+      const Vec3 closest_normal(points.rest_nx_W[k], points.rest_ny_W[k], points.rest_nz_W[k]);
+      set_rises(points, k, R_WT, d, exit_normal(body, way_out_m, p_W, depth_m, d, closest_normal));
     } else {
       points.rise1_m[k] = points.rise2_m[k] = 0.0;
     }

@@ -122,6 +122,14 @@ class BoxExit {
     const double exit_m = way_m.cwiseProduct(per_speed_).minCoeff();
     return exit_m > 0.0 ? exit_m : 0.0;
   }
+  /// Of the face that the way leads to.
+  [[nodiscard]] scene::Vec3 normal(const scene::Vec3& p_m) const noexcept {
+    Eigen::Index axis = 0;
+    (half_m_ - sign_.cwiseProduct(p_m - center_m_)).cwiseProduct(per_speed_).minCoeff(&axis);
+    scene::Vec3 outward = scene::Vec3::Zero();
+    outward[axis] = sign_[axis];
+    return outward;
+  }
 
  private:
   scene::Vec3 center_m_, half_m_, sign_, per_speed_;

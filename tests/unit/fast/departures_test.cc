@@ -132,7 +132,7 @@ TEST(Departures, E3) {
   states("E3 |", "16.9 N", hertz_n(0.001));
   Walk walk("hertz-sphere", Formulation::corrected);
   walk.go_to_the_end();
-  states("E3 |", "0.0020 N", walk.force_n().z());
+  states("E3 |", "0.0022 N", walk.force_n().z());
   states("E3 |", "0.38 N", hertz_n(0.00008));
 }
 
@@ -192,8 +192,8 @@ TEST(Departures, E5_TableI) {
   states("E5 |", "14.0 N", published.sliding_n);
   const Onset corrected = onset_of_sliding(Formulation::corrected, 10.0);
   states("E5 |", "8.5 mm", corrected.travel_m * 1e3);
-  states("E5 |", "194 N", corrected.stuck_n);
-  states("E5 |", "2.23 N", corrected.sliding_n);
+  states("E5 |", "204 N", corrected.stuck_n);
+  states("E5 |", "2.47 N", corrected.sliding_n);
   states("E5 |", "1.4 mm", onset_of_sliding(Formulation::published, 1.0).travel_m * 1e3);
   states("E5 |", "1.5 mm", onset_of_sliding(Formulation::corrected, 1.0).travel_m * 1e3);
 }
@@ -222,7 +222,7 @@ TEST(Departures, E5_TurningBack) {
   EXPECT_EQ(published.stuck_m, 0.0);
   states("E5 |", "2.38 N", published.jump_n);
   states("E5 |", "2.6 mm", corrected.stuck_m * 1e3);
-  states("E5 |", "0.15 N", corrected.jump_n);
+  states("E5 |", "0.17 N", corrected.jump_n);
 }
 
 TEST(Departures, E5_RoundingTurnsNoRestingToolRound) {
@@ -266,9 +266,9 @@ TEST(Departures, E6) {
     return walk.force_n().z();
   };
   states("E6 |", "7.4 N", force_n(2000, Formulation::published));
-  states("E6 |", "17.5 N", force_n(2000, Formulation::corrected));
-  states("E6 |", "16.4 N", force_n(500, Formulation::corrected));
-  states("E6 |", "18.3 N", force_n(8000, Formulation::corrected));
+  states("E6 |", "19.1 N", force_n(2000, Formulation::corrected));
+  states("E6 |", "18.9 N", force_n(500, Formulation::corrected));
+  states("E6 |", "19.1 N", force_n(8000, Formulation::corrected));
   states("E6 |", "7.5 N", force_n(500, Formulation::published));
   // Without r_0 every ring of the cap counts the same: the mean of the force over r.
   const DuffingLaw law(40.0, 3e8);
@@ -305,10 +305,10 @@ TEST(Departures, E7) {
     walk.go_to_the_end();
     return walk.force_n().z();
   };
-  states("E7 |", "173.8 N", mallet_n("head", false));
-  states("E7 |", "36.8 N", mallet_n("tail", false));
-  states("E7 |", "2.16 N", mallet_n("head", true));
-  states("E7 |", "1.11 N", mallet_n("tail", true));
+  states("E7 |", "174.0 N", mallet_n("head", false));
+  states("E7 |", "38.9 N", mallet_n("tail", false));
+  states("E7 |", "2.23 N", mallet_n("head", true));
+  states("E7 |", "1.26 N", mallet_n("tail", true));
 }
 
 /// Stiffness of a contact's common end.
@@ -429,7 +429,7 @@ TEST(Departures, E10_StrainTimesLength) {
   const BeamEnds& ends = walk.region().ends;
   std::vector<BeamStress> stress(8);
   beam_stresses(walk.model.skeleton, ends, stress);
-  states("E10 |", "1.2 mm", ends.displacement_m[7].norm() * 1e3);
+  states("E10 |", "1.3 mm", ends.displacement_m[7].norm() * 1e3);
   EXPECT_LT(std::abs(stress[7].strain[0] * ends.beam[7].l_m), 1e-9);
 }
 
@@ -580,8 +580,8 @@ TEST(Departures, E17) {
     walk.go_to_the_end();
     return walk.region().ends.displacement_m[7].norm() * 1e3;
   };
-  states("E17 |", "1.23 mm", moved_mm(1e-3));
-  states("E17 |", "0.59 mm", moved_mm(2e-3));
+  states("E17 |", "1.34 mm", moved_mm(1e-3));
+  states("E17 |", "0.64 mm", moved_mm(2e-3));
 }
 
 TEST(Departures, E18) {
@@ -594,11 +594,11 @@ TEST(Departures, E18) {
   states("E18 |", "0.62", published.order_spread_rel.value());
   states("E18 |", "0.40", corrected.order_spread_rel.value());
   states("E18 |", "1.7e-3", published.equilibrium_rel.value());
-  states("E18 |", "9.9e-5", corrected.equilibrium_rel.value());
+  states("E18 |", "9.7e-5", corrected.equilibrium_rel.value());
   Walk walk("compass-two-pins", Formulation::corrected);
   walk.go(1.0, 50);
   states("E18 |", "0.88 N", walk.region(0).force.force_n.norm());
-  states("E18 |", "0.27 N", walk.region(1).force.force_n.norm());
+  states("E18 |", "0.25 N", walk.region(1).force.force_n.norm());
 }
 
 TEST(Departures, E19) {
@@ -643,7 +643,7 @@ TEST(Departures, DirectionOfAFastTool) {
   const InsideSummary summary =
       walk.model.detection.find_inside(*walk.model.body, walk.model.tool, placement(inside), 0.0, 2000, points);
   const auto off_deg = [](const Vec3& d) { return std::acos(-d.z()) * 180.0 / std::numbers::pi; };
-  states("none | III, direction", "67 degrees", off_deg(direction_from(summary, -Vec3::UnitZ())));
+  states("none | III, direction", "68 degrees", off_deg(direction_from(summary, -Vec3::UnitZ())));
   EXPECT_LT(off_deg(walk.region().d), 0.1);
 }
 
@@ -658,7 +658,7 @@ TEST(Departures, DepthIsLimited) {
 TEST(Departures, ContactAreaIsThatOfTheSetM) {
   Walk walk("ball-on-cube-press", Formulation::corrected);
   walk.go_to_the_end();
-  states("none | App. III, region", "236 mm", walk.region().extent.area_m2 * 1e6);
+  states("none | App. III, region", "235 mm", walk.region().extent.area_m2 * 1e6);
   states("none | App. III, region", "157 mm", std::numbers::pi * 0.010 * 0.005 * 1e6);
 }
 
@@ -691,8 +691,8 @@ TEST(Departures, RollingBallFeelsNoFriction) {
     }
     return walk.region().force.tangential_n.norm();
   };
-  states("none | IV-B, step", "2.2 N", tangential_n(false));
-  states("none | IV-B, step", "0.0015 N", tangential_n(true));
+  states("none | IV-B, step", "2.5 N", tangential_n(false));
+  states("none | IV-B, step", "0.0010 N", tangential_n(true));
 }
 
 TEST(Departures, AnchorPointsNeverOutrunTheContact) {
@@ -749,7 +749,7 @@ TEST(Departures, LaterRegionsPushOnEarlierOnes) {
   walk.go(1.0, 50);
   const ContactRegion& first = walk.region(0);
   const double alone_n = first.force.normal_n, later_n = (first.force.force_n + alone_n * first.d).norm();
-  states("none | VI-A", "3.7e-5 N", later_n);
+  states("none | VI-A", "3.4e-5 N", later_n);
 }
 
 TEST(Departures, SeparationBeforeContact) {
@@ -766,7 +766,7 @@ TEST(Departures, FreeAnchorPointsMoveAlike) {
   Walk walk("ellipsoid-rubber", Formulation::corrected);
   walk.go_to_the_end();
   const std::vector<Vec3>& u_m = walk.region().ends.displacement_m;
-  for (std::size_t i = 0; i < 5; ++i) states("none | structure, skeleton", "0.145 mm", u_m[i].norm() * 1e3);
+  for (std::size_t i = 0; i < 5; ++i) states("none | structure, skeleton", "0.161 mm", u_m[i].norm() * 1e3);
 }
 
 /// The law of Hertz by the paper's two terms, by least squares up to a depth of 1.
