@@ -68,12 +68,12 @@ void cut(const Body&, const PlacedCell& at, CutPolygon& polygon) noexcept {
 void cut(const scene::Box& box, const PlacedCell& at, CutPolygon& polygon) noexcept {
   const Vec3 local = at.p_W - box.center_m();
   for (int axis = 0; axis < 3; ++axis) {
-    const double above_m = std::abs(local[axis]) - box.half_m()[axis];
-    if (above_m <= -at.cell.radius_m) continue;
-    polygon.keep_below(std::copysign(1.0, local[axis]) * at.R_WT.row(axis).transpose(), above_m);
-    const double beneath_m = above_m + 2.0 * std::abs(local[axis]);
-    if (-2.0 * box.half_m()[axis] - above_m > -at.cell.radius_m)
-      polygon.keep_below(-std::copysign(1.0, local[axis]) * at.R_WT.row(axis).transpose(), -beneath_m);
+    const double half_m = box.half_m()[axis];
+    // Of the two faces across this axis.
+    for (const double side : {1.0, -1.0}) {
+      const double above_m = side * local[axis] - half_m;
+      if (above_m > -at.cell.radius_m) polygon.keep_below(side * at.R_WT.row(axis).transpose(), above_m);
+    }
   }
 }
 

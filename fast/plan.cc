@@ -108,7 +108,7 @@ scene::Plan plan(const scene::Scene& scene) {
   const FastState state(model);
   const Measured measured = measure(scene, model);
   const bool published = scene.fast.formulation == scene::Formulation::published;
-  const std::string printed = published ? "as printed" : "corrected";
+  const std::string printed = published ? "as printed" : "corrected", elements = published ? "samples" : "cells";
   const auto held = std::count(model.skeleton.held.begin(), model.skeleton.held.end(), true);
 
   scene::Plan plan;
@@ -121,7 +121,7 @@ scene::Plan plan(const scene::Scene& scene) {
   models("contact detection",
          text("%d %s of the tool, %.3g mm apart, against the exact rest shape%s; %d points inside at the track's "
               "deepest instant",
-              model.tool.count(), published ? "samples" : "cells", model.tool.spacing_m * 1e3,
+              model.tool.count(), elements.c_str(), model.tool.spacing_m * 1e3,
               published ? "" : ", and smaller ones where few are inside", measured.points) +
              (measured.deepest_m > 0.0 && !measured.contact
                   ? text("; CONTACT MISSED: the tool is %.3g mm deep there, so the force is missing; raise "
@@ -132,9 +132,12 @@ scene::Plan plan(const scene::Scene& scene) {
   if (model.max_regions > 1) {
     models("several regions",
            text("the tool's mesh is not convex: up to %d, %d at the track's instants, told apart at %.3g mm; each "
-                "meets the "
-                "body as the earlier ones left it",
-                model.max_regions, measured.regions, scene.fast.r_th_m * 1e3),
+                "meets the body as the earlier ones left it",
+                model.max_regions, measured.regions, scene.fast.r_th_m * 1e3) +
+               (scene.fast.r_th_m < 2.0 * model.tool.spacing_m
+                    ? "; ONE CONTACT MAY FALL INTO SEVERAL: fast.r_th_m is less than twice the distance between " +
+                          elements + "; raise fast.tool_samples"
+                    : ""),
            measured.cost({Stage::regions}));
   } else {
     leaves_out("several regions", one_region_text(scene.tool));

@@ -277,6 +277,7 @@ class Grouping {
         if (off(order_[k]) < off(nearest)) nearest = order_[k];
       }
       coarse_.add(fine_.points_m[nearest], normal_sum.normalized(), coarse_.groups.cell(tree_of(begin, end)));
+      coarse_.area_m2.back() = area_m2;
       return;
     }
     const auto first = order_.begin();

@@ -31,31 +31,16 @@ class ContactArea : public Experiment {
   const scene::Scene head_scene_ = scene("mallet-head-on-cube"), tail_scene_ = scene("mallet-tail-on-cube");
   const std::vector<InstantRecord> head_ = in_contact(head_scene_), tail_ = in_contact(tail_scene_);
 
-  [[nodiscard]] static double spacing_m(const scene::Scene& scene) {
-    double area_m2 = 0.0;
-    const scene::TriangleMesh mesh = scene::tool_mesh(scene.tool);
-    for (const auto& triangle : mesh.triangles) {
-      const scene::Vec3 a = mesh.points_m.col(triangle[0]), b = mesh.points_m.col(triangle[1]);
-      area_m2 += 0.5 * (b - a).cross(mesh.points_m.col(triangle[2]) - a).norm();
-    }
-    return std::sqrt(area_m2 / scene.fast.tool_samples);
-  }
   /// The head's face, flat up to 9 mm and rounded by 3 mm.
   [[nodiscard]] RoundContact head_contact(double depth_m) const {
     const double flat_m = 0.009, edge_m = 0.003;
-    return {flat_m + std::sqrt(edge_m * edge_m - (edge_m - depth_m) * (edge_m - depth_m)),
-            [=](double r_m) {
+    return {flat_m + std::sqrt(edge_m * edge_m - (edge_m - depth_m) * (edge_m - depth_m)), [=](double r_m) {
               const double out_m = std::max(0.0, r_m - flat_m);
               return depth_m - (edge_m - std::sqrt(edge_m * edge_m - out_m * out_m));
-            },
-            spacing_m(head_scene_)};
+            }};
   }
   /// The tail's half ball of 4 mm.
-  [[nodiscard]] RoundContact tail_contact(double depth_m) const {
-    RoundContact contact = ball_contact(0.004, depth_m, 1);
-    contact.spacing_m = spacing_m(tail_scene_);
-    return contact;
-  }
+  [[nodiscard]] RoundContact tail_contact(double depth_m) const { return ball_contact(0.004, depth_m); }
 };
 
 TEST_P(ContactArea, SameForceMakesTheHeadShallower) {

@@ -42,7 +42,7 @@ TEST_P(Press, TwiceAsDeepIsMoreThanTwiceTheForce) {
 TEST_P(Press, ForceIsTheLawsMeanOverTheContact) {
   for (const scene::InstantRecord& instant : instants_) {
     const double d = instant.depth_m, F = instant.force_n().z();
-    const RoundContact contact = ball_contact(scene_.tool.radius_m, d, scene_.fast.tool_samples);
+    const RoundContact contact = ball_contact(scene_.tool.radius_m, d);
     EXPECT_LT(F, law_n(d));
     if (d < 1e-3) continue;  // too few samples for a mean
     const double expected_n = mean_force_n(

@@ -129,7 +129,7 @@ TEST(AreaLawExtremes, SofteningSaturates) {
 TEST(AreaLawExtremes, TouchingIsNoForce) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const double depth_m : {0.0, -1e-15, -1e-3}) {
-      EXPECT_EQ(force_n(with_area_law(extremes::cube(formulation)), test::pressed(depth_m)), 0.0) << depth_m;
+      EXPECT_LT(force_n(with_area_law(extremes::cube(formulation)), test::pressed(depth_m)), 1e-9) << depth_m;
       EXPECT_LT(force_n(with_area_law(extremes::punch_on_cube(formulation)), extremes::punched(depth_m)), 1e-9)
           << depth_m;
     }
