@@ -54,17 +54,17 @@ Vec3 next_direction(const ContactRegion& region, const InsideSummary& inside) no
 }
 
 InsideSummary find_points(const FastModel& model, const Placement& at, double margin_m, RegionPoints& points,
-                          FastState& state) noexcept {
+                          CellScratch& cells) noexcept {
   const Detection& detection = model.detection;
   if (model.formulas.cells)
-    return detection.find_cells(*model.body, model.tool, at, *model.formulas.cells, margin_m, points, state.cells);
+    return detection.find_cells(*model.body, model.tool, at, *model.formulas.cells, margin_m, points, cells);
   return detection.find_inside(*model.body, model.tool, at, margin_m, model.tool.count(), points);
 }
 
 bool find_one_region(const FastModel& model, const Motion& motion, FastState& state) noexcept {
   ContactRegion& region = state.regions[0];
   RegionPoints points = state.store.window();
-  const InsideSummary inside = find_points(model, motion.at, 0.0, points, state);
+  const InsideSummary inside = find_points(model, motion.at, 0.0, points, state.cells);
   const bool created = points.count > 0 && !region.active;
   if (points.count == 0) {
     if (region.active) region.clear();

@@ -27,7 +27,7 @@ struct Motion {
 
 /// The points of the tool that are inside the rest surface: samples in the published form, cells in the corrected one.
 /// @param margin_m as in FindCells
-InsideSummary find_points(const FastModel&, const Placement&, double margin_m, RegionPoints&, FastState&) noexcept;
+InsideSummary find_points(const FastModel&, const Placement&, double margin_m, RegionPoints&, CellScratch&) noexcept;
 
 /// Finds the points and the direction of the first region, which has all of the tool that is inside.
 /// @returns whether the region has come into being in this tick; state.region_count is 0 where nothing is inside

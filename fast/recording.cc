@@ -37,12 +37,12 @@ RecordedTick record(const ContactRegion& region, const Motion& motion, bool crea
 class OneRegion {
  public:
   explicit OneRegion(const FastModel& model)
-      : model_(model), scratch_(*model.clusters, model.max_points()), was_(samples(), 0) {}
+      : model_(model), cells_(model.tool.count()), scratch_(*model.clusters, model.max_points()), was_(samples(), 0) {}
 
   /// Asks about the tick whose points, if any, are in the state's region, found but not measured.
   [[nodiscard]] bool holds(const Motion& motion, FastState& state) {
     RegionPoints reach = state.probe.window();
-    model_.detection.find_inside(*model_.body, model_.tool, motion.at, bulge_m_, model_.tool.count(), reach);
+    find_points(model_, motion.at, bulge_m_, reach, cells_);
     if (state.region_count == 0) {
       last_.clear();
       return reach.count == 0;
@@ -83,6 +83,7 @@ class OneRegion {
   }
 
   const FastModel& model_;
+  CellScratch cells_;
   ClusterScratch scratch_;
   std::vector<char> was_;           ///< per sample, inside in the last tick
   std::vector<std::int32_t> last_;  ///< those samples

@@ -190,7 +190,7 @@ std::size_t SeveralRegionsState::memory_bytes() const noexcept {
 StepStatus press_several_regions(const FastModel& model, const Motion& motion, FastState& state) noexcept {
   SeveralRegionsState& several = *state.several;
   RegionPoints all = state.store.window();
-  find_points(model, motion.at, several.bulge_m, all, state);
+  find_points(model, motion.at, several.bulge_m, all, state.cells);
   state.lap(Stage::detection);
   const ClusterCount found = cluster(*model.clusters, all, several.scratch, several.clusters);
   const Tracking tracking = several.tracker.track(all, {several.clusters.data(), static_cast<std::size_t>(found.count)},
@@ -235,7 +235,7 @@ OrderSpread order_spread(const FastModel& model, FastState& state) {
   for (TrackedRegion& region : several.tracked) region.was = 0;
   const auto press_again = [&] {
     RegionPoints all = state.store.window();
-    find_points(model, still.at, several.bulge_m, all, state);
+    find_points(model, still.at, several.bulge_m, all, state.cells);
     cluster(*model.clusters, all, several.scratch, several.clusters);
     for (std::size_t k = 0; k < count; ++k) {
       const PointRange range = several.clusters[static_cast<std::size_t>(several.tracked[k].cluster)].points;

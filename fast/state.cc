@@ -41,7 +41,7 @@ void ContactRegion::clear() noexcept {
 FastState::FastState(const FastModel& model)
     : store(model.max_points()),
       cells(model.formulas.cells ? model.tool.count() : 0),
-      probe(model.tool.count()),
+      probe(model.max_points()),
       regions(static_cast<std::size_t>(model.max_regions), ContactRegion(model.skeleton.anchor_m.size())),
       field(model.rest),
       several(model.max_regions > 1 ? std::make_unique<SeveralRegionsState>(model) : nullptr) {}
