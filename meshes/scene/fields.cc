@@ -132,7 +132,8 @@ std::vector<Field<Scene>> make_scene_fields() {
       {"fast.triangles", "", between(12, 1e6), "3952", fast, +[](S& s) -> int& { return s.fast.triangles; }, always,
            "Triangles on the body; their corners are the rest points compared."},
       {"fast.tool_samples", "", between(1, 1e5), "2000", fast, +[](S& s) -> int& { return s.fast.tool_samples; }, always,
-           "Points on the tool's surface."},
+           "Points on the tool's surface. The corrected form takes cells, a quarter as many, and smaller ones where few "
+           "are in contact."},
       {"fast.rate_hz", "Hz", between(1.0, 1e5), "1000.0", fast, +[](S& s) -> double& { return s.fast.rate_hz; }, always,
            "Ticks per second of virtual time."},
       {"fast.max_regions", "", between(1, 64), "10", fast, +[](S& s) -> int& { return s.fast.max_regions; }, tool_mesh,

@@ -281,6 +281,29 @@ TEST(Departures, E6) {
   states("E6 |", "19.1 N", mean_n);
 }
 
+/// Force of a ball, 3 mm deep in the cube.
+double ball_n(double radius_m, int samples, Formulation formulation) {
+  scene::Scene scene = test::ball_on_cube(formulation);
+  scene.tool.radius_m = radius_m;
+  scene.fast.tool_samples = samples;
+  const auto at = [&](double depth_m) { return test::at(0.0, 0.0, 0.060 + radius_m - depth_m); };
+  Walk walk(scene);
+  walk.step_to(at(-0.001));
+  for (int k = 0; k <= 10; ++k) walk.step_to(at(0.0003 * k));
+  return walk.force_n().z();
+}
+
+TEST(Departures, SamplesOfALargeBall) {
+  const std::string row = "none | App. III, samples";
+  states(row, "1.92 N", ball_n(0.3, 2000, Formulation::published));
+  states(row, "2.52 N", ball_n(0.3, 20000, Formulation::published));
+  states(row, "2.32 N", ball_n(0.3, 100000, Formulation::published));
+  states(row, "4.69 N", ball_n(0.3, 2000, Formulation::corrected));
+  states(row, "4.68 N", ball_n(0.3, 100000, Formulation::corrected));
+  EXPECT_EQ(ball_n(0.6, 2000, Formulation::published), 0.0);
+  states("none | structure, samples", "6.05 N", ball_n(0.6, 2000, Formulation::corrected));
+}
+
 TEST(Departures, E7) {
   const auto pin_n = [](double radius_m, scene::ContactLaw law) {
     scene::Scene scene = test::ball_on_cube();
