@@ -1,5 +1,6 @@
 #include "scene/rules.h"
 
+#include "scene/rest_depth.h"
 #include "scene/surface.h"
 
 #include <algorithm>
@@ -20,11 +21,12 @@ std::string number(double value) {
 double deepest_m(const Scene& scene, const Shape& body) {
   constexpr int samples = 1000;
   const double begin_s = scene.track.front().time_s, end_s = scene.track.back().time_s;
+  const RestDepth depth(body, scene.tool);
   double deepest = 0.0;
-  for (const Waypoint& w : scene.track) deepest = std::max(deepest, rest_depth_m(body, scene.tool, w.pose));
+  for (const Waypoint& w : scene.track) deepest = std::max(deepest, depth.depth_m(w.pose));
   for (int i = 0; i <= samples; ++i) {
     const Pose pose = pose_at(scene.track, begin_s + (end_s - begin_s) * i / samples);
-    deepest = std::max(deepest, rest_depth_m(body, scene.tool, pose));
+    deepest = std::max(deepest, depth.depth_m(pose));
   }
   return deepest;
 }
