@@ -55,6 +55,19 @@ void check_track(const Scene& scene, std::vector<Violation>& found) {
   }
 }
 
+/// Triangles recorded over all instants; more would take `fast` longer than ten seconds and more than 1 GiB.
+constexpr double recorded_triangles_max = 1e7;
+
+void check_records(const Scene& scene, std::vector<Violation>& found) {
+  const double recorded = static_cast<double>(scene.fast.triangles) * scene.compare.instants;
+  if (recorded <= recorded_triangles_max) return;
+  found.push_back(
+      {"compare.instants", std::to_string(scene.compare.instants) + " records of " +
+                               std::to_string(scene.fast.triangles) + " triangles (fast.triangles); expected at most " +
+                               std::to_string(static_cast<int>(recorded_triangles_max) / scene.fast.triangles) +
+                               " records of as many"});
+}
+
 void check_start(const Scene& scene, const Shape& body, std::vector<Violation>& found) {
   const double depth_m = rest_depth_m(body, scene.tool, scene.track.front().pose);
   if (depth_m > 0.0) {
@@ -183,6 +196,7 @@ std::vector<Violation> broken_rules(const Scene& scene) {
   check_friction(scene.contact, found);
   check_local_factor(scene, found);
   check_track(scene, found);
+  check_records(scene, found);
   if (!found.empty()) return found;
   const auto body = body_shape(scene.body);
   check_support(scene.body, *body, found);
