@@ -1,20 +1,24 @@
 #include "compare/stored_reference.h"
 
+#include "compare/result_folder.h"
 #include "reference/run/uncertainty.h"
 #include "scene/build_info.h"
+#include "scene/error.h"
 #include "scene/files.h"
 #include "scene/hash.h"
 #include "scene/json_text.h"
 #include "scene/results.h"
 #include "scene/scene_io.h"
+#include "scene/text.h"
 
 #include <fmt/format.h>
 #include <zlib.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -95,38 +99,35 @@ std::vector<scene::Column> answer_columns(const reference::Result& result) {
   return columns;
 }
 
-/// A table of numbers with a head, as scene::write_csv leaves it.
+/// The file that scene::write_csv left.
 class Table {
  public:
-  explicit Table(std::string_view text) {
-    std::vector<std::string> names;
-    for (std::size_t line = 0; !text.empty(); ++line) {
-      const std::size_t end = std::min(text.find('\n'), text.size());
-      std::string_view row = text.substr(0, end);
-      text.remove_prefix(std::min(end + 1, text.size()));
-      for (std::size_t column = 0; !row.empty(); ++column) {
-        const std::size_t comma = std::min(row.find(','), row.size());
-        const std::string_view cell = row.substr(0, comma);
-        row.remove_prefix(std::min(comma + 1, row.size()));
-        if (line == 0) {
-          names.emplace_back(cell);
-          continue;
-        }
-        double value = 0.0;
-        if (column >= names.size() ||
-            std::from_chars(cell.data(), cell.data() + cell.size(), value).ptr != cell.data() + cell.size()) {
-          throw UnusableReference(fmt::format("line {} is not a row of its table", line + 1));
-        }
-        columns_[names[column]].push_back(value);
-      }
+  Table(std::string_view text, const path& file) {
+    try {
+      for (scene::Column& column : parse_csv(text, file)) columns_[column.name] = std::move(column.values);
+    } catch (const scene::InputError& error) {
+      throw UnusableReference(error.what());
     }
   }
-  [[nodiscard]] double at(const std::string& name, std::size_t row) const {
+  /// NaN where it is not known.
+  [[nodiscard]] double band_at(const std::string& name, std::size_t row) const {
     const auto found = columns_.find(name);
-    if (found == columns_.end() || row >= found->second.size()) {
-      throw UnusableReference("column " + name + " is missing or short");
+    if (found == columns_.end() || row >= found->second.size() || std::isinf(found->second[row])) {
+      throw UnusableReference(fmt::format("column {} is missing, short or not finite", name));
     }
     return found->second[row];
+  }
+  [[nodiscard]] double at(const std::string& name, std::size_t row) const {
+    const double value = band_at(name, row);
+    if (std::isnan(value)) throw UnusableReference(fmt::format("column {} is not finite", name));
+    return value;
+  }
+  [[nodiscard]] std::size_t count_at(const std::string& name, std::size_t row) const {
+    const double value = at(name, row);
+    if (value < 0.0 || value > std::numeric_limits<int>::max() || value != std::floor(value)) {
+      throw UnusableReference(fmt::format("column {} holds {}, expected a whole number from 0", name, value));
+    }
+    return static_cast<std::size_t>(value);
   }
   [[nodiscard]] scene::Vec3 vector_at(const std::string& before, const std::string& after, std::size_t row) const {
     scene::Vec3 v;
@@ -178,7 +179,8 @@ std::string uncompressed(const std::string& bytes, std::size_t expected) {
   if (uncompress(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
                  bytes.size()) != Z_OK ||
       size != expected) {
-    throw UnusableReference("does not hold the displacement of every rest point at every instant");
+    throw UnusableReference(std::string(surface_name) +
+                            " does not hold the displacement of every rest point at every instant");
   }
   return out;
 }
@@ -200,13 +202,19 @@ void take_surface(const std::string& bytes, Eigen::Index points, reference::Resu
       unshuffled(uncompressed(bytes, result.instants.size() * numbers_per_instant * sizeof(float)));
   for (std::size_t t = 0; t < result.instants.size(); ++t) {
     const Eigen::Map<const Eigen::MatrixXf> all(numbers.data() + t * numbers_per_instant, points, 4);
+    if (!all.leftCols<3>().allFinite())
+      throw UnusableReference(std::string(surface_name) + " holds a displacement that is not finite");
     result.instants[t].displacement_m = all.leftCols<3>().transpose().cast<double>();
     result.displacement_uncertainty_m.emplace_back(all.col(3).cast<double>());
   }
 }
 
-void take_curve(const Table& table, reference::Result& result) {
-  result.instants.resize(table.rows("time_s"));
+void take_curve(const Table& table, std::size_t instants, reference::Result& result) {
+  if (table.rows("time_s") != instants) {
+    throw UnusableReference(
+        fmt::format("{} holds {} instants, the scene {}", curve_name, table.rows("time_s"), instants));
+  }
+  result.instants.resize(instants);
   for (std::size_t t = 0; t < result.instants.size(); ++t) {
     scene::InstantRecord& record = result.instants[t];
     record.time_s = table.at("time_s", t);
@@ -216,27 +224,36 @@ void take_curve(const Table& table, reference::Result& result) {
     record.depth_m = table.at("depth_m", t);
     record.support_force_n = table.vector_at("support_force_", "_n", t);
     std::vector<scene::Vec3>& middles_m = result.region_middles_m.emplace_back();
-    const auto regions = static_cast<std::size_t>(table.at("regions", t));
+    const std::size_t regions = table.count_at("regions", t);
     for (std::size_t k = 0; k < regions; ++k) {
       const auto of = [&](const std::string& quantity) { return table.at(region_column(k, quantity), t); };
       const auto vector_of = [&](const std::string& quantity, const std::string& unit) {
         return table.vector_at(region_column(k, quantity), unit, t);
       };
       record.regions.push_back({of("depth_m"), vector_of("force_", "_n"), vector_of("torque_", "_nm"), of("area_m2"),
-                                static_cast<int>(of("id")), vector_of("friction_", "_n"), of("sliding") != 0.0});
+                                static_cast<int>(table.count_at(region_column(k, "id"), t)),
+                                vector_of("friction_", "_n"), of("sliding") != 0.0});
     }
-    const auto middles = static_cast<std::size_t>(table.at("middles", t));
+    const std::size_t middles = table.count_at("middles", t);
     for (std::size_t k = 0; k < middles; ++k) middles_m.push_back(table.vector_at(middle_column(k), "_m", t));
-    result.force_uncertainty_n.push_back(table.at("force_uncertainty_n", t));
-    result.residual_penetration_m.push_back(table.at("residual_penetration_m", t));
-    result.between_nodes_penetration_m.push_back(table.at("between_nodes_penetration_m", t));
-    result.equilibrium_rel.push_back(table.at("equilibrium_rel", t));
-    result.volume_change_rel.push_back(table.at("volume_change_rel", t));
+    result.force_uncertainty_n.push_back(table.band_at("force_uncertainty_n", t));
+    result.residual_penetration_m.push_back(table.band_at("residual_penetration_m", t));
+    result.between_nodes_penetration_m.push_back(table.band_at("between_nodes_penetration_m", t));
+    result.equilibrium_rel.push_back(table.band_at("equilibrium_rel", t));
+    result.volume_change_rel.push_back(table.band_at("volume_change_rel", t));
   }
 }
 
 Json number_or_null(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+int count(const Json& json) {
+  if (!json.is_number_unsigned() || json.get<std::uint64_t>() > std::numeric_limits<int>::max()) {
+    throw UnusableReference("expected a whole number, found " +
+                            scene::visible(scene::shortened(scene::json_text(json))));
+  }
+  return json.get<int>();
 }
 
 std::optional<double> number(const Json& json) {
@@ -300,30 +317,31 @@ reference::Result stored_reference(const path& folder, const scene::Scene& scene
     result.key = about.at("reference_key");
     if (const std::string key = reference::content_key(scene); result.key != key) {
       throw UnusableReference(fmt::format("stale: {} is of scene {}, and the scene or the method is now {}",
-                                          folder.string(), result.key, key));
+                                          folder.string(), scene::visible(scene::shortened(result.key)), key));
     }
     if (about.at("rest_points_hash") != points_hash(surface)) {
       throw UnusableReference("stale: " + folder.string() + " is of other rest points than the fast model's");
     }
-    result.model = about.at("model");
+    result.model = scene::visible(about.at("model").get<std::string>());
     result.force_uncertainty_rel = number(about.at("force_uncertainty_rel"));
     result.shape_uncertainty_rel = number(about.at("shape_uncertainty_rel"));
     result.refinement.error_asked = about.at("error_asked");
-    result.refinement.why_ended = about.at("refinement");
+    result.refinement.why_ended = scene::visible(about.at("refinement").get<std::string>());
     for (const Json& level : about.at("levels")) {
       reference::LevelRecord& record = result.levels.emplace_back();
       record.element_size_m = level.at("element_size_m");
-      record.unknowns = level.at("unknowns");
-      record.newton_iterations = level.at("newton_iterations");
+      record.unknowns = count(level.at("unknowns"));
+      record.newton_iterations = count(level.at("newton_iterations"));
       record.wall_s = level.at("wall_s");
       record.cpu_s = level.at("cpu_s");
     }
     curve_checksum = about.at("curve_checksum");
     surface_checksum = about.at("surface_checksum");
   } catch (const Json::exception& error) {
-    throw UnusableReference((folder / about_name).string() + ": " + error.what());
+    throw UnusableReference((folder / about_name).string() + ": " + scene::visible(scene::shortened(error.what())));
   }
-  take_curve(Table(checked(folder / curve_name, curve_checksum)), result);
+  const path curve = folder / curve_name;
+  take_curve(Table(checked(curve, curve_checksum), curve), scene::instants_s(scene).size(), result);
   take_surface(checked(folder / surface_name, surface_checksum), surface.points_m.cols(), result);
   // Written as null, as where there is nothing to be uncertain about; the bands tell which.
   const auto& bands_n = result.force_uncertainty_n;

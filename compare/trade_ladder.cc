@@ -43,8 +43,15 @@ class Poses {
  public:
   explicit Poses(const Scene& scene) {
     const auto body = scene::body_shape(scene.body);
-    for (const fast::Tick& tick : fast::ticks_of(scene)) {
-      const scene::Pose pose = scene::pose_at(scene.track, tick.time_s);
+    fast::Ticks ticks(scene);
+    if (ticks.count() > ticks_max) {
+      throw scene::InputError(fmt::format(
+          "the track takes {} ticks at fast.rate_hz = {} Hz, and every model steps there and back: expected "
+          "at most {}",
+          ticks.count(), scene.fast.rate_hz, ticks_max));
+    }
+    while (const std::optional<fast::Tick> tick = ticks.next()) {
+      const scene::Pose pose = scene::pose_at(scene.track, tick->time_s);
       if (scene::rest_depth_m(*body, scene.tool, pose) > grazing_depth_m) poses_.push_back(pose);
     }
     if (poses_.empty()) throw scene::InputError("the tool never touches the body on this track: nothing to trade");
@@ -56,6 +63,7 @@ class Poses {
   [[nodiscard]] std::size_t round_trip() const { return 2 * poses_.size(); }
 
  private:
+  static constexpr std::int64_t ticks_max = 1'000'000;
   std::vector<scene::Pose> poses_;
 };
 

@@ -74,6 +74,7 @@ void write_series(const std::filesystem::path& folder, const std::string& name,
     writer->SetInputData(data);
     writer->SetDataModeToBinary();
     writer->SetCompressorTypeToZLib();
+    writer->SetCompressionLevel(1);
     writer->WriteToOutputStringOn();
     writer->Write();
     scene::write_file(folder / file_name(t), writer->GetOutputString());

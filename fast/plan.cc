@@ -1,5 +1,6 @@
 #include "fast/run.h"
 #include "fast/step.h"
+#include "scene/rest_depth.h"
 
 #include <algorithm>
 #include <array>
@@ -39,9 +40,8 @@ double median(std::vector<double>& sample) {
 
 Measured measure(const scene::Scene& scene, const FastModel& model) {
   const std::vector<double> times_s = scene::instants_s(scene);
-  const auto depth_m = [&](double t) {
-    return scene::rest_depth_m(*model.body, scene.tool, scene::pose_at(scene.track, t));
-  };
+  const scene::RestDepth depth(*model.body, scene.tool);
+  const auto depth_m = [&](double t) { return depth.depth_m(scene::pose_at(scene.track, t)); };
   FastState state(model);
   // Up to there along the track, so that regions and friction are those of the scene.
   double deepest_s = times_s.front(), deepest_m = 0.0;

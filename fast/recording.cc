@@ -92,8 +92,8 @@ class OneRegion {
 
 }  // namespace
 
-std::optional<std::vector<RecordedTick>> record_one_region(const FastModel& model, const std::vector<Tick>& ticks,
-                                                           const std::vector<scene::Pose>& poses) {
+std::optional<std::vector<RecordedTick>> record_one_region(const FastModel& model, const scene::Scene& scene,
+                                                           std::size_t bytes_max) {
   const bool friction = model.formulas.resolve_friction != nullptr;
   std::optional<OneRegion> one;
   if (model.max_regions > 1) {
@@ -102,21 +102,26 @@ std::optional<std::vector<RecordedTick>> record_one_region(const FastModel& mode
   }
   FastState state(model);
   std::vector<RecordedTick> recorded;
-  scene::Pose before;
-  for (std::size_t k = 0; k < ticks.size(); ++k) {
-    const scene::Pose pose{poses[k].position_m, poses[k].orientation.normalized()};
-    const Motion motion{pose, placement(pose), k == 0 ? pose : before, k == 0};
+  std::optional<scene::Pose> before;
+  std::size_t bytes = 0;
+  Ticks ticks(scene);
+  while (const std::optional<Tick> tick = ticks.next()) {
+    scene::Pose pose = scene::pose_at(scene.track, tick->time_s);
+    pose.orientation.normalize();
+    const Motion motion{pose, placement(pose), before.value_or(pose), !before};
     before = pose;
     const bool created = find_one_region(model, motion, state);
     if (one && !one->holds(motion, state)) return std::nullopt;
     if (state.region_count > 0) measure(model, motion, state.regions[0], state);
     if (one) one->remember(state);
-    if (!friction && ticks[k].instant < 0) continue;
+    if (!friction && tick->instant < 0) continue;
     if (state.region_count > 0) {
-      recorded.push_back(record(state.regions[0], motion, created, ticks[k].instant));
+      recorded.push_back(record(state.regions[0], motion, created, tick->instant));
     } else {
-      recorded.emplace_back().instant = ticks[k].instant;
+      recorded.emplace_back().instant = tick->instant;
     }
+    bytes += sizeof(RecordedTick) + recorded.back().numbers.size() * sizeof(double);
+    if (bytes > bytes_max) return std::nullopt;
   }
   return recorded;
 }

@@ -31,9 +31,10 @@ struct RecordedTick {
 /// - at every tick the samples inside are one cluster, and every sample outside but within reach of the last tick's
 ///   surface is nearer than r_th to one inside, so that it joins them or is left out;
 /// - from tick to tick it keeps a sample, and once it has left the body nothing is within reach.
+/// @param bytes_max  a recording that would take more is given up
 [[nodiscard]] std::optional<std::vector<RecordedTick>> record_one_region(const FastModel& model,
-                                                                         const std::vector<Tick>& ticks,
-                                                                         const std::vector<scene::Pose>& poses);
+                                                                         const scene::Scene& scene,
+                                                                         std::size_t bytes_max);
 
 /// Puts the tick into the first region of a state, as find_one_region() and measure() leave it. The state borrows the
 /// tick's points.

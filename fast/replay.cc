@@ -5,11 +5,11 @@
 
 namespace touchstone::fast {
 
-Replay::Replay(const scene::Scene& scene)
-    : model_(scene), state_(model_), r_th_m_(scene.fast.r_th_m), ticks_(ticks_of(scene)) {
-  for (const Tick& tick : ticks_) poses_.push_back(scene::pose_at(scene.track, tick.time_s));
-  recorded_ = record_one_region(model_, ticks_, poses_);
-}
+Replay::Replay(const scene::Scene& scene, std::size_t bytes_max)
+    : model_(scene),
+      state_(model_),
+      r_th_m_(scene.fast.r_th_m),
+      recorded_(record_one_region(model_, scene, bytes_max)) {}
 
 std::vector<scene::Vec3> Replay::forces_n(const scene::Scene& scene) {
   model_.set_constants(scene);
@@ -18,9 +18,10 @@ std::vector<scene::Vec3> Replay::forces_n(const scene::Scene& scene) {
   if (recorded_ && scene.fast.r_th_m != r_th_m_) recorded_.reset();
   if (!recorded_) {
     FastState state(model_);
-    for (std::size_t k = 0; k < ticks_.size(); ++k) {
-      step_force(model_, poses_[k], state);
-      if (ticks_[k].instant >= 0) force_n.push_back(total_force_n(state));
+    Ticks ticks(scene);
+    while (const std::optional<Tick> tick = ticks.next()) {
+      step_force(model_, scene::pose_at(scene.track, tick->time_s), state);
+      if (tick->instant >= 0) force_n.push_back(total_force_n(state));
     }
     return force_n;
   }
@@ -43,9 +44,10 @@ void Replay::displacements(const scene::Scene& scene, std::span<const std::size_
   if (!recorded_) {
     FastState state(model_);
     std::size_t next = 0;
-    for (std::size_t k = 0; k < ticks_.size() && next < instants.size(); ++k) {
-      step_force(model_, poses_[k], state);
-      if (ticks_[k].instant != static_cast<int>(instants[next])) continue;
+    Ticks ticks(scene);
+    for (std::optional<Tick> tick; next < instants.size() && (tick = ticks.next());) {
+      step_force(model_, scene::pose_at(scene.track, tick->time_s), state);
+      if (tick->instant != static_cast<int>(instants[next])) continue;
       step_shape(model_, state);
       visit(next++, state.field.displacement_m);
     }

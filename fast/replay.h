@@ -13,7 +13,8 @@ namespace touchstone::fast {
 
 class Replay {
  public:
-  explicit Replay(const scene::Scene& scene);
+  /// @param bytes_max  of what is kept of the ticks; where it does not suffice, every call steps through them anew
+  explicit Replay(const scene::Scene& scene, std::size_t bytes_max = std::size_t{512} << 20);
 
   /// Total force on the tool at every instant [N]; equal to run()'s bit for bit.
   /// @param scene  that of the constructor but for the constants
@@ -26,15 +27,13 @@ class Replay {
   void displacements(const scene::Scene& scene, std::span<const std::size_t> instants,
                      const std::function<void(std::size_t, const Columns3&)>& visit);
 
-  /// Whether the regions could be found and measured beforehand, see record_one_region().
+  /// Whether the regions could be found, measured and kept beforehand, see record_one_region().
   [[nodiscard]] bool recorded() const noexcept { return recorded_.has_value(); }
 
  private:
   FastModel model_;
   FastState state_;
   double r_th_m_;  ///< of the constructor's scene
-  std::vector<Tick> ticks_;
-  std::vector<scene::Pose> poses_;  ///< at the ticks
   std::optional<std::vector<RecordedTick>> recorded_;
   std::vector<ContactRegion> regions_;  ///< where recorded, per instant; what the shape follows from
 };

@@ -6,6 +6,7 @@
 #include "fast/step.h"
 #include "fast/ticks.h"
 #include "scene/fields.h"
+#include "scene/rest_depth.h"
 
 #include <xxhash.h>
 #include <algorithm>
@@ -42,12 +43,12 @@ class StateHash {
   std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
 };
 
-scene::InstantRecord record_of(const scene::Scene& scene, const FastModel& model, const FastState& state, double time_s,
-                               const scene::Pose& pose) {
+scene::InstantRecord record_of(const scene::RestDepth& depth, const FastModel& model, const FastState& state,
+                               double time_s, const scene::Pose& pose) {
   scene::InstantRecord record;
   record.time_s = time_s;
   record.tool = pose;
-  record.depth_m = scene::rest_depth_m(*model.body, scene.tool, pose);
+  record.depth_m = depth.depth_m(pose);
   record.displacement_m = matrix_of(state.field.displacement_m);
   record.support_force_n = support_force_n(state);
   for (int i = 0; i < state.region_count; ++i) {
@@ -100,6 +101,7 @@ Run run(const scene::Scene& scene, const std::function<void(double)>& progress) 
 
   const Separation separation(*model.body, run.surface, scene::tool_surface(scene.tool, scene.fast.tool_samples));
   run.first_contact_s = separation.first_contact_s(scene.track);
+  const scene::RestDepth depth(*model.body, scene.tool);
   const double missed_depth_m = missed_depth_rel * scene::body_size_m(scene.body);
   Ticks ticks(scene);
   DurationHistogram step, force;
@@ -126,7 +128,7 @@ Run run(const scene::Scene& scene, const std::function<void(double)>& progress) 
         run.order_spread_rel = std::max(run.order_spread_rel.value_or(0.0), spread.spread_rel);
         run.equilibrium_rel = std::max(run.equilibrium_rel.value_or(0.0), spread.equilibrium_rel);
       }
-      run.instants.push_back(record_of(scene, model, state, tick->time_s, pose));
+      run.instants.push_back(record_of(depth, model, state, tick->time_s, pose));
       if (run.instants.back().depth_m > missed_depth_m && !state.in_contact())
         run.status |= static_cast<std::uint32_t>(StepStatus::contact_missed);
       if (!state.in_contact()) run.instants.back().separation_m = separation.distance_m(pose);

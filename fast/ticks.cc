@@ -30,11 +30,4 @@ std::optional<Tick> Ticks::next() {
   return std::nullopt;
 }
 
-std::vector<Tick> ticks_of(const scene::Scene& scene) {
-  std::vector<Tick> ticks;
-  Ticks all(scene);
-  while (const std::optional<Tick> tick = all.next()) ticks.push_back(*tick);
-  return ticks;
-}
-
 }  // namespace touchstone::fast

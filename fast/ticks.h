@@ -36,7 +36,4 @@ class Ticks {
   bool taken_ = false;         ///< regular tick k_, by an instant
 };
 
-/// All of them.
-[[nodiscard]] std::vector<Tick> ticks_of(const scene::Scene& scene);
-
 }  // namespace touchstone::fast

@@ -170,6 +170,7 @@ LiveResult run_live(const scene::Scene& scene, const LiveOptions& options, const
 
   LiveResult result;
   result.rate_hz = setup.time.rate_hz;
+  give_threads_small_stacks();
   result.planned_s = setup.time.time_s(setup.replay != nullptr ? setup.replay_rows : setup.time.grid_points);
   {
     // Each ends and is joined on the way out, also of an exception. The recorder is the last to end.

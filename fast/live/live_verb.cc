@@ -7,6 +7,7 @@
 #include "scene/nearest_name.h"
 
 #include <iostream>
+#include <memory>
 #include <sstream>
 
 namespace touchstone::live {
@@ -40,9 +41,11 @@ int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const s
   fast::ProgressLine progress(options.quiet);
   // More of them ask for no more: `timeout` and some shells send two.
   const fast::StopSignals signals(fast::StopSignals::Again::nothing);
-  const LiveResult result = run_live(
+  // Its histograms are more than a small stack holds.
+  const std::unique_ptr<const LiveResult> kept(new LiveResult(run_live(
       scene, live, folder, fast::StopSignals::asked(), [&](const std::string& text) { progress.show(text); },
-      [](const std::string& warning) { std::cerr << "warning: " << warning << '\n'; });
+      [](const std::string& warning) { std::cerr << "warning: " << warning << '\n'; })));
+  const LiveResult& result = *kept;
   progress.finish();
   manifest.times.push_back(watch.read("live"));
   scene::write_summary(folder / "summary.json", figures(result, live));

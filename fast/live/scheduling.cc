@@ -6,11 +6,24 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 
+#include <unistd.h>
+
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
+#include <fstream>
 
 namespace touchstone::live {
 namespace {
+
+constexpr std::uint64_t locked_max = std::uint64_t{2} << 30, stack_size = std::uint64_t{2} << 20;
+
+/// Of the process, in bytes; zero where the kernel does not tell.
+std::uint64_t address_space() {
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
 
 /// The last processor of the set; -1 where it is empty.
 int last_of(const cpu_set_t& set) {
@@ -28,13 +41,25 @@ std::string Scheduling::text() const {
          (pinned ? ", on processor " + std::to_string(processor) : ", on any processor");
 }
 
+void give_threads_small_stacks() noexcept {
+  pthread_attr_t attributes;
+  if (pthread_attr_init(&attributes) != 0) return;
+  if (pthread_attr_setstacksize(&attributes, stack_size) == 0) pthread_setattr_default_np(&attributes);
+  pthread_attr_destroy(&attributes);
+}
+
 Scheduling schedule_this_thread(const SchedulingWish& wish) {
   Scheduling granted;
   const auto refused = [&](const std::string& what, int error, const std::string& advice) {
     granted.warnings.push_back(what + " refused (" + std::strerror(error) + "): " + advice);
   };
 
-  if (mlockall(MCL_CURRENT) == 0) {
+  if (const std::uint64_t bytes = address_space(); bytes > locked_max) {
+    granted.warnings.push_back(
+        "locked memory left out (" + std::to_string(bytes >> 20) +
+        " MiB; expected at most 2048): a page fault may delay a tick; lower the limit for stacks, "
+        "ulimit -s");
+  } else if (mlockall(MCL_CURRENT) == 0) {
     granted.locked = true;
   } else {
     refused("locked memory", errno, "a page fault may delay a tick; raise the memlock limit");

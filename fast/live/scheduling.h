@@ -23,11 +23,15 @@ struct Scheduling {
   [[nodiscard]] std::string text() const;
 };
 
+/// Threads from here on have a stack of 2 MiB each, whatever the limit for stacks is: locked memory holds all of it.
+void give_threads_small_stacks() noexcept;
+
 /// Asks for SCHED_FIFO and a processor of its own for the calling thread, and for the process's present memory to stay
 /// in place. The loop needs none of them to be right, only to be punctual.
 ///
 /// Only present memory: the loop takes none later, and locking what is still to come would make the other threads'
-/// allocations fail where locked memory is limited.
+/// allocations fail where locked memory is limited. And not when it is more than 2 GiB, as it is where libraries have
+/// threads of their own and the limit for stacks is high: to lock it is to use it.
 [[nodiscard]] Scheduling schedule_this_thread(const SchedulingWish& wish);
 
 /// Gives the locked memory back.

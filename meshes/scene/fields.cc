@@ -129,8 +129,8 @@ std::vector<Field<Scene>> make_scene_fields() {
 
       {"fast.formulation", "", any, "\"corrected\"", fast, choice({"published", "corrected"}, +[](S& s) -> Formulation& { return s.fast.formulation; }), always,
            "The paper's printed method, or its corrected form."},
-      {"fast.triangles", "", between(12, 1e6), "3952", fast, +[](S& s) -> int& { return s.fast.triangles; }, always,
-           "Triangles on the body; their corners are the rest points compared."},
+      {"fast.triangles", "", between(12, 1e5), "3952", fast, +[](S& s) -> int& { return s.fast.triangles; }, always,
+           "Triangles on the body; their corners are the rest points compared. Times compare.instants at most 1e7."},
       {"fast.tool_samples", "", between(1, 1e5), "2000", fast, +[](S& s) -> int& { return s.fast.tool_samples; }, always,
            "Points on the tool's surface. The corrected form takes cells, a quarter as many, and smaller ones where few "
            "are in contact."},
@@ -175,7 +175,7 @@ std::vector<Field<Scene>> make_scene_fields() {
       {"reference.element_size_m", "m", above(0.0, 1.0), absent, reference, +[](S& s) -> std::optional<double>& { return s.reference.element_size_m; }, always,
            "Element size under the tool on the coarsest mesh; chosen from the contact radius when absent."},
 
-      {"compare.instants", "", between(2, 10000), "25", shared, +[](S& s) -> int& { return s.compare.instants; }, always,
+      {"compare.instants", "", between(2, 2000), "25", shared, +[](S& s) -> int& { return s.compare.instants; }, always,
            "Evenly spaced track instants at which both sides are recorded."},
   };
   const auto body = solid_fields<S, solid_of>(

@@ -1,4 +1,5 @@
 #include "scene/first_contact.h"
+#include "scene/rest_depth.h"
 
 #include <cmath>
 #include <cstdio>
@@ -8,8 +9,9 @@ namespace touchstone::scene {
 std::string no_contact_warning(const Scene& scene) {
   if (scene.track.empty()) return "";
   const auto body = body_shape(scene.body);
+  const RestDepth depth(*body, scene.tool);
   const std::vector<double> recorded_s = instants_s(scene);
-  const auto touches = [&](const Pose& pose) { return rest_depth_m(*body, scene.tool, pose) > 0.0; };
+  const auto touches = [&](const Pose& pose) { return depth.depth_m(pose) > 0.0; };
   for (const double time_s : recorded_s) {
     if (touches(pose_at(scene.track, time_s))) return "";
   }
@@ -22,7 +24,7 @@ std::string no_contact_warning(const Scene& scene) {
   char text[300];
   for (const double time_s : times_s) {
     const Pose pose = pose_at(scene.track, time_s);
-    const double here_m = gap_m(*body, scene.tool, pose);
+    const double here_m = depth.gap_m(pose);
     if (here_m < 0.0 && touches(pose)) {
       std::snprintf(text, sizeof text,
                     "the tool touches the body only between the %d recorded instants, at %.4g s among others; raise "

@@ -1,10 +1,13 @@
 // The depth of a tool below the rest surface: the least signed distance of a convex body over the tool; and the first
 // contact along a line, where that distance falls to zero.
+#include "scene/rest_depth.h"
+
 #include "scene/first_contact.h"
 #include "scene/least_value.h"
 
 #include <algorithm>
 #include <cmath>
+#include <unsupported/Eigen/BVH>
 
 namespace touchstone::scene {
 namespace {
@@ -78,6 +81,17 @@ double least_over_triangle(const Shape& body, const std::array<Vec3, 3>& corner_
       });
 }
 
+/// Above this the body's tangents at a triangle's corners hold it.
+double least_by_tangents_m(const std::array<Vec3, 3>& corner_m, const std::array<SurfaceQuery, 3>& at) {
+  double bound_m = -INFINITY;
+  for (std::size_t i = 0; i < 3; ++i) {
+    double falls_m = 0.0;
+    for (const Vec3& p_m : corner_m) falls_m = std::min(falls_m, at[i].normal.dot(p_m - corner_m[i]));
+    bound_m = std::max(bound_m, at[i].signed_distance_m + falls_m);
+  }
+  return bound_m;
+}
+
 /// Triangles whose corners' tangents rule out anything lower are passed over.
 /// @param best  a value that matters no more if it is the least
 double least_over_mesh(const Shape& body, const TriangleMesh& mesh, const Pose& pose, double tolerance_m, double best) {
@@ -93,15 +107,13 @@ double least_over_mesh(const Shape& body, const TriangleMesh& mesh, const Pose& 
   };
   std::vector<Candidate> candidates;
   for (const auto& triangle : mesh.triangles) {
-    double bound_m = -INFINITY;
-    for (const std::int32_t i : triangle) {
-      const SurfaceQuery& q = at[static_cast<std::size_t>(i)];
-      double falls_m = 0.0;
-      for (const std::int32_t j : triangle) {
-        falls_m = std::min(falls_m, q.normal.dot(points_m.col(j) - points_m.col(i)));
-      }
-      bound_m = std::max(bound_m, q.signed_distance_m + falls_m);
+    std::array<Vec3, 3> corner_m;
+    std::array<SurfaceQuery, 3> at_corner;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corner_m[k] = points_m.col(triangle[k]);
+      at_corner[k] = at[static_cast<std::size_t>(triangle[k])];
     }
+    const double bound_m = least_by_tangents_m(corner_m, at_corner);
     if (bound_m < best - tolerance_m) candidates.push_back({bound_m, triangle});
   }
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -113,6 +125,51 @@ double least_over_mesh(const Shape& body, const TriangleMesh& mesh, const Pose& 
   }
   return best;
 }
+
+/// The triangles of a mesh in boxes within boxes.
+using Triangles = Eigen::KdBVH<double, 3, std::int32_t>;
+
+/// The least signed distance of a body over a mesh: what Eigen::BVMinimize asks for.
+class LeastOverBoxes {
+ public:
+  using Scalar = double;
+  /// @param best  a value that matters no more if it is the least
+  LeastOverBoxes(const Shape& body, const TriangleMesh& mesh, const Pose& pose, double tolerance_m, double best)
+      : body_(body),
+        mesh_(mesh),
+        turn_(pose.orientation.toRotationMatrix()),
+        move_m_(pose.position_m),
+        tolerance_m_(tolerance_m),
+        best_(best) {}
+  [[nodiscard]] double best() const noexcept { return best_; }
+
+  /// The distance is convex, so that over a box it lies above its tangent at the middle.
+  double minimumOnVolume(const Eigen::AlignedBox3d& box) const {
+    const SurfaceQuery q = body_.query(turn_ * box.center() + move_m_);
+    const double falls_m = 0.5 * (turn_.transpose() * q.normal).cwiseAbs().dot(box.sizes());
+    const double bound_m = q.signed_distance_m - falls_m;
+    return bound_m < best_ - tolerance_m_ ? bound_m : INFINITY;
+  }
+  double minimumOnObject(std::int32_t t) {
+    std::array<Vec3, 3> corner_m;
+    std::array<SurfaceQuery, 3> at;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corner_m[k] = turn_ * mesh_.points_m.col(mesh_.triangles[static_cast<std::size_t>(t)][k]) + move_m_;
+      at[k] = body_.query(corner_m[k]);
+      best_ = std::min(best_, at[k].signed_distance_m);
+    }
+    if (least_by_tangents_m(corner_m, at) < best_ - tolerance_m_)
+      best_ = std::min(best_, least_over_triangle(body_, corner_m, tolerance_m_));
+    return best_;
+  }
+
+ private:
+  const Shape& body_;
+  const TriangleMesh& mesh_;
+  Eigen::Matrix3d turn_;
+  Vec3 move_m_;
+  double tolerance_m_, best_;
+};
 
 /// The least signed distance of the body over the tool [m]. @param enough  what is not below it need not be exact
 double least_distance_m(const Shape& body, const Tool& tool, const Pose& pose, double tolerance_m, double enough) {
@@ -138,6 +195,9 @@ double least_distance_m(const Shape& body, const Tool& tool, const Pose& pose, d
 }
 
 double diagonal_m(const Bounds& bounds) { return (bounds.upper_m - bounds.lower_m).norm(); }
+
+/// How well depths and gaps are known.
+double depth_tolerance_m(const Shape& body) { return 1e-8 * diagonal_m(body.bounds()); }
 
 /// Where a convex function of a place on a line first falls to zero; nothing if it does not before `end_m`.
 /// A chord prolonged lies below a convex function, so no zero is stepped over.
@@ -222,11 +282,43 @@ std::optional<double> first_contact_of_mesh_m(const Shape& body, const TriangleM
 }  // namespace
 
 double rest_depth_m(const Shape& body, const Tool& tool, const Pose& pose) {
-  return std::max(0.0, -least_distance_m(body, tool, pose, 1e-8 * diagonal_m(body.bounds()), 0.0));
+  return std::max(0.0, -least_distance_m(body, tool, pose, depth_tolerance_m(body), 0.0));
 }
 
 double gap_m(const Shape& body, const Tool& tool, const Pose& pose) {
-  return least_distance_m(body, tool, pose, 1e-8 * diagonal_m(body.bounds()), INFINITY);
+  return least_distance_m(body, tool, pose, depth_tolerance_m(body), INFINITY);
+}
+
+struct RestDepth::MeshInBoxes {
+  TriangleMesh mesh;
+  Triangles triangles;
+};
+
+RestDepth::RestDepth(const Shape& body, const Tool& tool) : body_(body), tool_(tool) {
+  if (tool.shape != ToolShape::mesh) return;
+  TriangleMesh mesh = tool_mesh(tool);
+  std::vector<std::int32_t> numbers;
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const auto& triangle : mesh.triangles) {
+    numbers.push_back(static_cast<std::int32_t>(numbers.size()));
+    Eigen::AlignedBox3d& box = boxes.emplace_back();
+    for (const std::int32_t corner : triangle) box.extend(mesh.points_m.col(corner));
+  }
+  mesh_ = std::make_unique<const MeshInBoxes>(
+      MeshInBoxes{std::move(mesh), Triangles(numbers.begin(), numbers.end(), boxes.begin(), boxes.end())});
+}
+
+RestDepth::~RestDepth() = default;
+
+double RestDepth::depth_m(const Pose& pose) const { return std::max(0.0, -least_m(pose, 0.0)); }
+
+double RestDepth::gap_m(const Pose& pose) const { return least_m(pose, INFINITY); }
+
+double RestDepth::least_m(const Pose& pose, double enough) const {
+  if (!mesh_) return least_distance_m(body_, tool_, pose, depth_tolerance_m(body_), enough);
+  LeastOverBoxes least(body_, mesh_->mesh, pose, depth_tolerance_m(body_), enough);
+  Eigen::BVMinimize(mesh_->triangles, least);
+  return least.best();
 }
 
 std::optional<double> first_contact_m(const Shape& body, const Tool& tool, const Pose& pose, const Vec3& direction) {

@@ -1,5 +1,6 @@
 #include "scene/rules.h"
 
+#include "scene/rest_depth.h"
 #include "scene/surface.h"
 
 #include <algorithm>
@@ -20,11 +21,12 @@ std::string number(double value) {
 double deepest_m(const Scene& scene, const Shape& body) {
   constexpr int samples = 1000;
   const double begin_s = scene.track.front().time_s, end_s = scene.track.back().time_s;
+  const RestDepth depth(body, scene.tool);
   double deepest = 0.0;
-  for (const Waypoint& w : scene.track) deepest = std::max(deepest, rest_depth_m(body, scene.tool, w.pose));
+  for (const Waypoint& w : scene.track) deepest = std::max(deepest, depth.depth_m(w.pose));
   for (int i = 0; i <= samples; ++i) {
     const Pose pose = pose_at(scene.track, begin_s + (end_s - begin_s) * i / samples);
-    deepest = std::max(deepest, rest_depth_m(body, scene.tool, pose));
+    deepest = std::max(deepest, depth.depth_m(pose));
   }
   return deepest;
 }
@@ -51,6 +53,19 @@ void check_track(const Scene& scene, std::vector<Violation>& found) {
     found.push_back({"track", "takes " + number(ticks) + " ticks at fast.rate_hz = " + number(scene.fast.rate_hz) +
                                   " Hz; expected at most " + number(ticks_max)});
   }
+}
+
+/// Triangles recorded over all instants; more would take `fast` longer than ten seconds and more than 1 GiB.
+constexpr double recorded_triangles_max = 1e7;
+
+void check_records(const Scene& scene, std::vector<Violation>& found) {
+  const double recorded = static_cast<double>(scene.fast.triangles) * scene.compare.instants;
+  if (recorded <= recorded_triangles_max) return;
+  found.push_back(
+      {"compare.instants", std::to_string(scene.compare.instants) + " records of " +
+                               std::to_string(scene.fast.triangles) + " triangles (fast.triangles); expected at most " +
+                               std::to_string(static_cast<int>(recorded_triangles_max) / scene.fast.triangles) +
+                               " records of as many"});
 }
 
 void check_start(const Scene& scene, const Shape& body, std::vector<Violation>& found) {
@@ -181,6 +196,7 @@ std::vector<Violation> broken_rules(const Scene& scene) {
   check_friction(scene.contact, found);
   check_local_factor(scene, found);
   check_track(scene, found);
+  check_records(scene, found);
   if (!found.empty()) return found;
   const auto body = body_shape(scene.body);
   check_support(scene.body, *body, found);

@@ -1,7 +1,9 @@
 // One fuzz target for each kind of file that Touchstone reads. libFuzzer calls LLVMFuzzerTestOneInput with the bytes
-// of a file; `--kind=NAME` on the command line says of which kind. A reader may accept the bytes or refuse them with
-// its own error, whose text must be fit for a terminal. Anything else ends the process, and that is a finding.
+// of a file; `--kind=NAME` on the command line says of which kind, and `--seed=FILE` writes there what the fuzzer would
+// not find by itself: a valid file of a kind that has checksums. A reader may accept the bytes or refuse them with its
+// own error, whose text must be fit for a terminal. Anything else ends the process, and that is a finding.
 #include "compare/result_folder.h"
+#include "compare/stored_reference.h"
 #include "fast/live/live_log.h"
 #include "reference/run/step_record.h"
 #include "scene/error.h"
@@ -11,12 +13,14 @@
 #include "scene/mesh_formats.h"
 #include "scene/scene_io.h"
 #include "scene/study.h"
+#include "scene/surface.h"
 #include "scene/text.h"
 #include "scene/track_csv.h"
 #include "scene/triangle_mesh.h"
 #include "scene/tuning_study.h"
 
 #include <unistd.h>
+#include <zlib.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -24,6 +28,9 @@
 #include <map>
 #include <string>
 #include <string_view>
+
+/// Made by the reference solver from all that its answer hangs on; here it is of any scene.
+std::string touchstone::reference::content_key(const scene::Scene&) { return "any"; }
 
 namespace {
 
@@ -74,8 +81,8 @@ const Folder& folder() {
   return one;
 }
 
-/// A message is text for a terminal, of a length that somebody reads.
-void require_readable(const std::string& message) {
+/// A message is text for a terminal, of a length that somebody reads. @returns it
+const std::string& require_readable(const std::string& message) {
   constexpr std::size_t bytes_max = 64 << 10;
   if (message.empty() || message.size() > bytes_max)
     finding("a message of " + std::to_string(message.size()) + " bytes");
@@ -85,6 +92,7 @@ void require_readable(const std::string& message) {
     if (rest[0] != '\n' && scene::is_control(rest, length)) finding("a control character in a message");
     rest.remove_prefix(length);
   }
+  return message;
 }
 
 void require_finite(const scene::TriangleMesh& mesh) {
@@ -175,6 +183,113 @@ void curve_file(const std::string& bytes) {
   }
 }
 
+/// The scene of a gate, of few rest points.
+struct GateScene {
+  scene::Scene scene;
+  scene::Surface rest;
+};
+const GateScene& gate_scene() {
+  static const GateScene one = [] {
+    scene::Scene scene = scene::load_scene(source / "meshes/scenes/ball-on-cube-press.toml",
+                                           {"fast.triangles=12", "compare.instants=2"});
+    scene::Surface rest = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
+    return GateScene{std::move(scene), std::move(rest)};
+  }();
+  return one;
+}
+
+/// An answer with a contact at the second instant.
+reference::Result pressed(Eigen::Index points) {
+  reference::Result result;
+  for (int t = 0; t < 2; ++t) {
+    scene::InstantRecord& record = result.instants.emplace_back();
+    record.time_s = t;
+    record.displacement_m = Eigen::Matrix3Xd::Constant(3, points, 1e-3 * t);
+    std::vector<scene::Vec3>& middles_m = result.region_middles_m.emplace_back();
+    if (t == 1) {
+      record.depth_m = 1e-3;
+      record.regions.push_back({1e-3, scene::Vec3(0, 0, 1), scene::Vec3::Zero(), 1e-5, 0, scene::Vec3::Zero(), false});
+      middles_m.emplace_back(0.0, 0.0, 0.06);
+    }
+    result.displacement_uncertainty_m.emplace_back(Eigen::VectorXd::Constant(points, 1e-6));
+    for (std::vector<double>* numbers :
+         {&result.force_uncertainty_n, &result.residual_penetration_m, &result.between_nodes_penetration_m,
+          &result.equilibrium_rel, &result.volume_change_rel}) {
+      numbers->push_back(1e-6);
+    }
+  }
+  result.model = "axisymmetric";
+  result.levels.emplace_back();
+  return result;
+}
+
+/// A committed reference of two instants, for a gate. One of its three files is the input; the checksums are right.
+void committed_reference(const std::string& about, const std::string& curve, const std::string& surface) {
+  std::filesystem::create_directories(folder().root() / "reference");
+  (void)folder().file("reference/reference.json", about);
+  (void)folder().file("reference/curve.csv", curve);
+  (void)folder().file("reference/surface.f32.z", surface);
+  const auto& [scene, rest] = gate_scene();
+  try {
+    const reference::Result result = compare::stored_reference(folder().root() / "reference", scene, rest);
+    (void)require_readable(result.model + result.refinement.why_ended + ".");
+    if (result.instants.size() != 2) finding("another number of instants than the scene's");
+    for (const scene::InstantRecord& instant : result.instants) {
+      if (instant.displacement_m.cols() != rest.points_m.cols()) finding("a point without its displacement");
+      if (!instant.displacement_m.allFinite()) finding("a displacement that is not finite");
+      for (const scene::RegionRecord& region : instant.regions) {
+        if (!region.force_n.allFinite() || region.id < 0) finding("a region that is none");
+      }
+    }
+  } catch (const compare::UnusableReference& error) {
+    throw scene::InputError(require_readable(error.what()));
+  }
+}
+
+/// A file of a valid reference.
+const std::string& valid(const std::string& name) {
+  static const std::map<std::string, std::string> files = [] {
+    const path where = folder().root() / "valid";
+    const auto& [scene, rest] = gate_scene();
+    compare::store_reference(where, scene, rest, pressed(rest.points_m.cols()), "fuzz");
+    std::map<std::string, std::string> read;
+    for (const char* file : {"reference.json", "curve.csv", "surface.f32.z"}) {
+      read[file] = *scene::read_file(where / file);
+    }
+    return read;
+  }();
+  return files.at(name);
+}
+
+/// What the reference says of itself, with the checksum of another file in the place of a valid one's.
+std::string about_with(const char* name, const std::string& bytes) {
+  std::string about = valid("reference.json");
+  const std::string checksum = scene::hash_text(valid(name));
+  return about.replace(about.find(checksum), checksum.size(), scene::hash_text(bytes));
+}
+
+void reference_about(const std::string& bytes) {
+  committed_reference(bytes, valid("curve.csv"), valid("surface.f32.z"));
+}
+void reference_curve(const std::string& bytes) {
+  committed_reference(about_with("curve.csv", bytes), bytes, valid("surface.f32.z"));
+}
+/// The bytes as they are, or as the numbers that are compressed in the file.
+void reference_surface(const std::string& bytes) {
+  std::string file = bytes;
+  if (bytes.starts_with("numbers")) {
+    const auto& [scene, rest] = gate_scene();
+    std::string numbers = bytes.substr(7);
+    numbers.resize(2 * 4 * sizeof(float) * static_cast<std::size_t>(rest.points_m.cols()));
+    uLongf size = compressBound(numbers.size());
+    file.resize(size);
+    (void)compress(reinterpret_cast<Bytef*>(file.data()), &size, reinterpret_cast<const Bytef*>(numbers.data()),
+                   numbers.size());
+    file.resize(size);
+  }
+  committed_reference(about_with("surface.f32.z", file), valid("curve.csv"), file);
+}
+
 using Target = void (*)(const std::string& bytes);
 
 const std::map<std::string_view, Target> targets = {
@@ -191,9 +306,19 @@ const std::map<std::string_view, Target> targets = {
     {"log", &live_log},
     {"record", &store_record},
     {"store", &store_file},
+    {"reference", &reference_about},
+    {"reference-curve", &reference_curve},
+    {"reference-surface", &reference_surface},
     {"summary", &summary_file},
     {"manifest", &manifest_file},
     {"curve", &curve_file},
+};
+
+/// Those that the target makes by itself.
+const std::map<std::string_view, std::string (*)()> seeds = {
+    {"reference", [] { return valid("reference.json"); }},
+    {"reference-curve", [] { return valid("curve.csv"); }},
+    {"reference-surface", [] { return valid("surface.f32.z"); }},
 };
 
 Target target = nullptr;
@@ -201,12 +326,16 @@ Target target = nullptr;
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
-  constexpr std::string_view option = "--kind=";
+  std::map<std::string, std::string> options;
   for (int i = 1; i < *argc; ++i) {
-    const std::string_view argument = (*argv)[i];
-    if (!argument.starts_with(option)) continue;
-    const auto found = targets.find(argument.substr(option.size()));
-    if (found != targets.end()) target = found->second;
+    const std::string argument = (*argv)[i];
+    const std::size_t equals = argument.find('=');
+    if (equals != std::string::npos) options[argument.substr(0, equals)] = argument.substr(equals + 1);
+  }
+  const std::string kind = options["--kind"];
+  if (const auto found = targets.find(kind); found != targets.end()) target = found->second;
+  if (const auto seed = seeds.find(kind); seed != seeds.end() && options.contains("--seed")) {
+    scene::write_file(options["--seed"], seed->second());
   }
   if (target != nullptr) return 0;
   std::fprintf(stderr, "expected --kind= and one of:");

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>
@@ -270,6 +271,34 @@ TEST(MachineFaultsLive, OfTwoWritersTheSecondIsRefusedAndTheFirstGoesOn) {
       last_s = time_s;
     }
     EXPECT_GT(rows, 100);
+    std::filesystem::remove_all(dir);
+  }
+}
+
+TEST(MachineFaultsLive, RunsWhateverTheLimitForStacksAndTakesNoMoreMemoryForIt) {
+  for (Case one : cases()) {
+    // The other program's libraries have threads of their own, and it has the verb, too.
+    if (one.verb == "compare") one.verb = "live";
+    if (one.verb != "live") continue;
+    const path dir = path(testing::TempDir()) / ("stacks-" + std::to_string(::getpid()));
+    for (const int limit_kib : {128, 8 << 10, 20 << 10, 4 << 20}) {
+      SCOPED_TRACE(one.program + " " + std::to_string(limit_kib) + " KiB");
+      const std::string shell = "ulimit -s " + std::to_string(limit_kib) + "; exec " + one.program + " live " + source +
+                                "/meshes/scenes/pin-on-cylinder.toml --quiet --seconds 0.1 --out " + dir.string() +
+                                " >/dev/null 2>/dev/null";
+      const pid_t child = ::fork();
+      if (child == 0) {
+        ::execl("/bin/sh", "sh", "-c", shell.c_str(), nullptr);
+        ::_exit(127);
+      }
+      int status = 0;
+      rusage used{};
+      ASSERT_EQ(::wait4(child, &status, 0, &used), child);
+      EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+#ifndef __SANITIZE_ADDRESS__
+      EXPECT_LT(used.ru_maxrss, one.full() ? 1'200'000 : 60'000) << "KiB";
+#endif
+    }
     std::filesystem::remove_all(dir);
   }
 }

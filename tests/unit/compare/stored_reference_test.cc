@@ -3,6 +3,8 @@
 
 #include "compare/errors.h"
 #include "scene/files.h"
+#include "scene/hash.h"
+#include "scene/text.h"
 #include "unit/compare/synthetic.h"
 #include "unit/compare/temporary_folder.h"
 
@@ -15,6 +17,8 @@
 namespace touchstone::compare {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
 class StoredReferenceTest : public ::testing::Test {
@@ -114,6 +118,41 @@ TEST_F(StoredReferenceTest, ANumberWrittenOverIsNotUsed) {
   digit = digit == '1' ? '2' : '1';
   scene::write_file(folder() / "curve.csv", text);
   EXPECT_THAT(refusal(sides_.scene, sides_.run.surface), HasSubstr("altered"));
+}
+
+TEST_F(StoredReferenceTest, WhatNoSolverGivesIsRefusedInPlainText) {
+  // The refusal of a file with this in the place of that, whose checksum is right.
+  const auto refusal_with = [&](const char* name, const std::string& that, const std::string& with) {
+    SetUp();
+    std::string text = *scene::read_file(folder() / name), about = *scene::read_file(folder() / "reference.json");
+    const std::string checksum = scene::hash_text(text);
+    text.replace(text.find(that), that.size(), with);
+    scene::write_file(folder() / name, text);
+    if (const std::size_t at = about.find(checksum); at != std::string::npos) {
+      scene::write_file(folder() / "reference.json", about.replace(at, checksum.size(), scene::hash_text(text)));
+    }
+    return refusal(sides_.scene, sides_.run.surface);
+  };
+  const std::string unplain = refusal_with("reference.json", "\"format\"", "\"\xff");
+  EXPECT_THAT(unplain, HasSubstr("reference.json"));
+  EXPECT_TRUE(scene::is_plain_text(unplain)) << unplain;
+  EXPECT_THAT(refusal_with("reference.json", "\"unknowns\": ", "\"unknowns\": 1e300, \"x\": "),
+              HasSubstr("expected a whole number, found 1e+300"));
+  const std::string curve = *scene::read_file(folder() / "curve.csv");
+  const std::string head = curve.substr(0, curve.find('\n'));
+  EXPECT_THAT(refusal_with("curve.csv", curve, head + "\n"), HasSubstr("holds 0 instants, the scene 5"));
+  for (const char* count : {"nan", "-1", "0.5", "1e300"}) {
+    std::string more = curve;
+    for (std::size_t at = more.find('\n'); at != std::string::npos; at = more.find('\n', at + 1)) {
+      if (at + 1 < more.size()) more.insert(at + 1, std::string(count) + ",");
+    }
+    EXPECT_THAT(refusal_with("curve.csv", curve, "regions," + more.replace(more.find(",regions,"), 9, ",was,")),
+                AllOf(HasSubstr("column regions"), AnyOf(HasSubstr("whole number"), HasSubstr("not finite"))))
+        << count;
+  }
+  sides_.result.instants[2].displacement_m(0, 0) = std::numeric_limits<double>::infinity();
+  SetUp();
+  EXPECT_THAT(refusal(sides_.scene, sides_.run.surface), HasSubstr("displacement that is not finite"));
 }
 
 TEST_F(StoredReferenceTest, AnUnknownUncertaintyIsReadBackAsUnknown) {

@@ -166,6 +166,19 @@ class TradeTest : public ::testing::Test {
   std::vector<std::optional<int>> levels_elsewhere_;  ///< asked for on surfaces that are not the scene's
 };
 
+TEST_F(TradeTest, ATrackOfTooManyTicksIsRefusedAtOnce) {
+  scene::Scene scene = ball_on_ball(1);
+  const double begin_s = scene.track.front().time_s;
+  scene.track.back().time_s = begin_s + 1'000'001 / scene.fast.rate_hz;
+  try {
+    (void)run(scene);
+    FAIL() << "traded";
+  } catch (const scene::InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("takes 1000002 ticks at fast.rate_hz = 500 Hz"));
+    EXPECT_THAT(error.what(), HasSubstr("at most 1000000"));
+  }
+}
+
 TEST_F(TradeTest, MeasuresAndJudgesEveryRung) {
   const scene::Scene scene = ball_on_ball(3);
   const Trade found = run(scene);

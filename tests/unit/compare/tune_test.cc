@@ -5,6 +5,7 @@
 #include "fast/replay.h"
 #include "scene/files.h"
 #include "scene/scene_io.h"
+#include "unit/bounded_memory.h"
 #include "unit/compare/temporary_folder.h"
 #include "unit/compare/xml.h"
 
@@ -149,6 +150,28 @@ TEST(Replay, AnotherClusterDistanceIsNotTheRecordedOne) {
   EXPECT_FALSE(replay.recorded());
   const fast::Run run = fast::run(finer);
   for (std::size_t t = 0; t < force_n.size(); ++t) EXPECT_EQ(force_n[t], run.instants[t].force_n()) << t;
+}
+
+TEST(Replay, ATrackOfManyTicksIsSteppedThroughAnewInsteadOfKept) {
+  const scene::Scene scene = coarse("ball-on-cube-slide");
+  fast::Replay kept(scene), stepped(scene, 64 << 10);
+  ASSERT_TRUE(kept.recorded());
+  EXPECT_FALSE(stepped.recorded());
+  EXPECT_EQ(stepped.forces_n(scene), kept.forces_n(scene));
+}
+
+TEST(Replay, MemoryDoesNotHangOnTheTicks) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer keeps memory of its own";
+#endif
+  scene::Scene scene = coarse("ball-on-cube-slide");
+  // A long way off, where a tick costs least.
+  for (scene::Waypoint& row : scene.track) row.pose.position_m.z() += 0.5;
+  scene.track.back().time_s = 1e4;
+  EXPECT_TRUE(done_within(std::size_t{32} << 20, [&] {
+    fast::Replay replay(scene, 1 << 20);
+    return replay.forces_n(scene).size() == 7;
+  }));
 }
 
 TEST(Tune, BringsBackTheConstantsOfForceAndShape) {

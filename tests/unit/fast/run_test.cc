@@ -1,18 +1,13 @@
 #include "fast/run.h"
 
 #include "fast/step.h"
+#include "unit/bounded_memory.h"
 #include "unit/fast/press.h"
 #include "unit/fast/shipped_scenes.h"
 
 #include <gtest/gtest.h>
 
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <fstream>
-#include <new>
 #include <string>
 
 namespace touchstone::fast {
@@ -89,15 +84,6 @@ TEST(Run, TicksAtTheScenesRate) {
   EXPECT_EQ(run(scene).ticks, 14);
 }
 
-/// Memory that this process may write to [byte].
-std::size_t writable_bytes() {
-  std::ifstream in("/proc/self/status");
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with("VmData:")) return 1024 * std::stoul(line.substr(7));
-  }
-  return 0;
-}
-
 TEST(Run, MemoryDoesNotHangOnTheTicks) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "the sanitizer keeps memory of its own";
@@ -108,20 +94,7 @@ TEST(Run, MemoryDoesNotHangOnTheTicks) {
   scene.track.back().time_s = 1e4;
   scene.fast.triangles = 100;
   scene.fast.tool_samples = 100;
-  const pid_t child = ::fork();
-  if (child == 0) {
-    const rlimit small{writable_bytes() + (std::size_t{64} << 20), RLIM_INFINITY};
-    ::setrlimit(RLIMIT_DATA, &small);
-    bool good = false;
-    try {
-      good = run(scene).ticks == 10'000'001;
-    } catch (const std::bad_alloc&) {
-    }
-    ::_exit(good ? 0 : 1);
-  }
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  EXPECT_EQ(status, 0) << "ten million ticks do not fit into 64 MiB";
+  EXPECT_TRUE(done_within(std::size_t{64} << 20, [&] { return run(scene).ticks == 10'000'001; }));
 }
 
 TEST(Run, RecordsWhatAStepAnswers) {

@@ -335,6 +335,16 @@ TEST_F(InputFile, GivesPosesInTheSameRangesFromRowsAndTables) {
               AllOf(HasSubstr("a.toml:17:11: track[1].depth_m: leads to a place"), HasSubstr("[-1000, 1000] m")));
 }
 
+TEST(Records, OfTooManyTrianglesAreRefused) {
+  const std::string track = row("0.0") + row("1.0"), records = "[compare]\ninstants = ";
+  EXPECT_EQ(refusal(body + ball + law + track + records + "100\n[fast]\ntriangles = 100000\n"), "accepted");
+  EXPECT_THAT(refusal(body + ball + law + track + records + "101\n[fast]\ntriangles = 100000\n"),
+              HasSubstr("compare.instants: 101 records of 100000 triangles (fast.triangles); expected at most 100 "
+                        "records of as many"));
+  EXPECT_THAT(refusal(body + ball + law + track + "[fast]\ntriangles = 100001\n"),
+              HasSubstr("fast.triangles = 100001; expected a whole number in [12, 100000]"));
+}
+
 TEST(Track, OfTooManyTicksIsRefused) {
   EXPECT_EQ(refusal(body + ball + law + row("0.0") + row("1e5")), "accepted");
   EXPECT_THAT(refusal(body + ball + law + row("-10.0") + row("1e5")),

@@ -1,8 +1,12 @@
+#include "scene/rest_depth.h"
+
+#include "scene/first_contact.h"
 #include "scene/scene.h"
 #include "scene/surface.h"
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -207,6 +211,62 @@ TEST(RestDepth, IsTheDeepestOfManyPointsForEveryBodyAndTool) {
     }
   }
   EXPECT_GT(touching, 150);
+}
+
+TEST(RestDepth, OfATriangleMeshInBoxesIsTheSame) {
+  const std::vector<std::shared_ptr<const Shape>> bodies = {
+      std::make_shared<Box>(cube), std::make_shared<Ellipsoid>(Vec3(0, 0, 0.02), Vec3(0.05, 0.03, 0.02)),
+      std::make_shared<Revolution>(cylinder_profile(0.03, 0.05, 0.006), Vec3(0, 0, 0.025))};
+  const std::vector<Tool> tools = {mesh_tool(Box(Vec3::Zero(), Vec3(0.02, 0.01, 0.015)), 12),
+                                   mesh_tool(Box(Vec3::Zero(), Vec3(0.2, 0.1, 0.15)), 12),
+                                   mesh_tool(Revolution(cylinder_profile(0.008, 0.03, 0.002)), 600),
+                                   mesh_tool(Sphere(Vec3(0.001, 0.0, 0.02), 0.005), 2000)};
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  int touching = 0, apart = 0;
+  for (const auto& body : bodies) {
+    const double tolerance_m = 1e-8 * (body->bounds().upper_m - body->bounds().lower_m).norm();
+    for (const Tool& tool : tools) {
+      const RestDepth depth(*body, tool);
+      for (int k = 0; k < 30; ++k) {
+        const Vec3 out = Vec3(any(random), any(random), any(random)).normalized();
+        const SurfaceQuery q = body->query(0.5 * body->bounds().upper_m.z() * Vec3::UnitZ() + 0.2 * out);
+        const Pose pose{q.point_m + 0.01 * (1.0 + any(random)) * q.normal,
+                        k % 3 == 0 ? Eigen::Quaterniond::Identity()
+                                   : turned(3.0 * any(random), Vec3(any(random), any(random), any(random)))};
+        const double gap = gap_m(*body, tool, pose);
+        ++(gap < 0.0 ? touching : apart);
+        EXPECT_NEAR(depth.gap_m(pose), gap, tolerance_m);
+        EXPECT_NEAR(depth.depth_m(pose), rest_depth_m(*body, tool, pose), tolerance_m);
+        EXPECT_EQ(depth.depth_m(pose) > 0.0, gap < 0.0);
+      }
+    }
+  }
+  EXPECT_GT(touching, 100);
+  EXPECT_GT(apart, 50);
+}
+
+TEST(RestDepth, OfAFineMeshAtManyPosesTakesTheTimeOfFew) {
+  // Nearly as many triangles as a mesh may have, at as many poses as a scene's rules ask for.
+  const Tool tool = mesh_tool(Sphere(Vec3::Zero(), 0.01), 490000);
+  const auto pose_of = [](int i) {
+    return Pose{Vec3(0.001, 0.002, size_m + 0.015 - 1e-5 * i), turned(0.1 + 1e-3 * i, Vec3(1, 2, 3))};
+  };
+  const auto seconds_since = [](std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  constexpr int few = 10, many = 1000;
+  auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < few; ++i) (void)gap_m(cube, tool, pose_of(i));
+  const double one_s = seconds_since(begin) / few;
+  begin = std::chrono::steady_clock::now();
+  const RestDepth depth(cube, tool);
+  for (int i = 0; i < many; ++i) {
+    // Facets lie within the ball by less than a micrometre.
+    EXPECT_NEAR(depth.gap_m(pose_of(i)), pose_of(i).position_m.z() - size_m - 0.01, 1e-6);
+  }
+  // Some thirty when it was written.
+  EXPECT_LT(seconds_since(begin), 150 * one_s);
 }
 
 }  // namespace
