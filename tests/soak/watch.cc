@@ -1,6 +1,7 @@
 #include "soak/watch.h"
 
 #include "fast/equivalent_point.h"
+#include "fast/press.h"
 #include "fast/several_regions.h"
 
 #include <unistd.h>
@@ -70,7 +71,8 @@ Watch::Watch(const fast::FastModel& model, fast::FastState& state, Figures& figu
       state_(state),
       figures_(figures),
       report_(std::move(report)),
-      group_(static_cast<std::size_t>(model.tool.count())) {}
+      cells_(model.formulas.cells ? model.tool.count() : 0),
+      group_(static_cast<std::size_t>(model.max_points())) {}
 
 void Watch::check(Property property, bool holds, const std::string& otherwise) {
   if (holds) return;
@@ -147,7 +149,7 @@ void Watch::check_reported(StepStatus status) {
       if (model_.skeleton.held[k] || !(D_m > 1e-12)) continue;
       ends_cut = ends_cut || unlimited_m(region.ends.beam[k], region.ends.force_n[k]) > D_m * (1.0 + 1e-3);
     }
-    check(Property::reported, region.points.count <= model_.tool.count(), "more points than samples");
+    check(Property::reported, region.points.count <= model_.max_points(), "more points than there is room for");
   }
   check(Property::reported, state_.region_count <= model_.max_regions, "more regions than max_regions");
   check(Property::reported, !too_deep || has(status, StepStatus::depth_limited),
@@ -160,7 +162,7 @@ void Watch::check_reported(StepStatus status) {
 void Watch::check_regions_full(const scene::Pose& pose, StepStatus status) {
   fast::RegionPoints points = state_.probe.window();
   const scene::Pose unit{pose.position_m, pose.orientation.normalized()};
-  model_.detection.find_inside(*model_.body, model_.tool, fast::placement(unit), bulge_m_, model_.tool.count(), points);
+  fast::find_points(model_, fast::placement(unit), bulge_m_, points, cells_);
   // Groups of points by the rule of section II-B, in the plainest way.
   const auto count = static_cast<std::size_t>(points.count);
   std::iota(group_.begin(), group_.begin() + points.count, 0);
@@ -169,10 +171,14 @@ void Watch::check_regions_full(const scene::Pose& pose, StepStatus status) {
     return i;
   };
   const double near2_m2 = model_.clusters->r_th_m * model_.clusters->r_th_m;
+  const auto sample_m = [&](std::size_t point) {
+    const auto i = static_cast<std::size_t>(points.sample[point]);
+    return Vec3(model_.tool.x_T_m[i], model_.tool.y_T_m[i], model_.tool.z_T_m[i]);
+  };
   int groups = points.count;
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t k = i + 1; k < count; ++k) {
-      if (!((points.p_T_m(i) - points.p_T_m(k)).squaredNorm() < near2_m2)) continue;
+      if (!((sample_m(i) - sample_m(k)).squaredNorm() < near2_m2)) continue;
       const int a = root(static_cast<int>(i)), b = root(static_cast<int>(k));
       if (a == b) continue;
       group_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);

@@ -65,6 +65,7 @@ class Watch {
   bool was_in_contact_ = false;
   double bulge_m_ = 0.0;
   scene::Vec3 force_n_ = scene::Vec3::Zero(), position_m_ = scene::Vec3::Zero();
+  fast::CellScratch cells_;
   std::vector<int> group_;
 };
 
