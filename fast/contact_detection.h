@@ -124,44 +124,9 @@ struct InsideSummary {
 using FindInside = InsideSummary (*)(const scene::Shape&, const ToolSamples&, const Placement&, double margin_m,
                                      int limit, RegionPoints&) noexcept;
 
-/// How the tool's cells become points.
-struct CellRule {
-  int points = 1;          ///< fewer than these are too few
-  double rim_share = 1.0;  ///< of the area inside, in cut cells; more than that is too much
-};
-
-/// Halved cells that find_cells() looks at in a tick, at most.
-inline constexpr int max_cells = 1024;
-
-/// What find_cells() writes on its way. Halves are kept, since a contact mostly asks for those of the last tick; the
-/// answer never depends on which are.
-class CellScratch {
- public:
-  /// @param samples of the tool; 0 where cells are not asked for
-  explicit CellScratch(int samples);
-  /// Makes room for a tick's halves.
-  void begin() noexcept;
-  /// The first of the two halves of a sample's cell, or of a half; the second follows it.
-  [[nodiscard]] std::int32_t halves_of_sample(const ToolSamples& tool, std::int32_t sample) noexcept;
-  [[nodiscard]] std::int32_t halves_of_half(const ToolSamples& tool, std::int32_t half) noexcept;
-  [[nodiscard]] const SurfaceCell& half(std::int32_t index) const noexcept {
-    return halves_[static_cast<std::size_t>(index)];
-  }
-  [[nodiscard]] std::size_t memory_bytes() const noexcept;
-
-  std::vector<std::int32_t> now, near;  ///< cells of a round, and those of them that are near the body
-
- private:
-  [[nodiscard]] std::int32_t halves_of(const ToolSamples& tool, const SurfaceCell& cell, std::int32_t& first) noexcept;
-  std::vector<SurfaceCell> halves_;
-  std::vector<std::int32_t> of_half_, of_sample_;  ///< the first half of each, -1 for not known
-  std::size_t used_ = 0;
-};
-
-/// Fills `points` with what lies inside the rest surface of the tool's cells, one point for each at the middle of that
-/// part and with its area. Where the points are too few, or too much of the area is in cut cells, all cells near the
-/// body are halved, and again, as far as there is room.
-/// @param margin_m what lies outside, but for less than that, are points too, of negative depth
+struct CellRule;
+class CellScratch;
+/// See find_cells.h.
 using FindCells = InsideSummary (*)(const scene::Shape&, const ToolSamples&, const Placement&, const CellRule&,
                                     double margin_m, RegionPoints&, CellScratch&) noexcept;
 

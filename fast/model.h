@@ -6,6 +6,7 @@
 #include "fast/contact_detection.h"
 #include "fast/contact_law.h"
 #include "fast/contact_regions.h"
+#include "fast/find_cells.h"
 #include "fast/friction.h"
 #include "fast/interpolation.h"
 #include "fast/local_factor.h"
