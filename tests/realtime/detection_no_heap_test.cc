@@ -1,5 +1,6 @@
 // What a tick asks of detection, for every body, without the heap.
 #include "fast/contact_regions.h"
+#include "fast/find_cells.h"
 #include "fast/pull_back.h"
 #include "realtime/no_heap.h"
 #include "unit/fast/points.h"
