@@ -3,6 +3,7 @@
 #include "fast/live/hand_device.h"
 #include "fast/live/replay_device.h"
 #include "scene/error.h"
+#include "scene/input.h"
 #include "unit/live/lock_step.h"
 
 #include <gmock/gmock.h>
@@ -85,6 +86,12 @@ TEST_F(LiveLogTest, ThatIsNoFileIsRefused) {
   ASSERT_EQ(::mkfifo(file_.c_str(), 0600), 0);
   expect_refused(0, "cannot read the log: it is a pipe");
   std::filesystem::remove(file_);
+}
+
+TEST_F(LiveLogTest, ThatIsTooLongToBeKeptIsRefused) {
+  std::ofstream{file_};
+  std::filesystem::resize_file(file_, scene::log_input.bytes_max + 1);
+  expect_refused(0, "expected the live.csv of a live run of at most 2 GiB");
 }
 
 TEST_F(LiveLogTest, ComesBackToTheLastBit) {

@@ -17,7 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <fstream>
 #include <random>
 
@@ -44,14 +44,14 @@ const std::string good = body + ball + law + row("0.0") + row("1.0");
 /// What a scene is refused with, in at most two seconds.
 std::string refusal(const std::string& text, const std::filesystem::path& file = "a.toml",
                     const std::vector<std::string>& overrides = {}) {
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();  // of the processor: the machine may be busy
   std::string told = "accepted";
   try {
     (void)parse_scene(text, file, overrides);
   } catch (const InputError& error) {
     told = error.what();
   }
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 2.0);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 2.0);
   EXPECT_LT(told.size(), 100'000u);
   return told;
 }
