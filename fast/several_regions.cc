@@ -76,7 +76,7 @@ class StackedSurface final : public DisplacedSurface {
 };
 
 /// Presses one region on the shape of those already in the stack, and adds it to the stack.
-StepStatus press_next(const FastModel& model, const Motion& motion, bool created, bool alone, ContactRegion& region,
+StepStatus press_next(const FastModel& model, const Motion& motion, bool alone, ContactRegion& region,
                       std::span<BeamStress> stress, FastState& state) noexcept {
   SeveralRegionsState& several = *state.several;
   ShapeStack& shapes = several.shapes;
@@ -95,14 +95,15 @@ StepStatus press_next(const FastModel& model, const Motion& motion, bool created
   region.displacement_m.setZero();
   region.ends.clear();
   if (region.points.count > 0) {
-    if (!created) {
+    if (region.met) {
       region.d = next_direction(region, inside);
     } else if (alone) {
       region.d = entry_direction(model, motion, inside, state);
     } else {
       region.d = direction_from(inside, -model.body->query(motion.pose.position_m).normal);
     }
-    status |= press(model, motion, created, region, state);
+    status |= press(model, motion, !region.met, region, state);
+    region.met = true;
   }
   const SkeletonView skeleton = shapes.count > 0 ? several.ends.view(model.skeleton) : SkeletonView(model.skeleton);
   if (region.pressing()) {
@@ -157,9 +158,8 @@ StepStatus press_in_order(const FastModel& model, const Motion& motion, FastStat
   several.shapes.clear();
   for (int i = 0; i < state.region_count; ++i) {
     const auto k = static_cast<std::size_t>(several.order[static_cast<std::size_t>(i)]);
-    const bool created = several.tracked[k].created();
     const bool alone = state.region_count == 1;
-    status |= press_next(model, motion, created, alone, state.regions[k], several.stress_pa[k], state);
+    status |= press_next(model, motion, alone, state.regions[k], several.stress_pa[k], state);
   }
   add_later_forces(model, state);
   several.bulge_m = 0.0;

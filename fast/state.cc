@@ -25,7 +25,7 @@ std::string status_text(std::uint32_t status) {
 }
 
 void ContactRegion::clear() noexcept {
-  active = false;
+  active = met = false;
   id = 0;
   d = -Vec3::UnitZ();
   depth_rel = 0.0;

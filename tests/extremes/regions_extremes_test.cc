@@ -1,6 +1,7 @@
 // The extremes: many regions, too many, regions that merge and split, stand opposite or mirror each other.
 #include "extremes/rig.h"
 
+#include <numbers>
 #include <set>
 
 namespace touchstone::fast {
@@ -131,6 +132,27 @@ TEST(RegionExtremes, TwoMergeIntoOneAndSplitAgain) {
       EXPECT_NEAR(force_n[i], force_n[force_n.size() - 1 - i], 1e-3 * force_n[22]) << i;
     EXPECT_EQ(counts, (std::vector<int>{0, 2, 1, 2, 0}));
     EXPECT_EQ(rig.largest_displacement_m(), 0.0);
+  }
+}
+
+// Two feet from the side, the second so little behind that it first comes no nearer than the bulge beside the other:
+// once it is inside, its region looks into the side, too. As printed: The same.
+TEST(RegionExtremes, ARegionThatBeginsOutsideLooksTheWayItIsMet) {
+  IN_BOTH_FORMULATIONS(formulation) {
+    Rig rig(extremes::pins_on_cube(formulation, {Vec3(-0.008, 0.0, 0.0), Vec3(0.008, 0.0, 0.001)}));
+    rig.may = StepStatus::anchors_limited;
+    const Eigen::Quaterniond from_the_side(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitY()));
+    bool waited = false;
+    for (int i = -5; i <= 30; ++i) {
+      rig.to({Vec3(0.03 - 0.0001 * i, 0.0, 0.03), from_the_side});
+      waited = waited || (rig.state.region_count == 2 && !rig.state.regions[1].pressing());
+      for (int k = 0; k < rig.state.region_count; ++k) {
+        const ContactRegion& region = rig.state.regions[static_cast<std::size_t>(k)];
+        if (region.pressing()) EXPECT_GT(region.d.dot(-Vec3::UnitX()), 0.99) << i << ", region " << k;
+      }
+    }
+    EXPECT_TRUE(waited);
+    EXPECT_EQ(rig.state.region_count, 2);
   }
 }
 
