@@ -107,8 +107,6 @@ RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const V
     if (spread) {
       const Vec3 closest_normal(points.rest_nx_W[k], points.rest_ny_W[k], points.rest_nz_W[k]);
       set_rises(points, k, R_WT, d, exit_normal(body, way_out_m, p_W, depth_m, d, closest_normal));
-    } else {
-      points.rise1_m[k] = points.rise2_m[k] = 0.0;
     }
     const Vec3 on_surface_m = p_W - depth_m * d;
     if (kept == 1 || depth_m > extent.deepest_m) {
@@ -120,6 +118,7 @@ RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const V
     plain_sum += on_surface_m;
   }
   points.count = kept;
+  points.spread = spread;
   if (kept > 0) extent.thickness_m = extent.deepest_m + exit_along(body, d)(deepest_W_m);
   // Samples that all stand on edge cover no area: each counts the same.
   if (extent.area_m2 > 0.0) {

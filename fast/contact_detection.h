@@ -25,6 +25,7 @@ struct Placement {
 /// The points p_i of one contact region: a window on a PointStore.
 struct RegionPoints {
   int count = 0, capacity = 0;
+  bool spread = false;  ///< a point is a piece of surface, over which its depth varies; otherwise a sample
   double *x_W_m = nullptr, *y_W_m = nullptr, *z_W_m = nullptr;              ///< p_i in the world
   double *x_T_m = nullptr, *y_T_m = nullptr, *z_T_m = nullptr;              ///< p_i about the tool's mass centre
   double *nx_T = nullptr, *ny_T = nullptr, *nz_T = nullptr;                 ///< outward normal n_i of the tool
@@ -34,7 +35,7 @@ struct RegionPoints {
   double *e1x_T_m = nullptr, *e1y_T_m = nullptr, *e1z_T_m = nullptr;        ///< Spread of A_i, first vector; of cells
   double *e2x_T_m = nullptr, *e2y_T_m = nullptr, *e2z_T_m = nullptr;        ///< second
   double* depth_m = nullptr;                      ///< d_i, along d from the rest surface; as found: to it
-  double *rise1_m = nullptr, *rise2_m = nullptr;  ///< of the depth along the two vectors; 0 for a sample
+  double *rise1_m = nullptr, *rise2_m = nullptr;  ///< of the depth along the two vectors; where `spread`
   double* share = nullptr;                        ///< m_i / m
   const SurfaceCell** cell = nullptr;             ///< that is wholly the point
   std::int32_t* sample = nullptr;                 ///< of ToolSamples; several may have one
@@ -46,7 +47,7 @@ struct RegionPoints {
   [[nodiscard]] Spread spread_T_m(std::size_t i) const noexcept {
     return {scene::Vec3(e1x_T_m[i], e1y_T_m[i], e1z_T_m[i]), scene::Vec3(e2x_T_m[i], e2y_T_m[i], e2z_T_m[i])};
   }
-  /// Standard deviation of the depth over the point's area.
+  /// Standard deviation of the depth over the point's area, where `spread`.
   [[nodiscard]] double depth_spread_m(std::size_t i) const noexcept {
     return std::sqrt(rise1_m[i] * rise1_m[i] + rise2_m[i] * rise2_m[i]);
   }

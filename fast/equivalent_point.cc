@@ -23,6 +23,7 @@ bool limit_depths(double limit_m, RegionPoints& points) noexcept {
   for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
     held = held || points.depth_m[i] > limit_m;
     points.depth_m[i] = std::min(points.depth_m[i], limit_m);
+    if (!points.spread) continue;
     const double spread_m = points.depth_spread_m(i), left_m = limit_m - points.depth_m[i];
     if (!(spread_m > left_m)) continue;
     points.rise1_m[i] *= left_m / spread_m;

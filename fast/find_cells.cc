@@ -16,37 +16,29 @@ namespace {
 using scene::Mat3;
 using scene::Vec3;
 
-/// A cell at its place, as the rest surface cuts it.
-struct PlacedCell {
-  const SurfaceCell& cell;
-  const Mat3& R_WT;
-  Vec3 p_W;           ///< its centre
-  RestDistance rest;  ///< of that
-};
-
 /// Cuts a polygon, tool frame about the cell's centre, with the rest surface: with its tangent plane at the closest
 /// point, which has all of a convex body on one side.
 template <class Body>
-void cut(const Body&, const PlacedCell& at, CutPolygon& polygon) noexcept {
-  polygon.keep_below(at.R_WT.transpose() * at.rest.normal, at.rest.signed_distance_m);
+void cut(const Body&, const Mat3& R_WT, const PlacedCell& at, CutPolygon& polygon) noexcept {
+  polygon.keep_below(R_WT.transpose() * at.rest.normal, at.rest.signed_distance_m);
 }
 
 /// Faces that meet at edges.
-void cut(const scene::Box& box, const PlacedCell& at, CutPolygon& polygon) noexcept {
+void cut(const scene::Box& box, const Mat3& R_WT, const PlacedCell& at, CutPolygon& polygon) noexcept {
   const Vec3 local = at.p_W - box.center_m();
   for (int axis = 0; axis < 3; ++axis) {
     const double half_m = box.half_m()[axis];
     // Of the two faces across this axis.
     for (const double side : {1.0, -1.0}) {
       const double above_m = side * local[axis] - half_m;
-      if (above_m > -at.cell.radius_m) polygon.keep_below(side * at.R_WT.row(axis).transpose(), above_m);
+      if (above_m > -at.cell->radius_m) polygon.keep_below(side * R_WT.row(axis).transpose(), above_m);
     }
   }
 }
 
 /// Straight pieces of the profile, of which several may cut a cell, and the tangent plane for an arc.
-void cut(const scene::Revolution& body, const PlacedCell& at, CutPolygon& polygon) noexcept {
-  polygon.keep_below(at.R_WT.transpose() * at.rest.normal, at.rest.signed_distance_m);
+void cut(const scene::Revolution& body, const Mat3& R_WT, const PlacedCell& at, CutPolygon& polygon) noexcept {
+  polygon.keep_below(R_WT.transpose() * at.rest.normal, at.rest.signed_distance_m);
   for (int index = 0; index < body.piece_count(); ++index) {
     const scene::RevolutionPiece& piece = body.piece(index);
     if (!piece.straight()) continue;
@@ -57,12 +49,12 @@ void cut(const scene::Revolution& body, const PlacedCell& at, CutPolygon& polygo
       return normal.dot(Eigen::Vector2d(std::sqrt(local.x() * local.x() + local.y() * local.y()), local.z()) -
                         piece.start_m);
     };
-    if (level_of(at.p_W) <= -at.cell.radius_m) continue;
+    if (level_of(at.p_W) <= -at.cell->radius_m) continue;
     const auto corners = polygon.corners();
     std::array<double, CutPolygon::max_corners> level{};
     bool cuts = false;
     for (std::size_t k = 0; k < corners.size(); ++k) {
-      level[k] = level_of(at.p_W + at.R_WT * corners[k]);
+      level[k] = level_of(at.p_W + R_WT * corners[k]);
       cuts = cuts || level[k] >= 0.0;
     }
     if (cuts) polygon.keep_below({level.data(), corners.size()});
@@ -103,32 +95,43 @@ class CellFinder {
  public:
   CellFinder(const Body& body, const Placement& at, const CellRule& rule, double margin_m,
              RegionPoints& points) noexcept
-      : body_(body), at_(at), rule_(rule), margin_m_(margin_m), points_(points) {
-    points.count = 0;
+      : body_(body), at_(at), rule_(rule), margin_m_(margin_m), points_(points) {}
+
+  /// Forgets what was taken.
+  void begin() noexcept {
+    points_.count = inside_ = 0;
+    inside_m2_ = rim_m2_ = 0.0;
+    summary_ = {};
+  }
+
+  /// Nothing if all of the cell is further out than what is looked for.
+  [[nodiscard]] std::optional<PlacedCell> place(const SurfaceCell& cell) const noexcept {
+    const double reach_m = std::max(cell.radius_m, margin_m_);
+    const Vec3 p_W = at_.R_WT * cell.center_T_m + at_.origin_W_m;
+    if (surely_beyond(body_, p_W, reach_m)) return std::nullopt;
+    const RestDistance rest = rest_distance(body_, p_W);
+    if (!(rest.signed_distance_m < reach_m)) return std::nullopt;
+    return PlacedCell{&cell, p_W, rest, 0.0};
   }
 
   /// Whether some of the cell may be inside, so that its halves need a look where this round is too coarse.
-  [[nodiscard]] bool is_near(const SurfaceCell& cell) const noexcept {
-    const std::optional<PlacedCell> here = place(cell, cell.radius_m);
-    return here && (here->rest.signed_distance_m <= -cell.radius_m || lowest_m(*here) < cell.bulge_m);
+  [[nodiscard]] bool is_near(PlacedCell& here) const noexcept {
+    if (wholly_inside(here)) return true;
+    here.lowest_m = lowest_m(here);
+    return here.lowest_m < here.cell->bulge_m || (here.cell->group >= 0 && lowest_of_group_m(here, slope(here)) < 0.0);
   }
 
-  /// The same, and takes what is inside of the cell.
-  bool add(const SurfaceCell& cell) noexcept {
-    const std::optional<PlacedCell> here = place(cell, std::max(cell.radius_m, margin_m_));
-    if (!here) return false;
-    if (here->rest.signed_distance_m <= -cell.radius_m) {
-      put_inside(*here);
-      return true;
-    }
-    const double lowest = lowest_m(*here);
-    if (cell.group >= 0) return add_group(*here) || lowest < cell.bulge_m;
-    if (lowest < 0.0) {
-      add_cut(*here);
+  /// Takes what is inside of a cell that is_near() has looked at.
+  void add(const PlacedCell& here) noexcept {
+    if (wholly_inside(here)) {
+      put_inside(here);
+    } else if (here.cell->group >= 0) {
+      add_group(here);
+    } else if (here.lowest_m < 0.0) {
+      add_cut(here);
     } else {
-      put_outside(*here, Vec3::Zero(), cell.area_m2);
+      put_outside(here, Vec3::Zero(), here.cell->area_m2);
     }
-    return lowest < cell.bulge_m;
   }
 
   [[nodiscard]] bool fine_enough() const noexcept {
@@ -137,21 +140,16 @@ class CellFinder {
   [[nodiscard]] const InsideSummary& summary() const noexcept { return summary_; }
 
  private:
-  /// Nothing if the cell's centre is further out than that.
-  [[nodiscard]] std::optional<PlacedCell> place(const SurfaceCell& cell, double reach_m) const noexcept {
-    const Vec3 p_W = at_.R_WT * cell.center_T_m + at_.origin_W_m;
-    if (surely_beyond(body_, p_W, reach_m)) return std::nullopt;
-    const RestDistance rest = rest_distance(body_, p_W);
-    if (!(rest.signed_distance_m < reach_m)) return std::nullopt;
-    return PlacedCell{cell, at_.R_WT, p_W, rest};
+  [[nodiscard]] static bool wholly_inside(const PlacedCell& here) noexcept {
+    return here.rest.signed_distance_m <= -here.cell->radius_m;
   }
 
   /// Signed distance of the cell's lowest corner from the tangent plane of the rest surface.
   [[nodiscard]] double lowest_m(const PlacedCell& here) const noexcept {
     const Vec3 normal_T = at_.R_WT.transpose() * here.rest.normal;
     double lowest = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < here.cell.corners; ++k)
-      lowest = std::min(lowest, normal_T.dot(here.cell.corner_m[static_cast<std::size_t>(k)]));
+    for (int k = 0; k < here.cell->corners; ++k)
+      lowest = std::min(lowest, normal_T.dot(here.cell->corner_m[static_cast<std::size_t>(k)]));
     return here.rest.signed_distance_m + lowest;
   }
 
@@ -161,7 +159,7 @@ class CellFinder {
     Vec3 up_m, level_m;
   };
   [[nodiscard]] Slope slope(const PlacedCell& here) const noexcept {
-    const Spread& spread_m = here.cell.spread_m;
+    const Spread& spread_m = here.cell->spread_m;
     const Vec3 normal_T = at_.R_WT.transpose() * here.rest.normal;
     const double rise1_m = normal_T.dot(spread_m[0]), rise2_m = normal_T.dot(spread_m[1]);
     const double rise_m = std::sqrt(rise1_m * rise1_m + rise2_m * rise2_m);
@@ -170,33 +168,30 @@ class CellFinder {
             (rise1_m * spread_m[1] - rise2_m * spread_m[0]) / rise_m};
   }
 
+  [[nodiscard]] static double lowest_of_group_m(const PlacedCell& here, const Slope& slope) noexcept {
+    return here.rest.signed_distance_m - std::numbers::sqrt3 * slope.rise_m;
+  }
+
   /// The cut of a surface whose shape is not known: that of a rectangle with two level sides, of the same area, middle
-  /// and spread. @return whether some of it is inside
-  bool add_group(const PlacedCell& here) noexcept {
-    const SurfaceCell& cell = here.cell;
+  /// and spread.
+  void add_group(const PlacedCell& here) noexcept {
+    const SurfaceCell& cell = *here.cell;
     const Slope slope = this->slope(here);
     const double half_m = std::numbers::sqrt3 * slope.rise_m, middle_m = here.rest.signed_distance_m;
-    const double lowest_m = middle_m - half_m;
-    if (lowest_m >= 0.0) {
-      put_outside(here, Vec3::Zero(), cell.area_m2);
-      return false;
-    }
-    if (middle_m + half_m <= 0.0) {
-      put_inside(here);
-      return true;
-    }
+    const double lowest_m = lowest_of_group_m(here, slope);
+    if (lowest_m >= 0.0) return put_outside(here, Vec3::Zero(), cell.area_m2);
+    if (middle_m + half_m <= 0.0) return put_inside(here);
     put_rim(here, slope, -lowest_m / (2.0 * half_m), (0.5 * lowest_m - middle_m) / slope.rise_m * slope.up_m);
-    return true;
   }
 
   void put_inside(const PlacedCell& here) noexcept {
-    const SurfaceCell& cell = here.cell;
+    const SurfaceCell& cell = *here.cell;
     put(here.p_W, cell.center_T_m, cell, cell.area_m2, here.rest, cell.spread_m, &cell);
   }
 
   /// @param off_m  from the cell's centre to the middle of the share that is inside, tool frame
   void put_rim(const PlacedCell& here, const Slope& slope, double share, const Vec3& off_m) noexcept {
-    const SurfaceCell& cell = here.cell;
+    const SurfaceCell& cell = *here.cell;
     const double area_m2 = share * cell.area_m2;
     const Vec3 p_W = here.p_W + at_.R_WT * off_m;
     RestDistance rest = rest_distance(body_, p_W);
@@ -223,15 +218,15 @@ class CellFinder {
     const Vec3 p_W = here.p_W + at_.R_WT * off_m;
     const RestDistance rest = rest_distance(body_, p_W);
     if (!(rest.signed_distance_m < margin_m_)) return;
-    points_.set(points_.count, p_W, here.cell.center_T_m + off_m, here.cell.normal_T, area_m2,
-                std::max(0.0, rest.signed_distance_m), rest.normal, here.cell.sample);
-    points_.set_spread(points_.count++, here.cell.spread_m, nullptr);
+    points_.set(points_.count, p_W, here.cell->center_T_m + off_m, here.cell->normal_T, area_m2,
+                std::max(0.0, rest.signed_distance_m), rest.normal, here.cell->sample);
+    points_.set_spread(points_.count++, here.cell->spread_m, nullptr);
   }
 
   void add_cut(const PlacedCell& here) noexcept {
-    const SurfaceCell& cell = here.cell;
+    const SurfaceCell& cell = *here.cell;
     CutPolygon polygon({cell.corner_m.data(), static_cast<std::size_t>(cell.corners)});
-    cut(body_, here, polygon);
+    cut(body_, at_.R_WT, here, polygon);
     if (!polygon.is_cut() && here.rest.signed_distance_m < 0.0) return put_inside(here);
     const CutPolygon::Moments part = polygon.moments();
     const double share = cell.polygon_m2 > 0.0 ? std::min(1.0, part.area_m2 / cell.polygon_m2) : 0.0;
@@ -256,9 +251,18 @@ template <class Body>
 InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, const Placement& at, const CellRule& rule,
                          double margin_m, RegionPoints& points, CellScratch& scratch) noexcept {
   const Body& body = static_cast<const Body&>(shape);
-  CellFinder<Body> found(body, at, rule, margin_m, points);
+  // Cells of a round that are inside or near, with those that a finer round would halve.
+  std::vector<PlacedCell>& placed = scratch.placed;
   std::vector<std::int32_t>& near = scratch.near;
+  placed.clear();
   near.clear();
+  CellFinder<Body> found(body, at, rule, margin_m, points);
+  const auto look_at = [&](const SurfaceCell& cell, std::int32_t index) {
+    std::optional<PlacedCell> here = found.place(cell);
+    if (!here) return;
+    if (found.is_near(*here)) near.push_back(index);
+    placed.push_back(*here);
+  };
   const auto nodes = static_cast<std::int32_t>(tool.tree.size());
   for (std::int32_t node = 0; node < nodes;) {
     const SampleBall& ball = tool.tree[static_cast<std::size_t>(node)];
@@ -269,35 +273,29 @@ InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, con
     }
     ++node;
     if (!ball.leaf) continue;
-    for (std::int32_t i = ball.begin; i < ball.end; ++i)
-      if (found.add(tool.cell[static_cast<std::size_t>(i)])) near.push_back(i);
+    for (std::int32_t i = ball.begin; i < ball.end; ++i) look_at(tool.cell[static_cast<std::size_t>(i)], i);
   }
-  if (found.fine_enough() || near.empty()) return found.summary();
-
-  scratch.begin();
-  scratch.now.clear();
-  for (const std::int32_t i : near) {
-    const std::int32_t first = scratch.halves_of_sample(tool, i);
-    scratch.now.insert(scratch.now.end(), {first, first + 1});
-    if (scratch.now.size() > max_cells / 2) return found.summary();
-  }
-  for (std::size_t looked_at = scratch.now.size();;) {
-    CellFinder<Body> finer(body, at, rule, margin_m, points);
-    near.clear();
-    // Too few cells to be fine enough: which of them are near is all there is to know.
-    const bool last = looked_at + 2 * scratch.now.size() > max_cells;
-    const bool coarse = scratch.now.size() < static_cast<std::size_t>(rule.points) && !last;
-    for (const std::int32_t k : scratch.now) {
-      const SurfaceCell& cell = scratch.half(k);
-      if (coarse ? finer.is_near(cell) : finer.add(cell)) near.push_back(k);
+  bool of_tool = true, room = 4 * near.size() <= max_cells;
+  std::size_t looked_at = 0;
+  while (true) {
+    // Fewer cells than points are asked for cannot be fine enough.
+    if (near.empty() || !room || near.size() >= static_cast<std::size_t>(rule.points)) {
+      found.begin();
+      for (const PlacedCell& here : placed) found.add(here);
+      if (near.empty() || !room || found.fine_enough()) return found.summary();
     }
-    if (last || near.empty() || (!coarse && finer.fine_enough())) return finer.summary();
+    if (of_tool) scratch.begin();
     scratch.now.clear();
     for (const std::int32_t k : near) {
-      const std::int32_t first = scratch.halves_of_half(tool, k);
+      const std::int32_t first = of_tool ? scratch.halves_of_sample(tool, k) : scratch.halves_of_half(tool, k);
       scratch.now.insert(scratch.now.end(), {first, first + 1});
     }
+    placed.clear();
+    near.clear();
+    for (const std::int32_t k : scratch.now) look_at(scratch.half(k), k);
     looked_at += scratch.now.size();
+    room = looked_at + 2 * scratch.now.size() <= max_cells;
+    of_tool = false;
   }
 }
 
@@ -317,6 +315,7 @@ CellScratch::CellScratch(int samples)
   if (samples == 0) return;
   now.reserve(max_cells);
   near.reserve(static_cast<std::size_t>(std::max(samples, max_cells)));
+  placed.reserve(near.capacity());
 }
 
 void CellScratch::begin() noexcept {
@@ -348,7 +347,8 @@ std::int32_t CellScratch::halves_of_half(const ToolSamples& tool, std::int32_t h
 
 std::size_t CellScratch::memory_bytes() const noexcept {
   return halves_.size() * (sizeof(SurfaceCell) + sizeof(std::int32_t)) +
-         (of_sample_.size() + now.capacity() + near.capacity()) * sizeof(std::int32_t);
+         (of_sample_.size() + now.capacity() + near.capacity()) * sizeof(std::int32_t) +
+         placed.capacity() * sizeof(PlacedCell);
 }
 
 }  // namespace touchstone::fast

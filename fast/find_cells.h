@@ -3,6 +3,7 @@
 #pragma once
 
 #include "fast/contact_detection.h"
+#include "fast/rest_distance.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -18,6 +19,14 @@ struct CellRule {
 
 /// Halved cells that find_cells() looks at in a tick, at most.
 inline constexpr int max_cells = 1024;
+
+/// A cell at its place.
+struct PlacedCell {
+  const SurfaceCell* cell;
+  scene::Vec3 p_W;    ///< its centre
+  RestDistance rest;  ///< of that
+  double lowest_m;    ///< signed distance of its lowest corner from the tangent plane of the rest surface
+};
 
 /// What find_cells() writes on its way. Halves are kept, since a contact mostly asks for those of the last tick; the
 /// answer never depends on which are.
@@ -36,6 +45,7 @@ class CellScratch {
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 
   std::vector<std::int32_t> now, near;  ///< cells of a round, and those of them that are near the body
+  std::vector<PlacedCell> placed;       ///< those and what else is looked for
 
  private:
   [[nodiscard]] std::int32_t halves_of(const ToolSamples& tool, const SurfaceCell& cell, std::int32_t& first) noexcept;

@@ -28,6 +28,7 @@ RecordedTick record(const ContactRegion& region, const Motion& motion, bool crea
   tick.extent = region.extent;
   tick.origin = region.origin;
   tick.points = region.points.count;
+  tick.spread = region.points.spread;
   RegionPoints points = region.points;
   for (double** column : columns_of(points)) tick.numbers.insert(tick.numbers.end(), *column, *column + tick.points);
   return tick;
@@ -139,6 +140,7 @@ void recall(const RecordedTick& tick, FastState& state) noexcept {
   region.origin = tick.origin;
   region.points = {};
   region.points.count = tick.points;
+  region.points.spread = tick.spread;
   // Only read from here on.
   auto* numbers = const_cast<double*>(tick.numbers.data());
   for (double** column : columns_of(region.points)) {

@@ -20,7 +20,8 @@ struct RecordedTick {
   RegionExtent extent;
   DeformationOrigin origin;  ///< as the points have it, without friction's drag
   int points = 0;
-  std::vector<double> numbers;  ///< x_T, y_T, z_T, depth and share of every point, column by column
+  bool spread = false;          ///< RegionPoints::spread
+  std::vector<double> numbers;  ///< x_T, y_T, z_T, depth, rises and share of every point, column by column
 };
 
 /// The ticks on which the answer at the instants hangs: all of them with friction, which remembers; else the instants.
