@@ -29,8 +29,8 @@ struct CalculixRun {
   double wall_s = 0.0, cpu_s = 0.0;
 };
 
-/// Runs `ccx` on folder/name.inp, its text in folder/name.log, on one thread: on two, 2.20 adds up in another order each
-/// time, and a deck that converges ended without an answer in two runs of ten.
+/// Runs `ccx` on folder/name.inp, its text in folder/name.log, on one thread: on two, 2.20 adds up in another order
+/// each time, and a deck that converges ended without an answer in two runs of ten.
 /// @throws scene::InputError when there is no such program
 [[nodiscard]] CalculixRun run_calculix(const std::filesystem::path& folder, const std::string& name,
                                        const reference::Deck& deck);

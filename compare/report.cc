@@ -40,10 +40,11 @@ std::string tiles(const ReportContent& c) {
               fmt::format("median; longest {}", quantity_text(c.run.step.max_us, "us")));
   const std::size_t meshes = c.result.levels.size();
   const std::optional<double> force = force_known_to(c.errors), shape = c.errors.shape_rel_l2.uncertainty;
-  out += tile("Reference's uncertainty", quantity_text(force, "", "unknown"),
-              fmt::format("{}{} mesh{}, {} unknowns",
-                          force ? "of the force at the worst instant; shape " + quantity_text(shape, "", "unknown") + "; " : "", meshes,
-                          meshes == 1 ? "" : "es", number_text(meshes == 0 ? 0.0 : c.result.levels.back().unknowns)));
+  out += tile(
+      "Reference's uncertainty", quantity_text(force, "", "unknown"),
+      fmt::format("{}{} mesh{}, {} unknowns",
+                  force ? "of the force at the worst instant; shape " + quantity_text(shape, "", "unknown") + "; " : "",
+                  meshes, meshes == 1 ? "" : "es", number_text(meshes == 0 ? 0.0 : c.result.levels.back().unknowns)));
   return out + "</div>\n";
 }
 

@@ -23,6 +23,7 @@ template <class Body>
 InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, const Placement& at, double margin_m,
                           int limit, RegionPoints& points) noexcept {
   const Body& body = static_cast<const Body&>(shape);
+  points.spread = false;
   InsideSummary summary;
   int count = 0;
   const auto nodes = static_cast<std::int32_t>(tool.tree.size());
@@ -42,8 +43,7 @@ InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, co
       if (!(rest.signed_distance_m < margin_m)) continue;
       if (rest.signed_distance_m < 0.0) summary.add(rest.normal, -rest.signed_distance_m, tool.area_m2[i]);
       const Vec3 normal_T(tool.nx_T[i], tool.ny_T[i], tool.nz_T[i]);
-      points.set(count++, p_W, p_T, normal_T, tool.area_m2[i], rest.signed_distance_m, rest.normal,
-                 static_cast<std::int32_t>(i));
+      points.set(count++, p_W, p_T, normal_T, tool.area_m2[i], rest.signed_distance_m, static_cast<std::int32_t>(i));
     }
   }
   points.count = count;
@@ -85,8 +85,7 @@ void set_rises(RegionPoints& points, std::size_t k, const Mat3& R_WT, const Vec3
 }
 
 template <class Body>
-RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const Vec3& d, bool spread,
-                            RegionPoints& points) noexcept {
+RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const Vec3& d, RegionPoints& points) noexcept {
   const Body& body = static_cast<const Body&>(shape);
   const auto way_out_m = exit_along(body, -d);
   const Vec3 d_T = R_WT.transpose() * d;
@@ -104,7 +103,7 @@ RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const V
     points.cos_theta[k] = cos_theta;
     points.depth_m[k] = depth_m;
     const double projected_m2 = points.area_m2[k] * cos_theta;
-    if (spread) {
+    if (points.spread) {
       const Vec3 closest_normal(points.rest_nx_W[k], points.rest_ny_W[k], points.rest_nz_W[k]);
       set_rises(points, k, R_WT, d, exit_normal(body, way_out_m, p_W, depth_m, d, closest_normal));
     }
@@ -118,7 +117,6 @@ RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const V
     plain_sum += on_surface_m;
   }
   points.count = kept;
-  points.spread = spread;
   if (kept > 0) extent.thickness_m = extent.deepest_m + exit_along(body, d)(deepest_W_m);
   // Samples that all stand on edge cover no area: each counts the same.
   if (extent.area_m2 > 0.0) {
@@ -147,27 +145,27 @@ constexpr int columns = 24;  // of doubles
 /// Columns that lie a power of two apart would share a few lines of the cache.
 std::size_t stride(std::size_t capacity) noexcept { return (capacity / 8 | 1) * 8 + 16; }
 
-std::array<double**, columns> columns_of(RegionPoints& p) noexcept {
-  return {&p.x_W_m,   &p.y_W_m,     &p.z_W_m,     &p.x_T_m,     &p.y_T_m,     &p.z_T_m,   &p.nx_T,    &p.ny_T,
-          &p.nz_T,    &p.rest_nx_W, &p.rest_ny_W, &p.rest_nz_W, &p.e1x_T_m,   &p.e1y_T_m, &p.e1z_T_m, &p.e2x_T_m,
-          &p.e2y_T_m, &p.e2z_T_m,   &p.area_m2,   &p.depth_m,   &p.cos_theta, &p.rise1_m, &p.rise2_m, &p.share};
-}
+constexpr std::size_t of_a_sample = 11, of_a_piece = 20;
 
-/// Those that detection fills.
-std::array<double**, columns - 4> found_columns_of(RegionPoints& p) noexcept {
-  std::array<double**, columns - 4> found{};
-  const auto all = columns_of(p);
-  std::copy_n(all.begin(), found.size(), found.begin());
-  return found;
+/// First those that detection fills for every point, then those that it fills for a piece of surface.
+std::array<double**, columns> columns_of(RegionPoints& p) noexcept {
+  return {&p.x_W_m,     &p.y_W_m,     &p.z_W_m,     &p.x_T_m,   &p.y_T_m,     &p.z_T_m,   &p.nx_T,
+          &p.ny_T,      &p.nz_T,      &p.area_m2,   &p.depth_m,  //
+          &p.rest_nx_W, &p.rest_ny_W, &p.rest_nz_W, &p.e1x_T_m, &p.e1y_T_m,   &p.e1z_T_m, &p.e2x_T_m,
+          &p.e2y_T_m,   &p.e2z_T_m,   &p.rise1_m,   &p.rise2_m, &p.cos_theta, &p.share};
 }
 
 }  // namespace
 
 void RegionPoints::move(int from, int to) noexcept {
   const auto i = static_cast<std::size_t>(from), k = static_cast<std::size_t>(to);
-  for (double** column : found_columns_of(*this)) (*column)[k] = (*column)[i];
-  cell[k] = cell[i];
+  for (double* column : {x_W_m, y_W_m, z_W_m, x_T_m, y_T_m, z_T_m, nx_T, ny_T, nz_T, area_m2, depth_m})
+    column[k] = column[i];
   sample[k] = sample[i];
+  if (!spread) return;
+  for (double* column : {rest_nx_W, rest_ny_W, rest_nz_W, e1x_T_m, e1y_T_m, e1z_T_m, e2x_T_m, e2y_T_m, e2z_T_m})
+    column[k] = column[i];
+  cell[k] = cell[i];
 }
 
 void RegionPoints::reorder(std::span<const std::int32_t> order, double* scratch) noexcept {
@@ -177,11 +175,14 @@ void RegionPoints::reorder(std::span<const std::int32_t> order, double* scratch)
     for (std::size_t k = 0; k < order.size(); ++k)
       column[k] = static_cast<std::remove_reference_t<decltype(*column)>>(scratch[k]);
   };
-  for (double** column : found_columns_of(*this)) through_scratch(*column);
+  const auto all = columns_of(*this);
+  for (std::size_t c = 0; c < (spread ? of_a_piece : of_a_sample); ++c) through_scratch(*all[c]);
   through_scratch(sample);
-  for (std::size_t k = 0; k < order.size(); ++k)
-    scratch[k] = std::bit_cast<double>(cell[static_cast<std::size_t>(order[k])]);
-  for (std::size_t k = 0; k < order.size(); ++k) cell[k] = std::bit_cast<const SurfaceCell*>(scratch[k]);
+  if (spread) {
+    for (std::size_t k = 0; k < order.size(); ++k)
+      scratch[k] = std::bit_cast<double>(cell[static_cast<std::size_t>(order[k])]);
+    for (std::size_t k = 0; k < order.size(); ++k) cell[k] = std::bit_cast<const SurfaceCell*>(scratch[k]);
+  }
   count = static_cast<int>(order.size());
 }
 

@@ -25,15 +25,16 @@ struct Placement {
 /// The points p_i of one contact region: a window on a PointStore.
 struct RegionPoints {
   int count = 0, capacity = 0;
-  bool spread = false;  ///< a point is a piece of surface, over which its depth varies; otherwise a sample
-  double *x_W_m = nullptr, *y_W_m = nullptr, *z_W_m = nullptr;              ///< p_i in the world
-  double *x_T_m = nullptr, *y_T_m = nullptr, *z_T_m = nullptr;              ///< p_i about the tool's mass centre
-  double *nx_T = nullptr, *ny_T = nullptr, *nz_T = nullptr;                 ///< outward normal n_i of the tool
-  double *rest_nx_W = nullptr, *rest_ny_W = nullptr, *rest_nz_W = nullptr;  ///< of the rest surface, closest point
-  double* area_m2 = nullptr;                                                ///< A_i
-  double* cos_theta = nullptr;                                              ///< n_i . d, >= 0
-  double *e1x_T_m = nullptr, *e1y_T_m = nullptr, *e1z_T_m = nullptr;        ///< Spread of A_i, first vector; of cells
-  double *e2x_T_m = nullptr, *e2y_T_m = nullptr, *e2z_T_m = nullptr;        ///< second
+  bool spread = false;  ///< points are pieces of surface, over which the depth varies; otherwise samples
+  double *x_W_m = nullptr, *y_W_m = nullptr, *z_W_m = nullptr;  ///< p_i in the world
+  double *x_T_m = nullptr, *y_T_m = nullptr, *z_T_m = nullptr;  ///< p_i about the tool's mass centre
+  double *nx_T = nullptr, *ny_T = nullptr, *nz_T = nullptr;     ///< outward normal n_i of the tool
+  /// Where `spread`: of the rest surface at the closest point.
+  double *rest_nx_W = nullptr, *rest_ny_W = nullptr, *rest_nz_W = nullptr;
+  double* area_m2 = nullptr;                                          ///< A_i
+  double* cos_theta = nullptr;                                        ///< n_i . d, >= 0
+  double *e1x_T_m = nullptr, *e1y_T_m = nullptr, *e1z_T_m = nullptr;  ///< Spread of A_i, first vector; of cells
+  double *e2x_T_m = nullptr, *e2y_T_m = nullptr, *e2z_T_m = nullptr;  ///< second
   double* depth_m = nullptr;                      ///< d_i, along d from the rest surface; as found: to it
   double *rise1_m = nullptr, *rise2_m = nullptr;  ///< of the depth along the two vectors; where `spread`
   double* share = nullptr;                        ///< m_i / m
@@ -51,7 +52,15 @@ struct RegionPoints {
   [[nodiscard]] double depth_spread_m(std::size_t i) const noexcept {
     return std::sqrt(rise1_m[i] * rise1_m[i] + rise2_m[i] * rise2_m[i]);
   }
-  void set_spread(int k, const Spread& spread_T_m, const SurfaceCell* whole) noexcept {
+  void set_rest_normal(int k, const scene::Vec3& rest_normal_W) noexcept {
+    rest_nx_W[k] = rest_normal_W.x();
+    rest_ny_W[k] = rest_normal_W.y();
+    rest_nz_W[k] = rest_normal_W.z();
+  }
+  /// More of a piece of surface. @param whole  the cell, if all of it is the point
+  void set_spread(int k, const scene::Vec3& rest_normal_W, const Spread& spread_T_m,
+                  const SurfaceCell* whole) noexcept {
+    set_rest_normal(k, rest_normal_W);
     cell[k] = whole;
     e1x_T_m[k] = spread_T_m[0].x();
     e1y_T_m[k] = spread_T_m[0].y();
@@ -62,7 +71,7 @@ struct RegionPoints {
   }
   /// Fills place k as detection does. @param distance_m signed, to the rest surface
   void set(int k, const scene::Vec3& at_W_m, const scene::Vec3& at_T_m, const scene::Vec3& normal_T, double part_m2,
-           double distance_m, const scene::Vec3& rest_normal_W, std::int32_t of_sample) noexcept {
+           double distance_m, std::int32_t of_sample) noexcept {
     x_W_m[k] = at_W_m.x();
     y_W_m[k] = at_W_m.y();
     z_W_m[k] = at_W_m.z();
@@ -72,9 +81,6 @@ struct RegionPoints {
     nx_T[k] = normal_T.x();
     ny_T[k] = normal_T.y();
     nz_T[k] = normal_T.z();
-    rest_nx_W[k] = rest_normal_W.x();
-    rest_ny_W[k] = rest_normal_W.y();
-    rest_nz_W[k] = rest_normal_W.z();
     area_m2[k] = part_m2;
     depth_m[k] = -distance_m;
     sample[k] = of_sample;
@@ -144,8 +150,7 @@ struct RegionExtent {
 
 /// Keeps the points with n_i . d >= 0 (the set M of appendix III) and gives each its depth d_i along d.
 /// @param d unit direction of deformation, into the body
-/// @param spread  whether the depth varies over a point's area; otherwise a point is a sample
-using MeasureDepths = RegionExtent (*)(const scene::Shape&, const scene::Mat3& R_WT, const scene::Vec3& d, bool spread,
+using MeasureDepths = RegionExtent (*)(const scene::Shape&, const scene::Mat3& R_WT, const scene::Vec3& d,
                                        RegionPoints&) noexcept;
 
 /// Way from a point of the body along a direction to the rest surface [m].

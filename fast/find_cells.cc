@@ -100,6 +100,7 @@ class CellFinder {
   /// Forgets what was taken.
   void begin() noexcept {
     points_.count = inside_ = 0;
+    points_.spread = true;
     inside_m2_ = rim_m2_ = 0.0;
     summary_ = {};
   }
@@ -209,8 +210,8 @@ class CellFinder {
     ++inside_;
     inside_m2_ += area_m2;
     if (points_.count == points_.capacity) return;
-    points_.set(points_.count, p_W, p_T, cell.normal_T, area_m2, rest.signed_distance_m, rest.normal, cell.sample);
-    points_.set_spread(points_.count++, spread_m, whole);
+    points_.set(points_.count, p_W, p_T, cell.normal_T, area_m2, rest.signed_distance_m, cell.sample);
+    points_.set_spread(points_.count++, rest.normal, spread_m, whole);
   }
 
   void put_outside(const PlacedCell& here, const Vec3& off_m, double area_m2) noexcept {
@@ -219,8 +220,8 @@ class CellFinder {
     const RestDistance rest = rest_distance(body_, p_W);
     if (!(rest.signed_distance_m < margin_m_)) return;
     points_.set(points_.count, p_W, here.cell->center_T_m + off_m, here.cell->normal_T, area_m2,
-                std::max(0.0, rest.signed_distance_m), rest.normal, here.cell->sample);
-    points_.set_spread(points_.count++, here.cell->spread_m, nullptr);
+                std::max(0.0, rest.signed_distance_m), here.cell->sample);
+    points_.set_spread(points_.count++, rest.normal, here.cell->spread_m, nullptr);
   }
 
   void add_cut(const PlacedCell& here) noexcept {

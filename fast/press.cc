@@ -84,8 +84,7 @@ bool find_one_region(const FastModel& model, const Motion& motion, FastState& st
 }
 
 StepStatus measure(const FastModel& model, const Motion& motion, ContactRegion& region, FastState& state) noexcept {
-  region.extent = model.detection.measure_depths(*model.body, motion.at.R_WT, region.d,
-                                                 model.formulas.cells.has_value(), region.points);
+  region.extent = model.detection.measure_depths(*model.body, motion.at.R_WT, region.d, region.points);
   // Only the tool's back is inside: nothing pushes, but the region lives on with its direction.
   if (region.points.count == 0) return StepStatus::ok;
   // A tip of no thickness is touched without depth.

@@ -355,9 +355,7 @@ InsideSummary pull_back(const scene::Shape& shape, const DisplacedSurface& surfa
     points.y_W_m[k] = back_m.y();
     points.z_W_m[k] = back_m.z();
     points.depth_m[k] = -here.distance_m;
-    points.rest_nx_W[k] = here.rest.normal.x();
-    points.rest_ny_W[k] = here.rest.normal.y();
-    points.rest_nz_W[k] = here.rest.normal.z();
+    if (points.spread) points.set_rest_normal(static_cast<int>(k), here.rest.normal);
     summary.add(here.rest.normal, points.depth_m[k], points.area_m2[k]);
   }
   points.count = kept;

@@ -17,9 +17,9 @@ constexpr double rounded_tool_factor = std::numbers::sqrt2 / 2.0;
 
 double area_law_constant_n_per_m2(const Material& material, const Tool& tool, Formulation formulation) {
   const bool flat = tool.shape == ToolShape::cylinder || tool.shape == ToolShape::box;
-  return rounded(2.0 * material.contact_modulus_pa() *
-                     (flat || formulation == Formulation::published ? 1.0 : rounded_tool_factor),
-                 4);
+  return rounded(
+      2.0 * material.contact_modulus_pa() * (flat || formulation == Formulation::published ? 1.0 : rounded_tool_factor),
+      4);
 }
 
 double stiff_beam_area_m2(const Body& body) { return rounded(10.0 * std::pow(body_size_m(body), 2), 2); }

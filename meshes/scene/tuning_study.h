@@ -81,8 +81,8 @@ struct TuningStudy {
 /// with the tool's mass, equation (1). @param key  of a TuningParameter; friction's need a scene that has it
 void set_parameter(Scene& scene, const std::string& key, double value);
 
-/// Puts the values of a file that scenes include, such as `tune` leaves, over a scene's own: a contact law, a formulation
-/// and what may be tuned. Friction's are left out where the scene has none.
+/// Puts the values of a file that scenes include, such as `tune` leaves, over a scene's own: a contact law, a
+/// formulation and what may be tuned. Friction's are left out where the scene has none.
 /// @throws InputError with every fault of the file, each with line, column and what was expected
 [[nodiscard]] Scene with_parameters(Scene scene, const std::filesystem::path& file);
 

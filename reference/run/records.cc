@@ -102,8 +102,7 @@ void fill_records(const Scene& scene, const std::vector<double>& times_s, const 
     indefinite += steps[instant].indefinite;
   }
   if (indefinite > 0) {
-    result.linear_solver += "; " + std::to_string(indefinite) +
-                            " tangents were not positive definite and were made so";
+    result.linear_solver += "; " + std::to_string(indefinite) + " tangents were not positive definite and were made so";
   }
 }
 

@@ -15,8 +15,8 @@ namespace touchstone::reference {
 /// Facets of a bent surface should melt into one another, or every one of their edges would be a tight bend that costs
 /// Newton iterations, yet keep the mesh's shape: a quarter of their typical short edge, up to a quarter of the mesh's
 /// smallest extent. Flat faces between sharp edges should stay flat: a twentieth of that extent. In any case the grid
-/// keeps below grid_points_max points. Measured on the mallet's tail, against an eighth of the edge: the whole edge 1.9 %
-/// of force, a half 0.4 %, a quarter 0.04 %.
+/// keeps below grid_points_max points. Measured on the mallet's tail, against an eighth of the edge: the whole edge 1.9
+/// % of force, a half 0.4 %, a quarter 0.04 %.
 [[nodiscard]] double grid_spacing_m(const scene::TriangleMesh& mesh);
 inline constexpr double grid_points_max = 4e6;
 

@@ -62,7 +62,7 @@ TEST_P(DetectionWithoutHeap, FindsSplitsFollowsAndTakesBack) {
         RegionPoints part = points.slice(range.begin, range.size);
         const InsideSummary inside = detection.pull_back(*body, Tilted(), part, scratch_back);
         detection.summarise(*body, part);
-        detection.measure_depths(*body, at.R_WT, direction_from(inside, -Vec3::UnitZ()), true, part);
+        detection.measure_depths(*body, at.R_WT, direction_from(inside, -Vec3::UnitZ()), part);
       }
     }
   }

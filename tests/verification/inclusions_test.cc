@@ -1,6 +1,6 @@
 // Inclusions against closed forms, and the limit in which there is none.
-#include "reference/contact/contact_problem.h"
 #include "reference/mesh/inclusions.h"
+#include "reference/contact/contact_problem.h"
 #include "reference/mesh/round_mesh.h"
 #include "reference/verification/closed_forms.h"
 

@@ -30,7 +30,7 @@ void bare_tick(const FastModel& model, const scene::Pose& pose, FastState& state
   region.d = region.active ? fast::follow_direction(region.d, inside) : fast::direction_from(inside, region.d);
   region.active = true;
   region.points = points;
-  region.extent = model.detection.measure_depths(*model.body, at.R_WT, region.d, true, region.points);
+  region.extent = model.detection.measure_depths(*model.body, at.R_WT, region.d, region.points);
   region.origin = fast::deformation_origin(*model.body, model.detection.exit_distance_m, region.d, region.extent);
   fast::limit_depths(fast::depth_limit_rel * region.extent.thickness_m, region.points);
   model.formulas.distribute_mass(at.R_WT.transpose() * region.d, model.tool.groups, region.points);

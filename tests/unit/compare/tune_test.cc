@@ -89,8 +89,8 @@ const Determination& found(const TunedModel& model, const std::string& key) {
 }
 
 scene::Scene coarse(const std::string& name) {
-  return scene::load_scene(scenes + name + ".toml",
-                           {"compare.instants=7", "fast.triangles=200", "fast.rate_hz=100.0", "fast.tool_samples=2000"});
+  return scene::load_scene(scenes + name + ".toml", {"compare.instants=7", "fast.triangles=200", "fast.rate_hz=100.0",
+                                                     "fast.tool_samples=2000"});
 }
 
 /// Down, up and out, and down again.

@@ -85,7 +85,7 @@ TEST_P(ContactDetection, DeepestSampleIsTheRestDepth) {
     const Placement at = placement(pose);
     const InsideSummary inside = c.detection.find_inside(*c.body, c.tool, at, 0.0, c.tool.count(), c.points);
     const Vec3 d = direction_from(inside, Vec3::UnitX());
-    const RegionExtent extent = c.detection.measure_depths(*c.body, at.R_WT, d, false, c.points);
+    const RegionExtent extent = c.detection.measure_depths(*c.body, at.R_WT, d, c.points);
     // The samples miss the deepest point by at most half a diagonal of their spacing.
     const double miss_m = c.tool.spacing_m * c.tool.spacing_m / (2.0 * 2.0 * 0.010) * 2.0;
     const double truth_m = scene::rest_depth_m(*c.body, c.scene.tool, pose);
@@ -146,7 +146,7 @@ TEST(ContactDepths, AreMeasuredAlongTheGivenDirection) {
   const Placement at = placement(pose);
   c.detection.find_inside(*c.body, c.tool, at, 0.0, c.tool.count(), c.points);
   const Vec3 d = Vec3(0.6, 0.0, -0.8);
-  const RegionExtent extent = c.detection.measure_depths(*c.body, at.R_WT, d, false, c.points);
+  const RegionExtent extent = c.detection.measure_depths(*c.body, at.R_WT, d, c.points);
   double area_m2 = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(c.points.count); ++i) {
     EXPECT_GE(c.points.cos_theta[i], 0.0);
@@ -163,7 +163,7 @@ TEST(ContactDepths, AreaIsTheOverlapsProjection) {
   for (const double depth_m : {0.001, 0.003, 0.006}) {
     const Placement at = placement(test::pressed(depth_m));
     c.detection.find_inside(*c.body, c.tool, at, 0.0, c.tool.count(), c.points);
-    const RegionExtent extent = c.detection.measure_depths(*c.body, at.R_WT, -Vec3::UnitZ(), false, c.points);
+    const RegionExtent extent = c.detection.measure_depths(*c.body, at.R_WT, -Vec3::UnitZ(), c.points);
     const double cap_m2 = std::numbers::pi * (2.0 * 0.010 * depth_m - depth_m * depth_m);
     EXPECT_NEAR(extent.area_m2, cap_m2, 0.02 * cap_m2);
     EXPECT_NEAR(extent.thickness_m, 0.060, 1e-15);
@@ -176,7 +176,7 @@ TEST(ContactDepths, PointsFacingAwayAreLeftOut) {
   const Placement at = placement(test::at(0.0, 0.0, 0.03));  // the whole ball inside
   c.detection.find_inside(*c.body, c.tool, at, 0.0, c.tool.count(), c.points);
   EXPECT_EQ(c.points.count, c.tool.count());
-  c.detection.measure_depths(*c.body, at.R_WT, -Vec3::UnitZ(), false, c.points);
+  c.detection.measure_depths(*c.body, at.R_WT, -Vec3::UnitZ(), c.points);
   EXPECT_EQ(c.points.count, c.tool.count() / 2);
   for (int i = 0; i < c.points.count; ++i) {
     EXPECT_LE(c.points.z_W_m[static_cast<std::size_t>(i)], 0.03 + 1e-12);

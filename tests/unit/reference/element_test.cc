@@ -1,8 +1,8 @@
 // Stress is the slope of the energy, the tangent is the slope of the force: by central differences.
 #include "reference/contact/element.h"
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 namespace touchstone::reference {
 namespace {
