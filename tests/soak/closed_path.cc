@@ -29,15 +29,28 @@ Touch touch_under_plane(const fast::FastModel& model, double reach_m, Random& ra
   return touch;
 }
 
-/// No sample below the plane of the touch is beside the body: contact is cut off at no edge.
+/// Nothing of the tool below the plane of the touch is beside the body, which is convex: contact is cut off at no edge.
 bool stays_under_plane(const fast::FastModel& model, const ClosedPath& closed) {
+  const scene::Bounds bounds = model.body->bounds();
+  const double rounding_m = 1e-9 * (bounds.upper_m - bounds.lower_m).norm();
+  const auto inside = [&](const Vec3& p_m) {
+    return model.body->signed_distance_m(p_m - rounding_m * closed.touch.normal) < 0.0;
+  };
   const fast::ToolSamples& tool = model.tool;
   for (const Pose& pose : closed.poses) {
     const scene::Mat3 R_WT = pose.orientation.toRotationMatrix();
+    const auto above_m = [&](const Vec3& p_m) { return (p_m - closed.touch.place_m).dot(closed.touch.normal); };
     for (std::size_t i = 0; i < tool.x_T_m.size(); ++i) {
       const Vec3 p_m = R_WT * Vec3(tool.x_T_m[i], tool.y_T_m[i], tool.z_T_m[i]) + pose.position_m;
-      if ((p_m - closed.touch.place_m).dot(closed.touch.normal) < 0.0 && !(model.body->signed_distance_m(p_m) < 0.0))
-        return false;
+      if (above_m(p_m) < 0.0 && !inside(p_m)) return false;
+    }
+    for (const fast::SurfaceCell& cell : tool.cell) {
+      const Vec3 middle_m = R_WT * cell.center_T_m + pose.position_m;
+      fast::CutPolygon below({cell.corner_m.data(), static_cast<std::size_t>(cell.corners)});
+      below.keep_below(R_WT.transpose() * closed.touch.normal, above_m(middle_m));
+      for (const Vec3& corner_m : below.corners()) {
+        if (!inside(middle_m + R_WT * corner_m)) return false;
+      }
     }
   }
   return true;
