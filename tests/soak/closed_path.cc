@@ -29,7 +29,8 @@ Touch touch_under_plane(const fast::FastModel& model, double reach_m, Random& ra
   return touch;
 }
 
-/// Nothing of the tool below the plane of the touch is beside the body, which is convex: contact is cut off at no edge.
+/// No sample, and no part of a cell's polygon, below the plane of the touch is beside the body, which is convex. The
+/// bulge of a curved cell is not looked at.
 bool stays_under_plane(const fast::FastModel& model, const ClosedPath& closed) {
   const scene::Bounds bounds = model.body->bounds();
   const double rounding_m = 1e-9 * (bounds.upper_m - bounds.lower_m).norm();

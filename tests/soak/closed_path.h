@@ -33,7 +33,7 @@ struct RoundWork {
   double turned_over_j = 0.0;  ///< sum of the parts' sizes
   bool always_in_contact = true;
   bool steady = true;  ///< one region at a time, pressing or not, against Touch::normal to 1e-9 all along
-  /// All samples below the plane of the touch were in the body, and the way out was through that plane.
+  /// All cells and samples below the plane of the touch were in the body, and the way out was through that plane.
   bool flat = true;
   double deepest_rel = 0.0;  ///< largest depth over the body's thickness
 };
