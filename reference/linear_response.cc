@@ -4,7 +4,7 @@
 #include "reference/mesh/sampling.h"
 #include "reference/run/model_choice.h"
 #include "reference/solver.h"
-#include "scene/surface.h"
+#include "scene/shape/surface.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 // deal.II, as solver.h.
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 #include <Eigen/Core>
 

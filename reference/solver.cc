@@ -10,7 +10,7 @@
 #include "reference/run/store.h"
 #include "reference/tool/distance_grid.h"
 #include "reference/tool/tool_distance.h"
-#include "scene/files.h"
+#include "scene/base/files.h"
 
 #include <algorithm>
 #include <chrono>

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "reference/mesh/boundary_surface.h"
-#include "scene/error.h"
-#include "scene/plan.h"
-#include "scene/record.h"
-#include "scene/scene.h"
+#include "scene/base/error.h"
+#include "scene/model/plan.h"
+#include "scene/model/record.h"
+#include "scene/model/scene.h"
 
 #include <atomic>
 #include <filesystem>

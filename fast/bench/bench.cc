@@ -1,6 +1,6 @@
 #include "fast/bench/bench.h"
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace touchstone::bench {
 namespace {

@@ -1,8 +1,8 @@
 #include "fast/bench/bench_verb.h"
 
-#include "fast/command_line.h"
-#include "fast/progress_line.h"
-#include "scene/results.h"
+#include "fast/command/command_line.h"
+#include "fast/command/progress_line.h"
+#include "scene/output/results.h"
 
 #include <cstdlib>
 #include <iostream>

@@ -1,7 +1,7 @@
 // The peer of the benchmark: Bullet's deformable body under the same press. Nothing of Bullet shows here.
 #pragma once
 
-#include "scene/frames.h"
+#include "scene/base/frames.h"
 
 #include <memory>
 #include <string>

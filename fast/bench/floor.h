@@ -1,7 +1,7 @@
 // The floor of the benchmark: what writing the answer costs when nothing is computed.
 #pragma once
 
-#include "fast/surface_patches.h"
+#include "fast/surface/surface_patches.h"
 
 namespace touchstone::bench {
 

@@ -2,7 +2,7 @@
 
 #include "fast/bench/floor.h"
 #include "fast/bench/statistics.h"
-#include "fast/step.h"
+#include "fast/step/step.h"
 
 #include <algorithm>
 #include <chrono>

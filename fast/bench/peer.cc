@@ -4,7 +4,7 @@
 
 #ifdef TOUCHSTONE_BULLET
 #include "fast/bench/bullet_peer.h"
-#include "fast/step.h"
+#include "fast/step/step.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 #include "fast/bench/report.h"
 
 #include "fast/bench/statistics.h"
-#include "fast/state.h"
+#include "fast/step/state.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "fast/bench/statistics.h"
 
-#include "fast/percentiles.h"
+#include "fast/run/percentiles.h"
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
 #include "fast/bench/workload.h"
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 #include <algorithm>
 #include <array>

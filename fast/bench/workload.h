@@ -1,7 +1,7 @@
 // What the benchmark runs: bodies, tools and tracks, one per case.
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 #include <cstdint>
 #include <string>

@@ -1,7 +1,7 @@
 // What the loop asks of a device: a pose in, a wrench out, once per tick.
 #pragma once
 
-#include "scene/frames.h"
+#include "scene/base/frames.h"
 
 #include <cstdint>
 

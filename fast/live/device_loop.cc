@@ -1,6 +1,6 @@
 #include "fast/live/device_loop.h"
 
-#include "fast/flush_tiny_numbers.h"
+#include "fast/realtime/flush_tiny_numbers.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,6 +1,6 @@
 #include "fast/live/engine.h"
 
-#include "fast/step.h"
+#include "fast/step/step.h"
 
 #include <xxhash.h>
 

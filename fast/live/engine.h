@@ -2,8 +2,8 @@
 #pragma once
 
 #include "fast/live/device.h"
-#include "fast/model.h"
-#include "fast/state.h"
+#include "fast/step/model.h"
+#include "fast/step/state.h"
 
 #include <cstdint>
 #include <memory>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "fast/live/device.h"
-#include "scene/error.h"
-#include "scene/scene.h"
+#include "scene/base/error.h"
+#include "scene/model/scene.h"
 
 #include <vector>
 

@@ -1,8 +1,8 @@
 // How well the loop kept time, and what it sent.
 #pragma once
 
-#include "fast/duration_histogram.h"
-#include "fast/stage_clock.h"
+#include "fast/run/duration_histogram.h"
+#include "fast/realtime/stage_clock.h"
 
 #include <array>
 #include <cstdint>

@@ -4,8 +4,8 @@
 #include "fast/live/live_log.h"
 #include "fast/live/replay_device.h"
 #include "fast/live/scripted_device.h"
-#include "scene/error.h"
-#include "scene/files.h"
+#include "scene/base/error.h"
+#include "scene/base/files.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #include "fast/live/live_log.h"
 
-#include "scene/error.h"
-#include "scene/input.h"
-#include "scene/text.h"
+#include "scene/base/error.h"
+#include "scene/base/input.h"
+#include "scene/base/text.h"
 
 #include <algorithm>
 #include <array>

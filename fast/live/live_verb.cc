@@ -1,10 +1,10 @@
 #include "fast/live/live_verb.h"
 
-#include "fast/progress_line.h"
-#include "fast/run.h"
-#include "fast/stop_signals.h"
-#include "scene/error.h"
-#include "scene/nearest_name.h"
+#include "fast/command/progress_line.h"
+#include "fast/run/run.h"
+#include "fast/command/stop_signals.h"
+#include "scene/base/error.h"
+#include "scene/base/nearest_name.h"
 
 #include <iostream>
 #include <memory>

@@ -1,7 +1,7 @@
 // `live`, the same in both executables but for the page, which only the full one can write.
 #pragma once
 
-#include "fast/command_line.h"
+#include "fast/command/command_line.h"
 #include "fast/live/live.h"
 
 #include <filesystem>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fast/live/device.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace touchstone::live {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fast/live/device.h"
-#include "fast/surface_patches.h"
+#include "fast/surface/surface_patches.h"
 
 #include <cstdint>
 

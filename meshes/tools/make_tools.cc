@@ -1,7 +1,7 @@
 // Writes the mesh tools of the shipped scenes and of the tutorial: mallet.stl, compass.obj, stylus.stl.
-#include "scene/mesh_checks.h"
-#include "scene/surface_builder.h"
-#include "scene/triangle_mesh.h"
+#include "scene/mesh/mesh_checks.h"
+#include "scene/shape/surface_builder.h"
+#include "scene/mesh/triangle_mesh.h"
 
 #include <algorithm>
 #include <cmath>

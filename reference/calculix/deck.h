@@ -2,8 +2,8 @@
 // track, solved by elements and a contact method that share nothing with the reference.
 #pragma once
 
-#include "scene/error.h"
-#include "scene/scene.h"
+#include "scene/base/error.h"
+#include "scene/model/scene.h"
 
 #include <Eigen/Core>
 

@@ -1,8 +1,8 @@
 #include "reference/calculix/tool.h"
 
 #include "reference/tool/tool_distance.h"
-#include "scene/mesh_checks.h"
-#include "scene/surface.h"
+#include "scene/mesh/mesh_checks.h"
+#include "scene/shape/surface.h"
 
 #include <algorithm>
 #include <cmath>

@@ -20,15 +20,15 @@
 // backward Euler rule: t opposes the whole slip, so that no increment gives energy back.
 #pragma once
 
-#include "reference/contact/element.h"
+#include "reference/fe/element.h"
 #include "reference/contact/friction.h"
 #include "reference/contact/regions.h"
 #include "reference/linear/linear_solver.h"
 #include "reference/linear/ranks.h"
 #include "reference/mesh/mesh.h"
 #include "reference/tool/tool_gap.h"
-#include "scene/frames.h"
-#include "scene/scene.h"
+#include "scene/base/frames.h"
+#include "scene/model/scene.h"
 
 #include <Eigen/Core>
 

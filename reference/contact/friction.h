@@ -1,7 +1,7 @@
 // Friction of a contact region as a law for every touching node, and its unsymmetric share of the tangent.
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>

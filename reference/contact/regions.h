@@ -1,7 +1,7 @@
 // Which touching points belong together, and which region of the last instant they are.
 #pragma once
 
-#include "scene/frames.h"
+#include "scene/base/frames.h"
 
 #include <utility>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "reference/mesh/boundary_surface.h"
 
-#include "reference/contact/element.h"
+#include "reference/fe/element.h"
 #include "reference/mesh/mesh.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // The boundary of a mesh as triangles, fine enough that its quadratic faces look smooth: what a section is drawn from.
 #pragma once
 
-#include "scene/surface.h"
+#include "scene/shape/surface.h"
 
 #include <vector>
 

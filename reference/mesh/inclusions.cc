@@ -1,6 +1,6 @@
 #include "reference/mesh/inclusions.h"
 
-#include "reference/contact/element.h"
+#include "reference/fe/element.h"
 
 #include <algorithm>
 #include <memory>

@@ -2,7 +2,7 @@
 // deal.II builds them (mesh.cc is the only file that sees it); everything after is free of it.
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 // How many cells a mesh may have.
 #pragma once
 
-#include "scene/error.h"
+#include "scene/base/error.h"
 
 namespace touchstone::reference {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "reference/mesh/mesh.h"
-#include "scene/revolution.h"
+#include "scene/shape/revolution.h"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #include "reference/mesh/sampling.h"
 
-#include "reference/contact/element.h"
-#include "scene/error.h"
+#include "reference/fe/element.h"
+#include "scene/base/error.h"
 
 #include <Eigen/LU>
 

@@ -2,7 +2,7 @@
 
 #include "reference/contact/regions.h"
 #include "reference/tool/distance_grid.h"
-#include "scene/surface.h"
+#include "scene/shape/surface.h"
 
 #include <Eigen/Eigenvalues>
 

@@ -2,7 +2,7 @@
 
 #include "reference/tool/distance_grid.h"
 #include "reference/tool/tool_distance.h"
-#include "scene/hash.h"
+#include "scene/base/hash.h"
 
 #include <iomanip>
 #include <sstream>

@@ -1,7 +1,7 @@
 // What makes one answer of the reference different from another.
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 #include <string>
 

@@ -4,7 +4,7 @@
 #include "reference/mesh/round_mesh.h"
 #include "reference/tool/tool_distance.h"
 #include "reference/tool/tool_symmetry.h"
-#include "scene/surface.h"
+#include "scene/shape/surface.h"
 
 #include <algorithm>
 #include <array>

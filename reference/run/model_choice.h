@@ -3,9 +3,9 @@
 
 #include "reference/mesh/mesh.h"
 #include "reference/run/contact_patch.h"
-#include "scene/error.h"
-#include "scene/plan.h"
-#include "scene/scene.h"
+#include "scene/base/error.h"
+#include "scene/model/plan.h"
+#include "scene/model/scene.h"
 
 #include <string>
 #include <vector>

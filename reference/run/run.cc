@@ -5,7 +5,7 @@
 #include "reference/contact/stuck_contact.h"
 #include "reference/mesh/boundary_surface.h"
 #include "reference/mesh/mesh_limit.h"
-#include "reference/mesh/prolongation.h"
+#include "reference/contact/prolongation.h"
 #include "reference/mesh/sampling.h"
 #include "reference/run/cost.h"
 #include "reference/run/identity.h"

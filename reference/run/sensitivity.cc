@@ -1,7 +1,7 @@
 #include "reference/run/sensitivity.h"
 
 #include "reference/contact/contact_problem.h"
-#include "reference/mesh/prolongation.h"
+#include "reference/contact/prolongation.h"
 #include "reference/mesh/sampling.h"
 #include "reference/run/step_record.h"
 #include "reference/run/uncertainty.h"

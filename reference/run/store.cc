@@ -1,6 +1,6 @@
 #include "reference/run/store.h"
 
-#include "scene/hash.h"
+#include "scene/base/hash.h"
 
 #include <cstring>
 #include <iostream>

@@ -1,7 +1,7 @@
 // Results on disk, addressed by content: one folder per scene answer, one checked file per finished load step.
 #pragma once
 
-#include "scene/files.h"
+#include "scene/base/files.h"
 
 #include <filesystem>
 #include <functional>

@@ -1,7 +1,7 @@
 // How far the finest level may be from the exact answer of the model, from what refinement changed.
 #pragma once
 
-#include "scene/record.h"
+#include "scene/model/record.h"
 
 #include <Eigen/Core>
 

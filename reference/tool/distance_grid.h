@@ -2,7 +2,7 @@
 #pragma once
 
 #include "reference/tool/tool_gap.h"
-#include "scene/triangle_mesh.h"
+#include "scene/mesh/triangle_mesh.h"
 
 #include <array>
 #include <cstdint>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "reference/tool/tool_gap.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace touchstone::reference {
 

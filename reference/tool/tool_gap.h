@@ -1,7 +1,7 @@
 // The rigid tool as a gap function of a material point, with the two derivatives Newton needs.
 #pragma once
 
-#include "scene/frames.h"
+#include "scene/base/frames.h"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 #include "reference/tool/tool_symmetry.h"
 
 #include "reference/tool/distance_grid.h"
-#include "scene/surface.h"
+#include "scene/shape/surface.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,7 +1,7 @@
 // Which symmetries a placed tool has, found on its surface.
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace touchstone::reference {
 

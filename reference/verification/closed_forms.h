@@ -1,7 +1,7 @@
 // Closed forms that the solvers are held against, each with its range and source. SI units; the tool is rigid.
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include "reference/solver.h"
 #include "reference/tool/tool_distance.h"
 #include "reference/verification/solids.h"
-#include "scene/revolution.h"
+#include "scene/shape/revolution.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include "reference/run/contact_patch.h"
 #include "reference/tool/tool_gap.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 // Cattaneo's and Mindlin's problem: a ball pressed on a half space, then moved along it.
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 #include <vector>
 

@@ -3,7 +3,7 @@
 
 #include "reference/contact/contact_problem.h"
 #include "reference/mesh/mesh.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 #include <Eigen/Core>
 

@@ -4,7 +4,7 @@
 #include "reference/contact/load_path.h"
 #include "reference/linear/stopwatch.h"
 #include "reference/run/model_choice.h"
-#include "scene/scene_io.h"
+#include "scene/input/scene_io.h"
 
 #include <cstdio>
 #include <cstdlib>

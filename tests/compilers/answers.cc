@@ -6,10 +6,10 @@
 // Writes FOLDER/<scene>-<formulation>.bin, doubles: the numbers of instants and rest points, the status bits, and how
 // far the tool reaches from its mass centre [m]; then per instant force [N] and torque about the mass centre [N m] on
 // the tool, and the displacement of every rest point [m].
-#include "fast/run.h"
-#include "scene/error.h"
-#include "scene/scene_io.h"
-#include "scene/surface.h"
+#include "fast/run/run.h"
+#include "scene/base/error.h"
+#include "scene/input/scene_io.h"
+#include "scene/shape/surface.h"
 
 #include <cstdio>
 #include <exception>

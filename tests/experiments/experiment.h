@@ -1,8 +1,8 @@
 // The paper's experiments, Figs. 13 to 18: the shipped scenes run by the real-time model, in both formulations.
 #pragma once
 
-#include "fast/run.h"
-#include "unit/fast/shipped_scenes.h"
+#include "fast/run/run.h"
+#include "support/shipped_scenes.h"
 
 #include <gtest/gtest.h>
 

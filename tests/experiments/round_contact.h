@@ -2,7 +2,7 @@
 // contact as a disc, by quadrature, without samples.
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 #include <cmath>
 #include <functional>

@@ -1,6 +1,6 @@
 // The extremes: the area-aware law over sizes, moduli, depths and tools.
 #include "extremes/rig.h"
-#include "scene/area_law.h"
+#include "scene/model/area_law.h"
 
 namespace touchstone::fast {
 namespace {

@@ -1,6 +1,6 @@
 // The extremes: ever finer samples, triangles, ticks and instants.
 #include "extremes/rig.h"
-#include "fast/run.h"
+#include "fast/run/run.h"
 
 namespace touchstone::fast {
 namespace {

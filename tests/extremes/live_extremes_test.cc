@@ -1,6 +1,6 @@
 // The extremes: what reaches the hand.
 #include "extremes/rig.h"
-#include "unit/live/lock_step.h"
+#include "unit/fast/live/lock_step.h"
 
 #include <limits>
 #include <random>

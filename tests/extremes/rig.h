@@ -2,10 +2,10 @@
 // within the law's bound, the surface is whole and what the support holds is at rest.
 #pragma once
 
-#include "fast/equivalent_point.h"
-#include "fast/several_regions.h"
-#include "fast/step.h"
-#include "unit/fast/press.h"
+#include "fast/contact/equivalent_point.h"
+#include "fast/step/several_regions.h"
+#include "fast/step/step.h"
+#include "support/press.h"
 
 #include <gtest/gtest.h>
 

@@ -2,21 +2,21 @@
 // of a file; `--kind=NAME` on the command line says of which kind, and `--seed=FILE` writes there what the fuzzer would
 // not find by itself: a valid file of a kind that has checksums. A reader may accept the bytes or refuse them with its
 // own error, whose text must be fit for a terminal. Anything else ends the process, and that is a finding.
-#include "compare/result_folder.h"
-#include "compare/stored_reference.h"
+#include "compare/report/result_folder.h"
+#include "compare/gate/stored_reference.h"
 #include "fast/live/live_log.h"
 #include "reference/run/step_record.h"
-#include "scene/error.h"
-#include "scene/files.h"
+#include "scene/base/error.h"
+#include "scene/base/files.h"
 #include "scene/gate_file.h"
-#include "scene/hash.h"
-#include "scene/mesh_formats.h"
-#include "scene/scene_io.h"
-#include "scene/study.h"
-#include "scene/surface.h"
-#include "scene/text.h"
-#include "scene/track_csv.h"
-#include "scene/triangle_mesh.h"
+#include "scene/base/hash.h"
+#include "scene/mesh/mesh_formats.h"
+#include "scene/input/scene_io.h"
+#include "compare/study/study_file.h"
+#include "scene/shape/surface.h"
+#include "scene/base/text.h"
+#include "scene/input/track_csv.h"
+#include "scene/mesh/triangle_mesh.h"
 #include "scene/tuning_study.h"
 
 #include <unistd.h>

@@ -1,10 +1,10 @@
 // What a tick asks of detection, for every body, without the heap.
-#include "fast/contact_regions.h"
-#include "fast/find_cells.h"
-#include "fast/pull_back.h"
-#include "realtime/no_heap.h"
-#include "unit/fast/points.h"
-#include "unit/fast/press.h"
+#include "fast/contact/contact_regions.h"
+#include "fast/contact/find_cells.h"
+#include "fast/contact/pull_back.h"
+#include "support/no_heap.h"
+#include "support/points.h"
+#include "support/press.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // No heap use in a tick of the device loop, whatever happens to it.
-#include "realtime/no_heap.h"
+#include "support/no_heap.h"
 
 #include "fast/live/hand_device.h"
 #include "fast/live/replay_device.h"
 #include "fast/live/scripted_device.h"
-#include "unit/live/lock_step.h"
+#include "unit/fast/live/lock_step.h"
 
 #include <gtest/gtest.h>
 

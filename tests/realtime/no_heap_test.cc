@@ -1,10 +1,10 @@
 // No heap use below step(): not on entering contact, in it, on a jump, on a bad pose, or on leaving.
-#include "realtime/no_heap.h"
+#include "support/no_heap.h"
 
-#include "fast/region_shapes.h"
-#include "fast/step.h"
-#include "unit/fast/press.h"
-#include "unit/fast/shipped_scenes.h"
+#include "fast/surface/region_shapes.h"
+#include "fast/step/step.h"
+#include "support/press.h"
+#include "support/shipped_scenes.h"
 
 #include <gtest/gtest.h>
 

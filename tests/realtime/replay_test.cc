@@ -1,8 +1,8 @@
 // The pipeline in virtual time is a function of its scene, to the last bit.
-#include "fast/run.h"
-#include "fast/step.h"
-#include "unit/fast/press.h"
-#include "unit/fast/shipped_scenes.h"
+#include "fast/run/run.h"
+#include "fast/step/step.h"
+#include "support/press.h"
+#include "support/shipped_scenes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // CalculiX 2.20 on the exported decks against the reference: force and surface at every depth.
-#include "compare/calculix.h"
+#include "compare/calculix/calculix.h"
 #include "reference/solver.h"
 #include "second_code/pressed_scene.h"
 

@@ -1,5 +1,5 @@
 // CalculiX's .dat as read: factors, directions, and what an unfinished run leaves behind.
-#include "compare/calculix.h"
+#include "compare/calculix/calculix.h"
 
 #include <gtest/gtest.h>
 

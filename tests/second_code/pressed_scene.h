@@ -1,7 +1,7 @@
 // A ball pressed on a body of rubber, for both codes.
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace touchstone::second_code {
 

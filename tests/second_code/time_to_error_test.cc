@@ -1,5 +1,5 @@
 // Which mesh's cost counts for an error.
-#include "compare/time_to_error.h"
+#include "compare/calculix/time_to_error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Closed paths of the tool, and the work that the contact does along them.
 #pragma once
 
-#include "fast/model.h"
-#include "fast/state.h"
-#include "scene/scene.h"
+#include "fast/step/model.h"
+#include "fast/step/state.h"
+#include "scene/model/scene.h"
 #include "soak/random_device.h"
 
 #include <functional>

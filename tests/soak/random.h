@@ -1,7 +1,7 @@
 // Random numbers that are the same with every standard library.
 #pragma once
 
-#include "scene/frames.h"
+#include "scene/base/frames.h"
 
 #include <cmath>
 #include <cstdint>

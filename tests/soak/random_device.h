@@ -2,8 +2,8 @@
 #pragma once
 
 #include "fast/live/device.h"
-#include "fast/model.h"
-#include "scene/scene.h"
+#include "fast/step/model.h"
+#include "scene/model/scene.h"
 #include "soak/random.h"
 
 #include <memory>

@@ -1,7 +1,7 @@
 #include "soak/random_scene.h"
 
-#include "scene/error.h"
-#include "scene/rules.h"
+#include "scene/base/error.h"
+#include "scene/model/rules.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // Scenes made up by chance: every body, tool and formulation in turn, all else at random.
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 #include "soak/random.h"
 
 #include <filesystem>

@@ -1,8 +1,8 @@
 #include "soak/watch.h"
 
-#include "fast/equivalent_point.h"
-#include "fast/press.h"
-#include "fast/several_regions.h"
+#include "fast/contact/equivalent_point.h"
+#include "fast/step/press.h"
+#include "fast/step/several_regions.h"
 
 #include <unistd.h>
 

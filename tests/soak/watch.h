@@ -1,8 +1,8 @@
 // What must hold after every tick, whatever the scene and the pose; and how often it was looked at.
 #pragma once
 
-#include "fast/model.h"
-#include "fast/state.h"
+#include "fast/step/model.h"
+#include "fast/step/state.h"
 
 #include <array>
 #include <cstdint>

@@ -6,8 +6,8 @@
 #include "reference/tool/tool_distance.h"
 #include "reference/verification/closed_forms.h"
 #include "reference/verification/half_space.h"
-#include "scene/surface.h"
-#include "unit/reference/mesh_tools.h"
+#include "scene/shape/surface.h"
+#include "support/mesh_tools.h"
 
 #include <gtest/gtest.h>
 

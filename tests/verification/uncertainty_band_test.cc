@@ -7,7 +7,7 @@
 #include "reference/run/run.h"
 #include "reference/solver.h"
 
-#include "scene/surface.h"
+#include "scene/shape/surface.h"
 
 #include <gtest/gtest.h>
 

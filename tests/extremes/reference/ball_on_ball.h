@@ -2,8 +2,8 @@
 #pragma once
 
 #include "reference/solver.h"
-#include "scene/error.h"
-#include "scene/surface.h"
+#include "scene/base/error.h"
+#include "scene/shape/surface.h"
 
 #include <gtest/gtest.h>
 

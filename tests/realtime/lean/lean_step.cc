@@ -1,9 +1,9 @@
 // A scene with one region, without friction, inclusion and local factor, stepped in three ways whose instructions are
 // counted from outside: by the step, by nothing but the stages such a scene needs called one after the other, and by
 // the latter with a superfluous stage now and then, which the count must show.
-#include "fast/step.h"
+#include "fast/step/step.h"
 
-#include "unit/fast/press.h"
+#include "support/press.h"
 
 #include <cstdio>
 #include <string_view>

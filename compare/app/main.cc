@@ -1,0 +1,157 @@
+// touchstone: one scene in, one result folder out.
+#include "compare/app/export_verb.h"
+#include "compare/app/gate_verb.h"
+#include "compare/report/live_report.h"
+#include "compare/app/results_verb.h"
+#include "compare/app/study_verb.h"
+#include "compare/app/trade_verb.h"
+#include "compare/app/tune_verb.h"
+#include "compare/app/verbs.h"
+#include "compare/app/verify_verb.h"
+#include "compare/app/view_verb.h"
+#include "fast/command/command_line.h"
+#include "fast/app/completion.h"
+#include "fast/live/live_verb.h"
+#include "fast/app/new_verb.h"
+#include "reference/contact/contact_shares.h"
+#include "reference/linear/blas.h"
+#include "reference/linear/ranks.h"
+#include "scene/input/fields.h"
+
+#include <cstdlib>
+#include <iostream>
+
+using namespace touchstone;
+
+namespace {
+
+int run_program(int argc, char** argv) {
+  const reference::ranks::Session session;
+  if (!reference::ranks::first()) {
+    reference::follow_first_rank();
+    return fast::done;
+  }
+  CLI::App app("How wrong a fast contact model is, against a finite-strain reference with error bars.", "touchstone");
+  app.add_flag_callback(
+      "--scene-reference",
+      [] {
+        std::cout << scene::scene_reference_markdown();
+        throw CLI::Success();
+      },
+      "print every key of a scene file as a Markdown table");
+
+  fast::VerbOptions options;
+  live::LiveOptions live_options;
+  compare::ReferenceOptions reference;
+  compare::VerifyOptions verify_options;
+  int exit_code = fast::done;
+  fast::NewOptions new_options;
+  fast::add_new_verb(app, new_options, exit_code);
+  const auto add = [&](const char* name, const char* what, const char* example, auto verb) {
+    return fast::add_verb(
+        app, name, what, example, options, [&, verb] { return verb(options, reference); }, exit_code);
+  };
+  const auto add_with_folder = [&](const char* name, const char* what, const char* example, auto verb) {
+    CLI::App* command = add(name, what, example, verb);
+    command->add_option("--out", options.out, std::string("result folder (default out/<scene>-") + name + ")");
+    return command;
+  };
+  const auto add_store = [&](CLI::App* command) {
+    command->add_option("--store", reference.store, "content-addressed reference results, shared by all runs")
+        ->capture_default_str();
+  };
+  const auto add_reference = [&](CLI::App* command) {
+    add_store(command);
+    auto* levels = command->add_option("--level", reference.levels, "number of meshes, in place of an error")
+                       ->check(CLI::Range(1, 9));
+    command
+        ->add_option("--error", reference.error,
+                     "refine until force and shape are known to this, relative (default: the scene's)")
+        ->check(CLI::Range(1e-4, 0.5))
+        ->excludes(levels);
+    command
+        ->add_option("--memory-gib", reference.memory_gib,
+                     "no mesh that would take more, by estimate (default 80 % of the memory)")
+        ->check(CLI::Range(0.1, 1e6));
+    command
+        ->add_option("--minutes", reference.minutes,
+                     "end a reference solve after this time, what is solved is kept (default 60; none with --level)")
+        ->check(CLI::Range(0.01, 1e6));
+  };
+  const auto add_require_error = [&](CLI::App* command) {
+    command
+        ->add_option("--require-error", reference.require_error,
+                     "exit 3 unless force and shape are known to this, relative; results are written all the same")
+        ->check(CLI::Range(1e-4, 0.5));
+  };
+  add("plan", "what each side will model for a scene, what it leaves out and why",
+      "meshes/scenes/ball-on-cube-press.toml --set fast.formulation=published", compare::plan);
+  add_with_folder("fast", "the real-time pipeline over the scene's track in virtual time",
+                  "meshes/scenes/ball-on-cube-press.toml --out out/press", compare::run_fast);
+  CLI::App* solved =
+      add_with_folder("reference", "the offline solve; answers from the store, resumes where it was interrupted",
+                      "meshes/scenes/hertz-sphere.toml --error 0.005", compare::run_reference);
+  add_reference(solved);
+  add_require_error(solved);
+  std::filesystem::path parameters;
+  bool plots = false;
+  CLI::App* compared = add_with_folder(
+      "compare", "both sides, then force and shape errors: tables, VTK, report",
+      "meshes/scenes/ball-on-cube-press.toml --set tool.radius_m=0.008 --error 0.02",
+      [&](const auto& given, const auto& asked) { return compare::run_compare(given, asked, parameters, plots); });
+  compared->add_option("--parameters", parameters, "file that tune left, for the fast side alone");
+  compared->add_flag("--plots", plots, "every plot of the report also as SVG and PDF, in the folder's plots/");
+  add_reference(compared);
+  add_require_error(compared);
+  compare::StudyOptions study_options;
+  compare::add_study_verb(app, study_options, exit_code);
+  compare::ResultsOptions results_options;
+  compare::add_report_verb(app, results_options, exit_code);
+  compare::ViewOptions view_options;
+  compare::add_view_verb(app, view_options, exit_code);
+  compare::TuneOptions tune_options;
+  add_reference(compare::add_tune_verb(app, tune_options, reference, exit_code));
+  compare::TradeOptions trade_options;
+  CLI::App* trade_verb = compare::add_trade_verb(app, options, trade_options, reference, exit_code);
+  trade_verb->add_option("--out", options.out, "result folder (default out/<scene>-trade)");
+  add_reference(trade_verb);
+  compare::ExportOptions export_options;
+  CLI::App* export_verb = compare::add_export_verb(app, options, export_options, reference, exit_code);
+  export_verb->add_option("--out", options.out, "result folder (default out/<scene>-export)");
+  add_store(export_verb);
+  live::add_live_verb(app, options, live_options, exit_code, compare::write_live_report);
+  compare::add_verify_verb(app, verify_options, exit_code);
+  compare::GateOptions gate_options;
+  compare::add_gate_verb(app, gate_options, exit_code);
+  std::string shell;
+  fast::add_completion_verb(app, shell, exit_code);
+  fast::group_verbs(app, {{"First", {"new", "plan", "compare"}},
+                          {"One scene", {"fast", "live", "reference", "trade", "export"}},
+                          {"Results", {"view", "report"}},
+                          {"Many scenes", {"study", "tune"}},
+                          {"Checks", {"gate", "verify"}}});
+  app.footer(
+      "First steps:\n"
+      "  touchstone new block.toml --body box 60x60x40mm --youngs-modulus 3MPa --poissons-ratio 0.45 \\\n"
+      "    --tool sphere 10mm --depth 3mm\n"
+      "  touchstone compare block.toml\n"
+      "touchstone VERB --help: its options and an example. Exit status: 0 done, 1 the answer is no, 2 bad input, 3 "
+      "not\n"
+      "converged.");
+  return fast::run_command_line(app, argc, argv, exit_code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return fast::guarded([&] {
+    if (!reference::blas_has_memory()) {
+      std::cerr
+          << "the memory does not suffice for the linear algebra's threads; expected more of it, or fewer threads "
+             "with OPENBLAS_NUM_THREADS\n";
+      // They wait for memory without end, and an ordinary exit waits for them.
+      std::_Exit(fast::not_converged);
+    }
+    return run_program(argc, argv);
+  });
+}

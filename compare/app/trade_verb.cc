@@ -1,0 +1,57 @@
+#include "compare/app/trade_verb.h"
+
+#include "scene/output/results.h"
+
+#include <iostream>
+
+namespace touchstone::compare {
+namespace {
+
+int run(const fast::VerbOptions& options, const TradeOptions& trade_options, const ReferenceOptions& reference) {
+  const scene::Scene scene = asked(options.load(), reference);
+  if (std::vector<scene::Fault> faults = reference::unsupported(scene); !faults.empty()) {
+    throw scene::InputError(std::move(faults));
+  }
+  const std::filesystem::path folder = options.folder(scene, "trade");
+  const scene::FolderLock lock = scene::prepare_result_folder(folder);
+  return with_reference_exits([&] {
+    scene::Manifest manifest = scene::make_manifest(scene, "touchstone trade");
+    const scene::Stopwatch watch;
+    std::string references;  // how each refinement ended
+    const Trade found = trade(
+        scene, trade_options,
+        [&](const scene::Scene& contact, const scene::Surface& surface, std::optional<int> levels) {
+          scene::Scene one = asked(contact, reference);
+          if (levels) one.reference.levels = levels;
+          reference::Result result = solve_with_progress(one, surface, reference, options.quiet);
+          if (!levels) references += one.name + '\n' + refinement_text(result);
+          return result;
+        },
+        [&](const std::string& line) {
+          if (!options.quiet) std::cerr << line << '\n';
+        });
+    manifest.times.push_back(watch.read("trade"));
+    if (!trade_options.held_out.empty()) manifest.entries.emplace_back("held out", trade_options.held_out.string());
+    for (const auto& file : trade_options.parameters) manifest.entries.emplace_back("parameters", file.string());
+    write_trade(folder, found, manifest);
+    std::cout << trade_text(found) << references << "Report: " << (folder / "report.html").string() << '\n';
+    return fast::done;
+  });
+}
+
+}  // namespace
+
+CLI::App* add_trade_verb(CLI::App& app, fast::VerbOptions& options, TradeOptions& trade, ReferenceOptions& reference,
+                         int& exit_code) {
+  CLI::App* verb = fast::add_verb(
+      app, "trade", "the speed/accuracy ladder: every model and level on one plot",
+      "meshes/scenes/ball-on-cube-press.toml --quick --out out/trade", options,
+      [&] { return run(options, trade, reference); }, exit_code);
+  verb->add_option("--parameters", trade.parameters, "file that tune left, its values a row more; may be repeated")
+      ->allow_extra_args(false);
+  verb->add_option("--held-out", trade.held_out, "tuning study whose held-out contacts judge, the worst of them");
+  verb->add_flag("--quick", trade.quick, "few steps and small sizes");
+  return verb;
+}
+
+}  // namespace touchstone::compare

@@ -1,0 +1,40 @@
+// From both sides' answers to a result folder: curve.csv, surface.pvd, shape.svg, summary.json, manifest.json,
+// report.html.
+#pragma once
+
+#include "compare/errors/errors.h"
+#include "compare/report/next_steps.h"
+#include "scene/model/plan.h"
+#include "scene/output/results.h"
+
+#include <filesystem>
+#include <string>
+
+namespace touchstone::compare {
+
+/// What each side models of the scene and leaves out.
+struct Plans {
+  scene::Plan fast, reference;
+};
+
+/// Columns of curve.csv: time, tool pose and depth; both sides' regions (fast_..., reference_...); the reference's
+/// uncertainty; errors per instant. A column that has no meaning at an instant holds nan there.
+[[nodiscard]] std::vector<scene::Column> curve_columns(const fast::Run& run, const reference::Result& result,
+                                                       const Errors& errors);
+
+/// What is left to say on the terminal once the folder is written.
+struct Comparison {
+  scene::Figures figures;  ///< what summary.json holds
+  std::string text;        ///< the verdict, wrapped for a terminal
+};
+
+/// Compares and writes the whole folder, which must exist.
+/// @param call  for the commands to type next; without a scene file there are none
+/// @param plots  also every plot of the report as files, in plots/
+/// @param given  the scene without tuned constants, where `scene` has them
+/// @throws std::logic_error when the sides do not belong together, std::filesystem::filesystem_error
+Comparison write_comparison(const std::filesystem::path& folder, const scene::Scene& scene, const fast::Run& run,
+                            const reference::Result& result, const scene::Manifest& manifest, const Call& call = {},
+                            bool plots = false, const scene::Scene* given = nullptr);
+
+}  // namespace touchstone::compare

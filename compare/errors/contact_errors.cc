@@ -1,0 +1,180 @@
+#include "compare/errors/contact_errors.h"
+
+#include "compare/errors/error_sums.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <tuple>
+
+namespace touchstone::compare {
+namespace {
+
+using scene::InstantRecord;
+using scene::RegionRecord;
+using scene::Vec3;
+
+/// Friction below this share of the peak force is what rounding leaves of none, as under a tool pressed straight in.
+constexpr double least_friction_share = 1e-6;
+
+Vec3 friction_n(const InstantRecord& record) {
+  Vec3 sum_n = Vec3::Zero();
+  for (const RegionRecord& region : record.regions) sum_n += region.friction_n;
+  return sum_n;
+}
+
+Vec3 torque_nm(const InstantRecord& record) {
+  Vec3 sum_nm = Vec3::Zero();
+  for (const RegionRecord& region : record.regions) sum_nm += region.torque_nm;
+  return sum_nm;
+}
+
+/// How the tool's point at the middle of the reference's regions moves up to the next instant; the tool's centre where
+/// there is no region.
+Vec3 step_to_next_m(const reference::Result& result, std::size_t t) {
+  const scene::Pose &here = result.instants[t].tool, &next = result.instants[t + 1].tool;
+  const std::vector<Vec3>& middles_m = result.region_middles_m[t];
+  Vec3 at_m = middles_m.empty() ? here.position_m : Vec3::Zero();
+  for (const Vec3& middle_m : middles_m) at_m += middle_m / static_cast<double>(middles_m.size());
+  const Vec3 at_T_m = here.orientation.conjugate() * (at_m - here.position_m);
+  return next.orientation * at_T_m + next.position_m - at_m;
+}
+
+/// Instant at which the side first slides, among those deep enough that a graze is no slip.
+std::optional<std::size_t> slip_onset(const std::vector<InstantRecord>& records, const Errors& errors) {
+  for (std::size_t t = 0; t < records.size(); ++t) {
+    const auto slides = [](const RegionRecord& region) { return region.sliding; };
+    if (errors.instants[t].deep && std::any_of(records[t].regions.begin(), records[t].regions.end(), slides)) return t;
+  }
+  return std::nullopt;
+}
+
+void compare_friction(const fast::Run& run, const reference::Result& result, Errors& errors) {
+  MeanSquares squares;
+  double peak_n = 0.0, work_fast_j = 0.0, work_reference_j = 0.0, work_band_j = 0.0;
+  const std::size_t count = errors.instants.size();
+  for (std::size_t t = 0; t < count; ++t) {
+    InstantErrors& e = errors.instants[t];
+    const Vec3 fast_n = friction_n(run.instants[t]), reference_n = friction_n(result.instants[t]);
+    e.friction_fast_n = fast_n.norm();
+    e.friction_reference_n = reference_n.norm();
+    squares.add((fast_n - reference_n).norm(), e.force_uncertainty_n);
+    keep_larger(peak_n, e.friction_reference_n);
+    if (t + 1 == count) break;
+    const Vec3 step_m = step_to_next_m(result, t);
+    errors.instants[t + 1].way_m = e.way_m + step_m.norm();
+    work_fast_j -= 0.5 * (fast_n + friction_n(run.instants[t + 1])).dot(step_m);
+    work_reference_j -= 0.5 * (reference_n + friction_n(result.instants[t + 1])).dot(step_m);
+    work_band_j += 0.5 * (e.force_uncertainty_n + result.force_uncertainty_n[t + 1]) * step_m.norm();
+  }
+  if (peak_n > least_friction_share * errors.force_peak_reference_n) {
+    errors.force_friction_nrmse = squares.over(peak_n);
+    if (work_reference_j != 0.0) {
+      const double scale_j = std::abs(work_reference_j);
+      errors.force_friction_work_rel = {(work_fast_j - work_reference_j) / scale_j, known(work_band_j / scale_j)};
+    }
+  }
+
+  const std::optional<std::size_t> fast_at = slip_onset(run.instants, errors);
+  const std::optional<std::size_t> reference_at = slip_onset(result.instants, errors);
+  if (fast_at) errors.slip_onset_fast_m = errors.instants[*fast_at].way_m;
+  if (reference_at) errors.slip_onset_reference_m = errors.instants[*reference_at].way_m;
+  if (!fast_at || !reference_at) return;
+  // Either side may have begun to slide at any time since the instant before.
+  const auto since_before_m = [&](std::size_t t) {
+    return t == 0 ? 0.0 : errors.instants[t].way_m - errors.instants[t - 1].way_m;
+  };
+  errors.slip_onset_error_m = {*errors.slip_onset_fast_m - *errors.slip_onset_reference_m,
+                               std::max(since_before_m(*fast_at), since_before_m(*reference_at))};
+}
+
+void compare_torques(const fast::Run& run, const reference::Result& result, Errors& errors) {
+  MeanSquares squares;
+  double scale_nm = 0.0;
+  for (std::size_t t = 0; t < errors.instants.size(); ++t) {
+    const InstantErrors& e = errors.instants[t];
+    double lever_m = 0.0;
+    for (const Vec3& middle_m : result.region_middles_m[t]) {
+      lever_m = std::max(lever_m, (middle_m - result.instants[t].tool.position_m).norm());
+    }
+    squares.add((torque_nm(run.instants[t]) - torque_nm(result.instants[t])).norm(), e.force_uncertainty_n * lever_m);
+    scale_nm = std::max(scale_nm, e.force_reference_n * lever_m);
+  }
+  if (scale_nm > 0.0) errors.force_torque_nrmse = squares.over(scale_nm);
+}
+
+/// Distance of a point from the line along which a region's force acts on the tool.
+double from_load_line_m(const Vec3& point_m, const RegionRecord& region, const scene::Pose& tool) {
+  const double force_n = region.force_n.norm();
+  if (!(force_n > 0.0)) return std::numeric_limits<double>::infinity();
+  return (region.torque_nm - (point_m - tool.position_m).cross(region.force_n)).norm() / force_n;
+}
+
+/// For every region of the reference the fast model's that acts there, or null: the pairs nearest to each other first,
+/// since either side numbers its regions for itself.
+std::vector<const RegionRecord*> partners(const InstantRecord& fast, const InstantRecord& reference,
+                                          const std::vector<Vec3>& middles_m) {
+  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+  for (std::size_t r = 0; r < middles_m.size(); ++r) {
+    for (std::size_t f = 0; f < fast.regions.size(); ++f) {
+      pairs.emplace_back(from_load_line_m(middles_m[r], fast.regions[f], reference.tool), r, f);
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  std::vector<const RegionRecord*> partner(middles_m.size(), nullptr);
+  std::vector<bool> taken(fast.regions.size(), false);
+  for (const auto& [distance_m, r, f] : pairs) {
+    if (partner[r] != nullptr || taken[f]) continue;
+    partner[r] = &fast.regions[f];
+    taken[f] = true;
+  }
+  return partner;
+}
+
+void compare_regions(const fast::Run& run, const reference::Result& result, Errors& errors) {
+  const auto several = [](const InstantRecord& record) { return record.regions.size() > 1; };
+  if (std::none_of(run.instants.begin(), run.instants.end(), several) &&
+      std::none_of(result.instants.begin(), result.instants.end(), several)) {
+    return;
+  }
+  struct Sums {
+    double error2 = 0.0, peak_fast_n = 0.0, peak_reference_n = 0.0;
+  };
+  std::map<int, Sums> of_id;
+  for (std::size_t t = 0; t < errors.instants.size(); ++t) {
+    const InstantRecord& reference = result.instants[t];
+    // A tool that dips in between the nodes has a region without a middle, and no force.
+    const std::size_t regions = std::min(reference.regions.size(), result.region_middles_m[t].size());
+    const std::vector<const RegionRecord*> partner =
+        partners(run.instants[t], reference,
+                 {result.region_middles_m[t].begin(),
+                  result.region_middles_m[t].begin() + static_cast<std::ptrdiff_t>(regions)});
+    for (std::size_t r = 0; r < regions; ++r) {
+      const RegionRecord& region = reference.regions[r];
+      const Vec3 fast_n = partner[r] != nullptr ? partner[r]->force_n : Vec3::Zero();
+      Sums& sums = of_id[region.id];
+      sums.error2 += (fast_n - region.force_n).squaredNorm();
+      keep_larger(sums.peak_fast_n, fast_n.norm());
+      keep_larger(sums.peak_reference_n, region.force_n.norm());
+    }
+  }
+  for (const auto& [id, sums] : of_id) {
+    if (!(sums.peak_reference_n > 0.0)) continue;
+    const double rms_n = std::sqrt(sums.error2 / static_cast<double>(errors.instants.size()));
+    errors.regions.push_back({id,
+                              {rms_n / sums.peak_reference_n, std::nullopt},
+                              {sums.peak_fast_n / sums.peak_reference_n - 1.0, std::nullopt}});
+  }
+}
+
+}  // namespace
+
+void compare_contacts(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
+                      Errors& errors) {
+  errors.friction = scene.contact.friction.has_value();
+  if (errors.friction) compare_friction(run, result, errors);
+  compare_torques(run, result, errors);
+  compare_regions(run, result, errors);
+}
+
+}  // namespace touchstone::compare

@@ -1,0 +1,11 @@
+// What acts at the contact beyond the total force: friction, its work, the onset of slip, torque, single regions.
+#pragma once
+
+#include "compare/errors/errors.h"
+
+namespace touchstone::compare {
+
+/// Fills the friction, slip, torque and region figures of errors whose forces are compared already.
+void compare_contacts(const scene::Scene& scene, const fast::Run& run, const reference::Result& result, Errors& errors);
+
+}  // namespace touchstone::compare

@@ -1,0 +1,89 @@
+#include "compare/errors/reference_quality.h"
+
+#include "compare/errors/error_sums.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace touchstone::compare {
+namespace {
+
+scene::Figure ratio_or_why(const std::string& key, const std::optional<double>& value) {
+  if (!value) return {key, NAN, "undefined: the reference is never in contact", ""};
+  return {key, *value, "", ""};
+}
+
+scene::Figure uncertainty_or_why(const std::string& key, const std::optional<double>& value) {
+  if (value && !std::isfinite(*value)) return {key, NAN, "unknown", ""};
+  return ratio_or_why(key, value);
+}
+
+}  // namespace
+
+ReferenceQuality reference_quality(const reference::Result& result) {
+  ReferenceQuality quality;
+  const std::vector<bool> deep = deep_instants(result.instants);
+  quality.force_uncertainty_rel = reference::force_uncertainty_rel(result.instants, result.force_uncertainty_n);
+  for (std::size_t t = 0; t < result.instants.size(); ++t) {
+    const double volume_change_rel = result.volume_change_rel[t];
+    if (std::isnan(volume_change_rel) || std::abs(volume_change_rel) > std::abs(quality.volume_change_rel)) {
+      quality.volume_change_rel = volume_change_rel;
+    }
+    if (!deep[t]) continue;
+    const double depth_m = result.instants[t].depth_m;
+    keep_larger(quality.residual_penetration_rel, result.residual_penetration_m[t] / depth_m);
+    keep_larger(quality.between_nodes_rel, result.between_nodes_penetration_m[t] / depth_m);
+    keep_larger(quality.equilibrium_rel, result.equilibrium_rel[t]);
+  }
+  return quality;
+}
+
+scene::Figures reference_figures(const reference::Result& result, const ReferenceQuality& quality) {
+  double wall_s = 0.0, cpu_s = 0.0, newton_iterations = 0.0;
+  for (const reference::LevelRecord& level : result.levels) {
+    wall_s += level.wall_s;
+    cpu_s += level.cpu_s;
+    newton_iterations += level.newton_iterations;
+  }
+  scene::Figures figures{
+      uncertainty_or_why("reference.force_uncertainty_rel", quality.force_uncertainty_rel),
+      uncertainty_or_why("reference.shape_uncertainty_rel", result.shape_uncertainty_rel),
+      ratio_or_why("reference.residual_penetration_rel", quality.residual_penetration_rel),
+      ratio_or_why("reference.penetration_between_nodes_rel", quality.between_nodes_rel),
+      ratio_or_why("reference.equilibrium_rel", quality.equilibrium_rel),
+      {"reference.volume_change_rel", quality.volume_change_rel, "", ""},
+      {"reference.dofs", result.levels.empty() ? 0.0 : result.levels.back().unknowns, "", ""},
+      {"reference.levels", static_cast<double>(result.levels.size()), "", ""},
+      {"reference.newton_iterations", newton_iterations, "", ""},
+      {"reference.wall_s", wall_s, "", "s"},
+      {"reference.cpu_s", cpu_s, "", "s"},
+      {"reference.model", 0.0, result.model, ""},
+  };
+  if (result.refinement.error_asked > 0.0) {
+    figures.push_back({"reference.error_asked", result.refinement.error_asked, "", ""});
+  }
+  figures.push_back({"reference.why_ended", 0.0, result.refinement.why_ended, ""});
+  for (const reference::Sensitivity& one : result.sensitivities) {
+    const std::string key = "reference.sensitivity." + one.part;
+    figures.push_back({key + "_force_rel", one.force_rel, "", ""});
+    figures.push_back({key + "_shape_rel", one.shape_rel, "", ""});
+  }
+  return figures;
+}
+
+std::vector<scene::Column> reference_quality_columns(const reference::Result& result, const std::string& prefix) {
+  std::vector<scene::Column> columns{
+      {prefix + "force_uncertainty_n", result.force_uncertainty_n},
+      {prefix + "residual_penetration_m", result.residual_penetration_m},
+      {prefix + "between_nodes_penetration_m", result.between_nodes_penetration_m},
+      {prefix + "equilibrium_rel", result.equilibrium_rel},
+      {prefix + "volume_change_rel", result.volume_change_rel},
+  };
+  for (std::size_t level = 0; level < result.levels.size(); ++level) {
+    columns.push_back({prefix + "force_level" + std::to_string(level + 1) + "_n", result.levels[level].force_n});
+  }
+  return columns;
+}
+
+}  // namespace touchstone::compare

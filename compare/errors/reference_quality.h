@@ -1,0 +1,36 @@
+// How far one reference result can be trusted, in a few figures.
+#pragma once
+
+#include "reference/run/uncertainty.h"
+#include "reference/solver.h"
+#include "scene/output/results.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchstone::compare {
+
+using reference::deep_instants;
+using reference::deep_share;
+using reference::grazing_depth_m;
+
+/// The largest over the deep instants, absent where there is none.
+struct ReferenceQuality {
+  std::optional<double> force_uncertainty_rel;     ///< band / |F|
+  std::optional<double> residual_penetration_rel;  ///< into the tool at contact nodes, / depth
+  std::optional<double> between_nodes_rel;         ///< into the tool between contact nodes, / depth
+  std::optional<double> equilibrium_rel;           ///< |contact + support| / |contact|
+  double volume_change_rel = 0.0;                  ///< of the body, of the largest magnitude over all instants, signed
+};
+[[nodiscard]] ReferenceQuality reference_quality(const reference::Result& result);
+
+/// The reference.* keys of summary.json that need no other side.
+[[nodiscard]] scene::Figures reference_figures(const reference::Result& result, const ReferenceQuality& quality);
+
+/// The same per instant, as columns of curve.csv: uncertainty, penetration, equilibrium, volume, the force on every
+/// level.
+[[nodiscard]] std::vector<scene::Column> reference_quality_columns(const reference::Result& result,
+                                                                   const std::string& prefix);
+
+}  // namespace touchstone::compare

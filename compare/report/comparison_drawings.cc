@@ -1,0 +1,257 @@
+#include "compare/report/comparison_drawings.h"
+
+#include "compare/report/picture.h"
+#include "compare/format/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace touchstone::compare {
+namespace {
+
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* band_name = "reference's uncertainty";
+
+/// One number per instant; NaN where there is none, which a plot leaves out.
+template <class Get>
+std::vector<double> series(const Errors& errors, const Get& get) {
+  std::vector<double> out;
+  for (const InstantErrors& e : errors.instants) out.push_back(get(e));
+  return out;
+}
+
+/// What the instants are drawn over.
+struct Abscissa {
+  std::string name, label;
+  std::vector<double> values;
+};
+
+Abscissa depth_of(const Errors& errors) {
+  return {"depth", "depth [mm]", series(errors, [](const InstantErrors& e) { return 1e3 * e.depth_m; })};
+}
+
+Abscissa time_of(const Errors& errors) {
+  return {"time", "time [s]", series(errors, [](const InstantErrors& e) { return e.time_s; })};
+}
+
+/// Depth where it only grows: instants at one depth would stand above each other.
+bool only_deeper(const Abscissa& depth) {
+  return std::adjacent_find(depth.values.begin(), depth.values.end(), [](double before, double now) {
+           return now > 0.0 ? now < before * (1.0 + 1e-6) : now < before;
+         }) == depth.values.end();
+}
+
+Plot plot_over(const Abscissa& x, const std::string& title, const std::string& y_label) {
+  Plot plot;
+  plot.title = title;
+  plot.x_label = x.label;
+  plot.y_label = y_label;
+  return plot;
+}
+
+/// Force of both sides with the reference's band.
+Plot force_over(const Errors& errors, const Abscissa& x) {
+  Plot plot = plot_over(x, "Force over " + x.name, "force on the tool [N]");
+  Band band{band_name, Look::reference, x.values, {}, {}};
+  for (const InstantErrors& e : errors.instants) {
+    band.low.push_back(std::max(0.0, e.force_reference_n - e.force_uncertainty_n));
+    band.high.push_back(e.force_reference_n + e.force_uncertainty_n);
+  }
+  plot.bands.push_back(std::move(band));
+  plot.curves.push_back({"reference", Look::reference, x.values,
+                         series(errors, [](const InstantErrors& e) { return e.force_reference_n; })});
+  plot.curves.push_back(
+      {"fast model", Look::fast, x.values, series(errors, [](const InstantErrors& e) { return e.force_fast_n; })});
+  return plot;
+}
+
+/// What there is to see of the reference's uncertainty in a plot of its force.
+std::string band_caption(const Plot& plot, const Errors& errors, const reference::Result& result) {
+  const std::optional<double> known = force_known_to(errors);
+  std::string text;
+  switch (band_seen(plot, plot.bands.front())) {
+    case BandSeen::nowhere:
+      return "The reference's uncertainty is unknown, so no band is drawn. " + why_uncertainty_unknown(result);
+    case BandSeen::narrower_than_the_line:
+      text = known ? fmt::format("The reference's uncertainty, at most {} of its force, is narrower than its line.",
+                                 percent_text(*known))
+                   : "The reference's uncertainty is narrower than its line.";
+      break;
+    case BandSeen::area:
+      text = "The blue band is the reference's uncertainty.";
+      break;
+  }
+  const reference::Refinement& refinement = result.refinement;
+  const double asked = refinement.error_asked;
+  const bool missed =
+      asked > 0.0 && (known.value_or(0.0) > asked || errors.shape_rel_l2.uncertainty.value_or(0.0) > asked);
+  if (missed && !refinement.why_ended.empty()) {
+    text += fmt::format(" An uncertainty of {} was asked for and not reached: {}.", percent_text(asked),
+                        refinement.why_ended);
+  }
+  return text;
+}
+
+Drawing logarithmic(Plot plot, const Errors& errors) {
+  plot.title = "Force over depth, both axes logarithmic";
+  plot.x_log = plot.y_log = true;
+  // A grazing instant's rounding would take most of the decades.
+  for (std::size_t t = 0; t < errors.instants.size(); ++t) {
+    if (errors.instants[t].in_contact) continue;
+    for (Curve& curve : plot.curves) curve.y[t] = no_value;
+    plot.bands.front().high[t] = no_value;
+  }
+  return {"force-logarithmic", "A power law is a straight line here, and a small force is not lost beside a large one.",
+          to_svg(plot)};
+}
+
+/// Friction of both sides over the path of the tool's point at the contact.
+Drawing friction_drawing(const Errors& errors) {
+  const Abscissa path{"path", "path of the tool along the surface [mm]",
+                      series(errors, [](const InstantErrors& e) { return 1e3 * e.way_m; })};
+  Plot plot = plot_over(path, "Friction over the path", "friction on the tool [N]");
+  plot.curves.push_back({"reference", Look::reference, path.values,
+                         series(errors, [](const InstantErrors& e) { return e.friction_reference_n; })});
+  plot.curves.push_back({"fast model", Look::fast, path.values,
+                         series(errors, [](const InstantErrors& e) { return e.friction_fast_n; })});
+  return {"friction", slip_text(errors), to_svg(plot)};
+}
+
+double largest(const std::vector<double>& values) {
+  double found = 0.0;
+  for (const double v : values) found = std::max(found, std::isfinite(v) ? v : 0.0);
+  return found;
+}
+
+/// An error in percent with the reference's uncertainty in the same norm. Logarithmic where the sizes differ too much
+/// for one linear axis.
+Drawing error_drawing(const Abscissa& x, const std::string& name, const std::string& title, const std::string& y_label,
+                      const std::vector<double>& error, const std::vector<double>& uncertainty, std::string caption) {
+  Plot plot = plot_over(x, title + " over " + x.name, y_label);
+  plot.curves.push_back({"fast model's error", Look::fast, x.values, error});
+  plot.curves.push_back({"reference's own uncertainty", Look::reference, x.values, uncertainty});
+  plot.y_log = largest(uncertainty) > 0.0 && largest(error) > 20.0 * largest(uncertainty);
+  if (std::none_of(uncertainty.begin(), uncertainty.end(), [](double v) { return std::isfinite(v); })) {
+    caption += " The reference's own uncertainty is unknown.";
+  }
+  return {name, std::move(caption), to_svg(plot)};
+}
+
+Drawing force_error(const Errors& errors, const Abscissa& x) {
+  return error_drawing(
+      x, "force-error", "Relative force error", "|difference| / reference [%]",
+      series(errors, [](const InstantErrors& e) { return 100.0 * e.force_error_rel.value_or(no_value); }),
+      series(errors,
+             [](const InstantErrors& e) {
+               return e.force_error_rel ? 100.0 * e.force_uncertainty_n / e.force_reference_n : no_value;
+             }),
+      "Relative to the reference's force at the same instant.");
+}
+
+Drawing shape_error(const Errors& errors, const Abscissa& x) {
+  return error_drawing(
+      x, "shape-error", "Shape error", "error / displacement, RMS [%]",
+      series(errors, [](const InstantErrors& e) { return 100.0 * e.shape_rel_l2.value.value_or(no_value); }),
+      series(errors, [](const InstantErrors& e) { return 100.0 * e.shape_rel_l2.uncertainty.value_or(no_value); }),
+      "Over the whole surface, weighted by area. A surface that never moves is 100 % off.");
+}
+
+Drawing largest_error(const Errors& errors, const Abscissa& x) {
+  Plot plot = plot_over(x, "Largest shape error over " + x.name, "distance [mm]");
+  plot.curves.push_back({"of one point from its true place", Look::fast, x.values,
+                         series(errors, [](const InstantErrors& e) { return 1e3 * e.shape_max_m; })});
+  plot.curves.push_back({"between the two surfaces", Look::plain, x.values,
+                         series(errors, [](const InstantErrors& e) { return 1e3 * e.hausdorff_m; })});
+  return {"shape-largest-error",
+          "Points may slide along the surface unseen: then the surfaces are nearer than the points.", to_svg(plot)};
+}
+
+}  // namespace
+
+std::vector<Drawing> ComparisonDrawings::all() const {
+  std::vector<Drawing> out = {force};
+  out.insert(out.end(), forces.begin(), forces.end());
+  out.push_back(shape_error);
+  out.insert(out.end(), shapes.begin(), shapes.end());
+  out.push_back({"bodies", "", bodies_in_a_row, true});
+  return out;
+}
+
+const std::vector<std::string>& ComparisonDrawings::names() {
+  static const std::vector<std::string> all_names = {
+      "force-over-depth", "force-over-time", "force-logarithmic",   "friction", "force-error", "shape-error",
+      "section",          "section-contact", "shape-largest-error", "bodies"};
+  return all_names;
+}
+
+std::optional<double> force_known_to(const Errors& errors) {
+  for (const InstantErrors& e : errors.instants) {
+    if (e.in_contact && !std::isfinite(e.force_uncertainty_n)) return std::nullopt;
+  }
+  const std::optional<double>& known = errors.reference.force_uncertainty_rel;
+  return known && std::isfinite(*known) ? known : std::nullopt;
+}
+
+std::string why_uncertainty_unknown(const reference::Result& result) {
+  const std::string& why = result.refinement.why_ended;
+  const std::string ended = why.empty() ? "" : "Refinement ended: " + why + ".";
+  if (why.find("uncertainty") != std::string::npos) return ended;
+  const std::size_t meshes = result.levels.size();
+  return (meshes < 3 ? fmt::format("It was solved on {} mesh{}, and an uncertainty needs three.",
+                                   meshes == 1 ? "one" : "two", meshes == 1 ? "" : "es")
+                     : "Its meshes do not show how far it is from the exact solution.") +
+         (ended.empty() ? "" : " " + ended);
+}
+
+std::string slip_text(const Errors& errors) {
+  const std::optional<double>&fast_m = errors.slip_onset_fast_m, &reference_m = errors.slip_onset_reference_m;
+  if (fast_m && reference_m) {
+    return fmt::format("Sliding begins after {} of the path in the fast model and after {} in the reference.",
+                       quantity_text(*fast_m, "m"), quantity_text(*reference_m, "m"));
+  }
+  const auto begins = [](const std::string& side, const std::optional<double>& path_m) {
+    return side + (path_m ? " slides after " + quantity_text(*path_m, "m") + " of the path" : " never slides");
+  };
+  return begins("The fast model", fast_m) + ", " + begins("the reference", reference_m) + ".";
+}
+
+Plot force_plot(const Errors& errors) {
+  const Abscissa depth = depth_of(errors);
+  return force_over(errors, only_deeper(depth) ? depth : time_of(errors));
+}
+
+ComparisonDrawings comparison_drawings(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
+                                       const Errors& errors) {
+  const Abscissa depth = depth_of(errors), time = time_of(errors);
+  const bool deeper = only_deeper(depth);
+  const Abscissa &first = deeper ? depth : time, &second = deeper ? time : depth;
+  const auto force_drawing = [&](const Abscissa& x) {
+    const Plot plot = force_over(errors, x);
+    return Drawing{"force-over-" + x.name, band_caption(plot, errors, result), to_svg(plot)};
+  };
+  ComparisonDrawings out;
+  out.force = force_drawing(first);
+  out.shape_error = shape_error(errors, first);
+  out.forces.push_back(force_drawing(second));
+  if (deeper) out.forces.push_back(logarithmic(force_over(errors, depth), errors));
+  if (errors.friction) out.forces.push_back(friction_drawing(errors));
+  out.forces.push_back(force_error(errors, first));
+  out.shapes = {
+      {"section", "Where the cut plane of the rest body has gone; true scale.",
+       section_svg(scene, run, result, errors.deepest, false)},
+      {"section-contact",
+       "A surface should lie on the tool where they touch, and nowhere inside it. The reference is drawn on "
+       "its own mesh, with dots at its nodes in this plane. The fast model is straight between its own points, "
+       "the squares.",
+       section_svg(scene, run, result, errors.deepest, true)},
+      largest_error(errors, first)};
+  const std::vector<std::string> bodies = half_cut_svgs(scene, run, result, errors.deepest);
+  out.bodies = {{"reference", "", bodies[0]}, {"fast", "", bodies[1]}, {"error", "", bodies[2]}};
+  out.bodies_in_a_row = half_cuts_in_a_row(bodies);
+  return out;
+}
+
+}  // namespace touchstone::compare

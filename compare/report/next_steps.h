@@ -1,0 +1,37 @@
+// What to type next: commands for this very scene, each tried with the fast model against the reference at hand where
+// that can be tried.
+#pragma once
+
+#include "compare/errors/errors.h"
+#include "compare/solve/reference_run.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace touchstone::compare {
+
+/// How a comparison was called, for commands that can be typed again.
+struct Call {
+  std::filesystem::path scene_file;
+  std::vector<std::string> overrides;  ///< of --set
+  ReferenceOptions reference;
+  std::filesystem::path parameters;  ///< of --parameters; empty: none
+  std::filesystem::path folder;      ///< of the results
+};
+
+/// The command with its words quoted for a shell where they need it. @param options  more, with a space before
+[[nodiscard]] std::string command_text(const Call& call, const std::string& options);
+
+struct NextStep {
+  std::string why;      ///< a sentence or two
+  std::string command;  ///< may be empty: nothing to type
+  /// A file that the command reads, to be written into the result folder; no name: none.
+  std::string file_name = {}, file_text = {};
+};
+
+/// The most important first; empty where nothing is left to do, and without a scene file.
+[[nodiscard]] std::vector<NextStep> next_steps(const scene::Scene& scene, const fast::Run& run,
+                                               const reference::Result& result, const Errors& errors, const Call& call);
+
+}  // namespace touchstone::compare

@@ -1,0 +1,147 @@
+#include "compare/report/vtk_out.h"
+
+#include "scene/output/results.h"
+
+#include <fmt/format.h>
+#include <vtkCellArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include <functional>
+#include <string>
+
+namespace touchstone::compare {
+namespace {
+
+/// Of an analytic tool's surface, to look round.
+constexpr int tool_triangles = 3000;
+
+void add_vectors(vtkPolyData* data, const char* name, const Eigen::Matrix3Xd& vectors) {
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(3);
+  for (const auto& v : vectors.colwise()) array->InsertNextTuple3(v.x(), v.y(), v.z());
+  data->GetPointData()->AddArray(array);
+}
+
+void add_numbers(vtkPolyData* data, const char* name, const Eigen::VectorXd& numbers) {
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  for (const double v : numbers) array->InsertNextValue(v);
+  data->GetPointData()->AddArray(array);
+}
+
+void add_region(vtkPolyData* data, const char* name, const std::vector<bool>& touched) {
+  vtkNew<vtkIntArray> array;
+  array->SetName(name);
+  for (const bool touches : touched) array->InsertNextValue(touches ? 0 : -1);
+  data->GetPointData()->AddArray(array);
+}
+
+vtkSmartPointer<vtkPolyData> polydata_of(const scene::Surface& surface) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (const auto& p : surface.points_m.colwise()) points->InsertNextPoint(p.x(), p.y(), p.z());
+  vtkNew<vtkCellArray> cells;
+  for (const auto& [a, b, c] : surface.triangles) {
+    const vtkIdType corners[] = {a, b, c};
+    cells->InsertNextCell(3, corners);
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetPolys(cells);
+  return data;
+}
+
+/// Writes <name>_0000.vtp ..., one file per instant, and the collection <name>.pvd.
+/// @param at  the surface at an instant
+void write_series(const std::filesystem::path& folder, const std::string& name,
+                  const std::vector<scene::InstantRecord>& instants,
+                  const std::function<vtkSmartPointer<vtkPolyData>(std::size_t)>& at) {
+  const auto file_name = [&](std::size_t instant) { return fmt::format("{}_{:04}.vtp", name, instant); };
+  std::string collection =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  "
+      "<Collection>\n";
+  for (std::size_t t = 0; t < instants.size(); ++t) {
+    const vtkSmartPointer<vtkPolyData> data = at(t);
+    vtkNew<vtkXMLPolyDataWriter> writer;
+    writer->SetInputData(data);
+    writer->SetDataModeToBinary();
+    writer->SetCompressorTypeToZLib();
+    writer->SetCompressionLevel(1);
+    writer->WriteToOutputStringOn();
+    writer->Write();
+    scene::write_file(folder / file_name(t), writer->GetOutputString());
+    collection +=
+        fmt::format("    <DataSet timestep=\"{:.17g}\" part=\"0\" file=\"{}\"/>\n", instants[t].time_s, file_name(t));
+  }
+  scene::write_file(folder / (name + ".pvd"), collection + "  </Collection>\n</VTKFile>\n");
+  for (std::size_t t = instants.size(); std::filesystem::remove(folder / file_name(t)); ++t) {
+  }
+}
+
+/// The body's rest surface with `add_arrays(instant, data)` for its point arrays.
+void write_body(const std::filesystem::path& folder, const scene::Surface& surface,
+                const std::vector<scene::InstantRecord>& instants,
+                const std::function<void(std::size_t, vtkPolyData*)>& add_arrays) {
+  const vtkSmartPointer<vtkPolyData> rest = polydata_of(surface);
+  write_series(folder, "surface", instants, [&](std::size_t t) {
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->ShallowCopy(rest);
+    add_arrays(t, data);
+    return data;
+  });
+}
+
+}  // namespace
+
+void write_surfaces(const std::filesystem::path& folder, const fast::Run& run, const reference::Result& result,
+                    const Errors& errors) {
+  write_body(folder, run.surface, run.instants, [&](std::size_t t, vtkPolyData* data) {
+    const Eigen::Matrix3Xd& fast_m = run.instants[t].displacement_m;
+    const Eigen::Matrix3Xd& reference_m = result.instants[t].displacement_m;
+    const Eigen::Matrix3Xd error_m = fast_m - reference_m;
+    add_vectors(data, "displacement_fast_m", fast_m);
+    add_vectors(data, "displacement_reference_m", reference_m);
+    add_vectors(data, "displacement_error_m", error_m);
+    add_numbers(data, "displacement_error_magnitude_m", error_m.colwise().norm().transpose());
+    add_numbers(data, "displacement_reference_uncertainty_m", result.displacement_uncertainty_m[t]);
+    add_vectors(data, "normal_fast", run.normals[t]);
+    add_region(data, "region_id_fast", errors.instants[t].touched_fast);
+    add_region(data, "region_id_reference", errors.instants[t].touched_reference);
+  });
+}
+
+void write_tool(const std::filesystem::path& folder, const scene::Tool& tool,
+                const std::vector<scene::InstantRecord>& instants) {
+  const scene::Surface own = scene::tool_surface(tool, tool_triangles);
+  write_series(folder, "tool", instants, [&](std::size_t t) {
+    const scene::Pose& pose = instants[t].tool;
+    scene::Surface placed = own;
+    placed.points_m = (pose.orientation.toRotationMatrix() * own.points_m).colwise() + pose.position_m;
+    return polydata_of(placed);
+  });
+}
+
+void write_fast_surfaces(const std::filesystem::path& folder, const fast::Run& run) {
+  write_body(folder, run.surface, run.instants, [&](std::size_t t, vtkPolyData* data) {
+    add_vectors(data, "displacement_m", run.instants[t].displacement_m);
+    add_vectors(data, "normal", run.normals[t]);
+  });
+}
+
+void write_reference_surfaces(const std::filesystem::path& folder, const scene::Surface& surface,
+                              const reference::Result& result) {
+  write_body(folder, surface, result.instants, [&](std::size_t t, vtkPolyData* data) {
+    add_vectors(data, "displacement_m", result.instants[t].displacement_m);
+    add_numbers(data, "displacement_uncertainty_m", result.displacement_uncertainty_m[t]);
+  });
+}
+
+}  // namespace touchstone::compare

@@ -1,0 +1,16 @@
+// The page of one tuning: how the tuned models do on contacts they were not tuned to, then how they were tuned.
+#pragma once
+
+#include "compare/tune/tune.h"
+#include "scene/output/results.h"
+
+#include <string>
+
+namespace touchstone::compare {
+
+/// The largest relative force errors by which the regime map sorts the instants.
+inline constexpr double regime_limits[] = {0.05, 0.10, 0.20};
+
+[[nodiscard]] std::string tuning_report_html(const Tuning& tuning, const scene::Manifest& manifest);
+
+}  // namespace touchstone::compare

@@ -1,0 +1,211 @@
+// What a tuning leaves in its folder, but for the page.
+#include "compare/tune/tune.h"
+
+#include "compare/errors/figures.h"
+#include "compare/tune/tune_report.h"
+#include "scene/input/fields.h"
+#include "scene/base/files.h"
+#include "scene/output/results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace touchstone::compare {
+namespace {
+
+/// Figures of a comparison that say something about one contact, whatever machine it ran on.
+constexpr std::string_view figure_groups[] = {
+    "force.", "shape.", "contact.", "reference.force_uncertainty", "reference.shape_uncertainty", "reference.model"};
+
+/// A name as a part of a dotted key.
+std::string slug(const std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
+      out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    } else if (!out.empty() && out.back() != '-') {
+      out += '-';
+    }
+  }
+  while (out.ends_with('-')) out.pop_back();
+  return out;
+}
+
+scene::Figures contact_figures(const Tuning& tuning, const TuningOutcome& outcome) {
+  scene::Figures out;
+  for (scene::Figure& figure : make_figures(outcome.errors, outcome.run, tuning.data[outcome.data].result)) {
+    const bool kept = std::any_of(std::begin(figure_groups), std::end(figure_groups),
+                                  [&](std::string_view group) { return figure.key.starts_with(group); });
+    if (kept) out.push_back(std::move(figure));
+  }
+  return out;
+}
+
+const scene::Figure* find(const scene::Figures& figures, const std::string& key) {
+  const auto found = std::find_if(figures.begin(), figures.end(), [&](const scene::Figure& f) { return f.key == key; });
+  return found == figures.end() ? nullptr : &*found;
+}
+
+/// Every error of the contacts at its worst, with the uncertainty of the contact it is from.
+scene::Figures worst_of(const std::vector<scene::Figures>& contacts) {
+  scene::Figures out;
+  for (const scene::Figure& first : contacts.front()) {
+    const bool of_one_side = first.key.ends_with("_n") || first.key.ends_with("_fast_m") ||
+                             first.key.ends_with("_reference_m") || first.key.starts_with("reference.");
+    if (of_one_side || first.key.ends_with(uncertainty_suffix)) continue;
+    const bool smallest = first.key == "contact.area_iou";
+    const scene::Figures* from = nullptr;
+    const scene::Figure* worst = nullptr;
+    for (const scene::Figures& figures : contacts) {
+      const scene::Figure* one = find(figures, first.key);
+      if (one == nullptr || !one->text.empty()) continue;
+      const bool worse = worst == nullptr ||
+                         (smallest ? one->number < worst->number : std::abs(one->number) > std::abs(worst->number));
+      if (!worse) continue;
+      worst = one;
+      from = &figures;
+    }
+    out.push_back(worst != nullptr ? *worst : first);
+    const scene::Figure* uncertainty =
+        from != nullptr ? find(*from, first.key + std::string(uncertainty_suffix)) : nullptr;
+    if (uncertainty != nullptr) out.push_back(*uncertainty);
+  }
+  return out;
+}
+
+void add(scene::Figures& out, const std::string& prefix, const scene::Figures& figures) {
+  for (const scene::Figure& figure : figures)
+    out.push_back({prefix + figure.key, figure.number, figure.text, figure.unit});
+}
+
+scene::Figures model_figures(const Tuning& tuning, const TunedModel& model) {
+  scene::Figures out;
+  for (const bool held_out : {true, false}) {
+    const std::string group = held_out ? "held_out." : "training.";
+    std::vector<scene::Figures> contacts;
+    scene::Figures each;
+    for (const TuningOutcome& outcome : model.outcomes) {
+      const TuningData& data = tuning.data[outcome.data];
+      if (data.held_out() != held_out) continue;
+      contacts.push_back(contact_figures(tuning, outcome));
+      const std::string prefix = group + slug(data.contact.name) + ".";
+      add(each, prefix, contacts.back());
+    }
+    if (contacts.empty()) continue;
+    add(out, group, worst_of(contacts));
+    out.insert(out.end(), each.begin(), each.end());
+  }
+  out.push_back({"training.shape_parts.whole", model.shape_parts.whole, "", ""});
+  out.push_back({"training.shape_parts.without_local_factor", model.shape_parts.without_local_factor, "", ""});
+  out.push_back({"training.shape_parts.anchors_at_rest", model.shape_parts.anchors_at_rest, "", ""});
+  out.push_back({"training.shape_parts.hat_alone", model.shape_parts.hat_alone, "", ""});
+  for (const StageFit& stage : model.stages) {
+    for (std::size_t k = 0; k < stage.parameters.size(); ++k) {
+      const scene::TuningParameter& one = stage.parameters[k];
+      const Determination& found = stage.fit.parameters[k];
+      out.push_back({"parameter." + one.key, found.value, "", one.unit});
+      const std::string key = "parameter." + one.key + (one.log ? ".error_rel" : ".error");
+      if (found.error) {
+        out.push_back({key, *found.error, "", one.log ? "" : one.unit});
+      } else {
+        out.push_back({key, NAN,
+                       found.open                       ? "none: the data leave it open"
+                       : found.at_bound == AtBound::low ? "none: at its lower bound"
+                                                        : "none: at its upper bound",
+                       ""});
+      }
+    }
+    const std::string key = stage.stage == scene::TuningStage::force ? "fit.force." : "fit.shape.";
+    out.push_back({key + "chi2_per_freedom", stage.fit.chi2_per_freedom, "", ""});
+    out.push_back({key + "free", static_cast<double>(stage.fit.free), "", ""});
+    out.push_back({key + "rank", static_cast<double>(stage.fit.rank), "", ""});
+    out.push_back({key + "condition", stage.fit.condition, std::isfinite(stage.fit.condition) ? "" : "infinite", ""});
+    out.push_back({key + "starts", static_cast<double>(stage.fit.starts.size()), "", ""});
+    out.push_back({key + "starts_agreeing", static_cast<double>(stage.fit.starts_agreeing), "", ""});
+  }
+  return out;
+}
+
+/// One row per contact and instant, contacts and models numbered in the order of the study.
+std::vector<scene::Column> tuning_columns(const Tuning& tuning) {
+  std::vector<scene::Column> columns;
+  for (const char* name : {"model", "contact", "held_out", "time_s", "depth_m", "fast_force_n", "reference_force_n",
+                           "reference_force_uncertainty_n", "error_force_n", "error_shape_rel_l2"}) {
+    columns.push_back({name, {}});
+  }
+  for (std::size_t m = 0; m < tuning.models.size(); ++m) {
+    for (const TuningOutcome& outcome : tuning.models[m].outcomes) {
+      for (const InstantErrors& e : outcome.errors.instants) {
+        const double row[] = {static_cast<double>(m),
+                              static_cast<double>(outcome.data),
+                              tuning.data[outcome.data].held_out() ? 1.0 : 0.0,
+                              e.time_s,
+                              e.depth_m,
+                              e.force_fast_n,
+                              e.force_reference_n,
+                              e.force_uncertainty_n,
+                              e.force_error_n,
+                              e.shape_rel_l2.value.value_or(NAN)};
+        for (std::size_t k = 0; k < columns.size(); ++k) columns[k].values.push_back(row[k]);
+      }
+    }
+  }
+  return columns;
+}
+
+}  // namespace
+
+scene::Figures tuning_figures(const Tuning& tuning) {
+  scene::Figures out = model_figures(tuning, tuning.models.front());
+  for (const TunedModel& model : tuning.models) add(out, model.key() + ".", model_figures(tuning, model));
+  return out;
+}
+
+std::string parameters_toml(const Tuning& tuning, const TunedModel& model) {
+  const bool duffing = model.law == scene::ContactLaw::duffing;
+  std::vector<std::string> keys = {"contact.law", duffing ? "contact.k1_n_per_m" : "contact.k1_per_radius_n_per_m2",
+                                   "contact.k3_n_per_m3", "fast.formulation"};
+  const scene::Scene* scene = nullptr;
+  for (const StageFit& stage : model.stages) {
+    for (const scene::TuningParameter& one : stage.parameters) {
+      keys.push_back(one.key);
+      if (!one.key.starts_with("contact.friction.")) continue;
+      for (const TuningData& data : tuning.data) {
+        if (scene == nullptr && data.contact.scene.contact.friction) scene = &data.contact.scene;
+      }
+      for (const char* name :
+           {"contact.friction.K", "contact.friction.beta", "contact.friction.mu_D", "contact.friction.stiffness_ratio"})
+        keys.emplace_back(name);
+    }
+  }
+  const scene::Scene values = tuned_scene(scene != nullptr ? *scene : tuning.data.front().contact.scene, model);
+  std::string text = fmt::format(
+      "# The {} model, tuned by the study {}.\n# A scene takes it over with include = \"<this file>\" at its "
+      "top, and leaves these keys out: its own win.\n",
+      model.name(), tuning.study.name);
+  std::string section;
+  for (const auto& field : scene::scene_fields()) {
+    const std::string key(field.key);
+    if (std::find(keys.begin(), keys.end(), key) == keys.end()) continue;
+    const std::size_t dot = key.rfind('.');
+    if (key.substr(0, dot) != section) text += "\n[" + (section = key.substr(0, dot)) + "]\n";
+    text += key.substr(dot + 1) + " = " + scene::value_text(field, values) + "\n";
+  }
+  return text;
+}
+
+void write_tuning(const std::filesystem::path& folder, const Tuning& tuning, const scene::Manifest& manifest) {
+  scene::write_file(folder / "parameters.toml", parameters_toml(tuning, tuning.models.front()));
+  for (const TunedModel& model : tuning.models) {
+    scene::write_file(folder / ("parameters-" + model.key() + ".toml"), parameters_toml(tuning, model));
+  }
+  scene::write_csv(folder / "curve.csv", tuning_columns(tuning));
+  scene::write_summary(folder / "summary.json", tuning_figures(tuning));
+  scene::write_file(folder / "report.html", tuning_report_html(tuning, manifest));
+  scene::write_manifest(folder / "manifest.json", manifest);
+}
+
+}  // namespace touchstone::compare

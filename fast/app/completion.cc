@@ -1,0 +1,200 @@
+#include "fast/app/completion.h"
+
+#include "fast/command/command_line.h"
+#include "scene/input/fields.h"
+
+#include <algorithm>
+#include <iostream>
+#include <vector>
+
+namespace touchstone::fast {
+namespace {
+
+/// What may stand in a place of the command line.
+enum class Expects { nothing, keys, toml_files, folders, files, words };
+
+struct Place {
+  std::string name;  ///< an option; empty for what stands alone
+  Expects expects = Expects::nothing;
+  std::string words;
+};
+
+struct VerbWords {
+  std::string name, what;  ///< "study expand"
+  std::string options;     ///< and verbs below it
+  std::vector<Place> values;
+  Place alone;
+};
+
+Place place_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const auto starts = [&](const char* with) { return type.starts_with(with); };
+  if (!option.nonpositional()) {
+    const std::string name = option.get_name(true);
+    if (name == "SCENE" || name == "STUDY") return {"", Expects::toml_files, ""};
+    if (name == "DIR") return {"", Expects::folders, ""};
+    if (name == "SHELL") return {"", Expects::words, "bash zsh"};
+    return {"", name == "FILE" ? Expects::files : Expects::nothing, ""};
+  }
+  // A plain text is most often a path; numbers and lengths have a type of their own.
+  Place place{"--" + option.get_lnames().front(), starts("TEXT") ? Expects::files : Expects::nothing, ""};
+  if (starts("KEY=VALUE")) {
+    place.expects = Expects::keys;
+  } else if (type.find('|') != std::string::npos) {
+    place.expects = Expects::words;
+    place.words = type.substr(0, type.find(' '));
+    std::ranges::replace(place.words, '|', ' ');
+  }
+  return place;
+}
+
+void collect(const CLI::App& app, const std::string& above, std::vector<VerbWords>& list) {
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    VerbWords words{above + verb->get_name(), verb->get_description(), "", {}, {}};
+    for (const CLI::App* below : verb->get_subcommands([](const CLI::App*) { return true; }))
+      words.options += below->get_name() + " ";
+    for (const CLI::Option* option : verb->get_options()) {
+      if (!option->nonpositional()) {
+        words.alone = place_of(*option);
+        continue;
+      }
+      if (option->get_lnames().empty()) continue;
+      words.options += "--" + option->get_lnames().front() + " ";
+      if (option->get_items_expected_max() > 0) words.values.push_back(place_of(*option));
+    }
+    list.push_back(words);
+    collect(*verb, words.name + " ", list);
+  }
+}
+
+std::string keys() {
+  std::string out;
+  for (const auto& field : scene::scene_fields()) out += std::string(field.key) + "= ";
+  return out;
+}
+
+/// The shells' own ways to offer words, keys and files.
+struct Dialect {
+  std::string words_before, words_after, keys, toml_files, folders, files;
+};
+
+std::string action(const Place& place, const Dialect& shell) {
+  switch (place.expects) {
+    case Expects::nothing:
+      return "";
+    case Expects::keys:
+      return shell.keys;
+    case Expects::toml_files:
+      return shell.toml_files;
+    case Expects::folders:
+      return shell.folders;
+    case Expects::files:
+      return shell.files;
+    case Expects::words:
+      return shell.words_before + place.words + shell.words_after;
+  }
+  return "";
+}
+
+/// The branches over "$verb $previous" for values of options, and over "$verb" for the rest.
+std::string branches(const std::vector<VerbWords>& verbs, const Dialect& shell) {
+  std::string out = "  case \"$verb $previous\" in\n";
+  for (const VerbWords& verb : verbs) {
+    for (const Place& place : verb.values) {
+      const std::string what = action(place, shell);
+      out += "    \"" + verb.name + " " + place.name + "\") " + (what.empty() ? "" : what + "; ") + "return ;;\n";
+    }
+  }
+  out += "  esac\n  case \"$verb\" in\n";
+  for (const VerbWords& verb : verbs) {
+    const std::string what = action(verb.alone, shell);
+    out += "    \"" + verb.name + "\")\n      if [[ $current == -* ]]; then " + shell.words_before + verb.options +
+           shell.words_after + "; else " +
+           (what.empty() ? shell.words_before + verb.options + shell.words_after : what) + "; fi ;;\n";
+  }
+  return out + "  esac\n";
+}
+
+/// "study|other": verbs that have verbs below them.
+std::string nested(const std::vector<VerbWords>& verbs) {
+  std::string out;
+  for (const VerbWords& verb : verbs) {
+    const std::size_t space = verb.name.find(' ');
+    const std::string above = verb.name.substr(0, space);
+    if (space != std::string::npos && ("|" + out + "|").find("|" + above + "|") == std::string::npos)
+      out += (out.empty() ? "" : "|") + above;
+  }
+  return out.empty() ? "-" : out;
+}
+
+std::string bash_script(const std::string& program, const std::string& function, const std::vector<VerbWords>& verbs,
+                        const std::string& first) {
+  const Dialect shell{
+      "COMPREPLY=($(compgen -W '",
+      "' -- \"$current\"))",
+      "COMPREPLY=($(compgen -W '" + keys() + "' -- \"$current\")); compopt -o nospace 2>/dev/null",
+      "compopt -o filenames 2>/dev/null; COMPREPLY=($(compgen -f -X '!*.toml' -- \"$current\") $(compgen "
+      "-d -- \"$current\"))",
+      "compopt -o filenames 2>/dev/null; COMPREPLY=($(compgen -d -- \"$current\"))",
+      "compopt -o filenames 2>/dev/null; COMPREPLY=($(compgen -f -- \"$current\"))"};
+  return "# " + program + " completion for bash. To use it: source <(" + program + " completion bash)\n" + function +
+         "() {\n"
+         "  local IFS=$' \\t\\n' current=\"${COMP_WORDS[COMP_CWORD]}\" previous=\"${COMP_WORDS[COMP_CWORD-1]}\"\n"
+         "  local verb=\"${COMP_WORDS[1]}\"\n"
+         "  COMPREPLY=()\n"
+         "  # --option=value comes as three words.\n"
+         "  if [[ $current == \"=\" ]]; then current=\"\"; elif [[ $previous == \"=\" ]]; then "
+         "previous=\"${COMP_WORDS[COMP_CWORD-2]}\"; fi\n"
+         "  if ((COMP_CWORD == 1)); then\n    " +
+         shell.words_before + first + shell.words_after +
+         "\n    return\n  fi\n"
+         "  case \"$verb\" in\n    " +
+         nested(verbs) + ") if ((COMP_CWORD > 2)); then verb=\"$verb ${COMP_WORDS[2]}\"; fi ;;\n  esac\n" +
+         branches(verbs, shell) + "}\ncomplete -F " + function + " " + program + "\n";
+}
+
+std::string zsh_script(const std::string& program, const std::string& function, const std::vector<VerbWords>& verbs,
+                       const std::string& first) {
+  const Dialect shell{"compadd -- ", "", "compadd -S '' -- " + keys(), "_files -g '*.toml'", "_files -/", "_files"};
+  return "#compdef " + program + "\n# " + program + " completion for zsh. To use it: source <(" + program +
+         " completion zsh), after compinit\n" + function +
+         "() {\n"
+         "  local current=\"${words[CURRENT]}\" previous=\"${words[CURRENT-1]}\" verb=\"${words[2]}\"\n"
+         "  if ((CURRENT == 2)); then\n    compadd -- " +
+         first +
+         "\n    return\n  fi\n"
+         "  case \"$verb\" in\n    " +
+         nested(verbs) + ") if ((CURRENT > 3)); then verb=\"$verb ${words[3]}\"; fi ;;\n  esac\n" +
+         branches(verbs, shell) + "}\nif [[ \"${funcstack[1]}\" == " + function + " ]]; then " + function +
+         "; else compdef " + function + " " + program + "; fi\n";
+}
+
+}  // namespace
+
+std::string completion_script(const CLI::App& app, const std::string& shell) {
+  std::vector<VerbWords> verbs;
+  collect(app, "", verbs);
+  std::string first;
+  for (const VerbWords& verb : verbs) {
+    if (verb.name.find(' ') == std::string::npos) first += verb.name + " ";
+  }
+  first += "--help --version";
+  std::string function = "_" + app.get_name();
+  std::ranges::replace(function, '-', '_');
+  return shell == "zsh" ? zsh_script(app.get_name(), function, verbs, first)
+                        : bash_script(app.get_name(), function, verbs, first);
+}
+
+CLI::App* add_completion_verb(CLI::App& app, std::string& shell, int& exit_code) {
+  CLI::App* verb =
+      app.add_subcommand("completion", "print a script that completes verbs, options and files in a shell");
+  verb->add_option("SHELL", shell, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
+  verb->footer("Example:\n  source <(" + app.get_name() + " completion bash)");
+  verb->callback([&app, &shell, &exit_code] {
+    std::cout << completion_script(app, shell);
+    exit_code = done;
+  });
+  return verb;
+}
+
+}  // namespace touchstone::fast

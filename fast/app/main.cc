@@ -1,0 +1,60 @@
+// touchstone-fast: the real-time side alone, for the machine with the device. Links neither deal.II, VTK nor MPI.
+#include "fast/bench/bench_verb.h"
+#include "fast/command/command_line.h"
+#include "fast/app/completion.h"
+#include "fast/live/live_verb.h"
+#include "fast/app/new_verb.h"
+#include "fast/command/results.h"
+#include "scene/input/scene_io.h"
+
+#include <iostream>
+
+using namespace touchstone;
+
+namespace {
+
+int plan(const fast::VerbOptions& options) {
+  const scene::Scene scene = options.load();
+  std::cout << scene::explained_toml(scene) << '\n' << fast::plan_text("The fast model computes", fast::plan(scene));
+  return fast::done;
+}
+
+int run(const fast::VerbOptions& options) {
+  const scene::Scene scene = options.load();
+  const std::filesystem::path folder = options.folder(scene, "fast");
+  const scene::FolderLock lock = scene::prepare_result_folder(folder);
+  const fast::Run run =
+      fast::run_into_folder(scene, folder, scene::make_manifest(scene, "touchstone-fast fast"), options.quiet);
+  std::cout << fast::summary_text(run) << "Results: " << folder.string() << '\n';
+  return fast::done;
+}
+
+int run_program(int argc, char** argv) {
+  CLI::App app("Real-time contact of a rigid tool with an elastic body.", "touchstone-fast");
+  fast::VerbOptions options;
+  live::LiveOptions live_options;
+  bench::BenchVerbOptions bench_options;
+  fast::NewOptions new_options;
+  std::string shell;
+  int exit_code = fast::done;
+  fast::add_new_verb(app, new_options, exit_code);
+  fast::add_verb(
+      app, "plan", "what the fast model computes for a scene, what it leaves out and why",
+      "meshes/scenes/ball-on-cube-press.toml --set fast.formulation=published", options, [&] { return plan(options); },
+      exit_code);
+  fast::add_verb(
+      app, "fast", "the real-time pipeline over the scene's track in virtual time",
+      "meshes/scenes/ball-on-cube-press.toml --out out/press", options, [&] { return run(options); }, exit_code)
+      ->add_option("--out", options.out, "result folder (default out/<scene>-fast)");
+  live::add_live_verb(app, options, live_options, exit_code);
+  bench::add_bench_verb(app, bench_options, exit_code);
+  fast::add_completion_verb(app, shell, exit_code);
+  app.footer("touchstone-fast VERB --help: options and an example");
+  return fast::run_command_line(app, argc, argv, exit_code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return fast::guarded([&] { return run_program(argc, argv); });
+}

@@ -1,0 +1,243 @@
+#include "fast/contact/contact_detection.h"
+
+#include "fast/contact/find_cells.h"
+#include "fast/contact/pull_back.h"
+#include "fast/contact/rest_distance.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <type_traits>
+
+namespace touchstone::fast {
+namespace {
+
+using scene::Mat3;
+using scene::Vec3;
+
+template <class Body>
+InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, const Placement& at, double margin_m,
+                          int limit, RegionPoints& points) noexcept {
+  const Body& body = static_cast<const Body&>(shape);
+  points.spread = false;
+  InsideSummary summary;
+  int count = 0;
+  const auto nodes = static_cast<std::int32_t>(tool.tree.size());
+  for (std::int32_t node = 0; node < nodes && count < limit;) {
+    const SampleBall& ball = tool.tree[static_cast<std::size_t>(node)];
+    if (!may_touch(body, at.R_WT * ball.center_T_m + at.origin_W_m, ball.radius_m + margin_m)) {
+      node = ball.next;
+      continue;
+    }
+    ++node;
+    if (!ball.leaf) continue;
+    for (auto i = static_cast<std::size_t>(ball.begin); i < static_cast<std::size_t>(ball.end); ++i) {
+      const Vec3 p_T(tool.x_T_m[i], tool.y_T_m[i], tool.z_T_m[i]);
+      const Vec3 p_W = at.R_WT * p_T + at.origin_W_m;
+      if (surely_beyond(body, p_W, margin_m)) continue;
+      const RestDistance rest = rest_distance(body, p_W);
+      if (!(rest.signed_distance_m < margin_m)) continue;
+      if (rest.signed_distance_m < 0.0) summary.add(rest.normal, -rest.signed_distance_m, tool.area_m2[i]);
+      const Vec3 normal_T(tool.nx_T[i], tool.ny_T[i], tool.nz_T[i]);
+      points.set(count++, p_W, p_T, normal_T, tool.area_m2[i], rest.signed_distance_m, static_cast<std::int32_t>(i));
+    }
+  }
+  points.count = count;
+  return summary;
+}
+
+template <class Body>
+InsideSummary summarise(const scene::Shape& shape, const RegionPoints& points) noexcept {
+  const Body& body = static_cast<const Body&>(shape);
+  InsideSummary summary;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
+    const RestDistance rest = rest_distance(body, points.p_W_m(i));
+    if (rest.signed_distance_m < 0.0) summary.add(rest.normal, -rest.signed_distance_m, points.area_m2[i]);
+  }
+  return summary;
+}
+
+/// Outward normal of the rest surface where the way from a point against d leads to.
+template <class Body, class WayOut>
+Vec3 exit_normal(const Body& body, const WayOut&, const Vec3& p_W, double depth_m, const Vec3& d,
+                 const Vec3& closest_normal) noexcept {
+  // The closest surface may be another side.
+  if (-closest_normal.dot(d) > 0.5) return closest_normal;
+  return rest_distance(body, Vec3(p_W - depth_m * d)).normal;
+}
+template <class WayOut>
+Vec3 exit_normal(const scene::Box&, const WayOut& way_out, const Vec3& p_W, double, const Vec3&, const Vec3&) noexcept {
+  return way_out.normal(p_W);
+}
+
+/// Sets how the depth changes along the two vectors of the point's spread. From the tool's surface, which they lie in,
+/// d leads to the rest surface's tangent plane.
+void set_rises(RegionPoints& points, std::size_t k, const Mat3& R_WT, const Vec3& d, const Vec3& exit_normal) noexcept {
+  // A way that grazes the surface ends soon.
+  const Vec3 slope_T = R_WT.transpose() * (exit_normal / std::min(exit_normal.dot(d), -0.3));
+  const Spread spread_T_m = points.spread_T_m(k);
+  points.rise1_m[k] = slope_T.dot(spread_T_m[0]);
+  points.rise2_m[k] = slope_T.dot(spread_T_m[1]);
+}
+
+template <class Body>
+RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const Vec3& d, RegionPoints& points) noexcept {
+  const Body& body = static_cast<const Body&>(shape);
+  const auto way_out_m = exit_along(body, -d);
+  const Vec3 d_T = R_WT.transpose() * d;
+  RegionExtent extent;
+  Vec3 center_sum = Vec3::Zero(), plain_sum = Vec3::Zero(), deepest_W_m = Vec3::Zero();
+  int kept = 0;
+  for (int i = 0; i < points.count; ++i) {
+    auto k = static_cast<std::size_t>(i);
+    const double cos_theta = points.nx_T[k] * d_T.x() + points.ny_T[k] * d_T.y() + points.nz_T[k] * d_T.z();
+    if (cos_theta < 0.0) continue;
+    if (kept != i) points.move(i, kept);
+    k = static_cast<std::size_t>(kept++);
+    const Vec3 p_W(points.x_W_m[k], points.y_W_m[k], points.z_W_m[k]);
+    const double depth_m = way_out_m(p_W);
+    points.cos_theta[k] = cos_theta;
+    points.depth_m[k] = depth_m;
+    const double projected_m2 = points.area_m2[k] * cos_theta;
+    if (points.spread) {
+      const Vec3 closest_normal(points.rest_nx_W[k], points.rest_ny_W[k], points.rest_nz_W[k]);
+      set_rises(points, k, R_WT, d, exit_normal(body, way_out_m, p_W, depth_m, d, closest_normal));
+    }
+    const Vec3 on_surface_m = p_W - depth_m * d;
+    if (kept == 1 || depth_m > extent.deepest_m) {
+      extent.deepest_m = depth_m;
+      deepest_W_m = p_W;
+    }
+    extent.area_m2 += projected_m2;
+    center_sum += projected_m2 * on_surface_m;
+    plain_sum += on_surface_m;
+  }
+  points.count = kept;
+  if (kept > 0) extent.thickness_m = extent.deepest_m + exit_along(body, d)(deepest_W_m);
+  // Samples that all stand on edge cover no area: each counts the same.
+  if (extent.area_m2 > 0.0) {
+    extent.center_W_m = center_sum / extent.area_m2;
+  } else if (kept > 0) {
+    extent.center_W_m = plain_sum / kept;
+  }
+  return extent;
+}
+
+template <class Body>
+double exit_distance(const scene::Shape& shape, const Vec3& p_W_m, const Vec3& direction) noexcept {
+  return exit_along(static_cast<const Body&>(shape), direction)(p_W_m);
+}
+
+template <class Body>
+constexpr Detection detection_of{&find_inside<Body>, &find_cells<Body>,     &summarise<Body>,
+                                 &pull_back<Body>,   &measure_depths<Body>, &exit_distance<Body>};
+
+}  // namespace
+
+namespace {
+
+constexpr int columns = 24;  // of doubles
+
+/// Columns that lie a power of two apart would share a few lines of the cache.
+std::size_t stride(std::size_t capacity) noexcept { return (capacity / 8 | 1) * 8 + 16; }
+
+constexpr std::size_t of_a_sample = 11, of_a_piece = 20;
+
+/// First those that detection fills for every point, then those that it fills for a piece of surface.
+std::array<double**, columns> columns_of(RegionPoints& p) noexcept {
+  return {&p.x_W_m,     &p.y_W_m,     &p.z_W_m,     &p.x_T_m,   &p.y_T_m,     &p.z_T_m,   &p.nx_T,
+          &p.ny_T,      &p.nz_T,      &p.area_m2,   &p.depth_m,  //
+          &p.rest_nx_W, &p.rest_ny_W, &p.rest_nz_W, &p.e1x_T_m, &p.e1y_T_m,   &p.e1z_T_m, &p.e2x_T_m,
+          &p.e2y_T_m,   &p.e2z_T_m,   &p.rise1_m,   &p.rise2_m, &p.cos_theta, &p.share};
+}
+
+}  // namespace
+
+void RegionPoints::move(int from, int to) noexcept {
+  const auto i = static_cast<std::size_t>(from), k = static_cast<std::size_t>(to);
+  for (double* column : {x_W_m, y_W_m, z_W_m, x_T_m, y_T_m, z_T_m, nx_T, ny_T, nz_T, area_m2, depth_m})
+    column[k] = column[i];
+  sample[k] = sample[i];
+  if (!spread) return;
+  for (double* column : {rest_nx_W, rest_ny_W, rest_nz_W, e1x_T_m, e1y_T_m, e1z_T_m, e2x_T_m, e2y_T_m, e2z_T_m})
+    column[k] = column[i];
+  cell[k] = cell[i];
+}
+
+void RegionPoints::reorder(std::span<const std::int32_t> order, double* scratch) noexcept {
+  const auto through_scratch = [&](auto* column) {
+    for (std::size_t k = 0; k < order.size(); ++k)
+      scratch[k] = static_cast<double>(column[static_cast<std::size_t>(order[k])]);
+    for (std::size_t k = 0; k < order.size(); ++k)
+      column[k] = static_cast<std::remove_reference_t<decltype(*column)>>(scratch[k]);
+  };
+  const auto all = columns_of(*this);
+  for (std::size_t c = 0; c < (spread ? of_a_piece : of_a_sample); ++c) through_scratch(*all[c]);
+  through_scratch(sample);
+  if (spread) {
+    for (std::size_t k = 0; k < order.size(); ++k)
+      scratch[k] = std::bit_cast<double>(cell[static_cast<std::size_t>(order[k])]);
+    for (std::size_t k = 0; k < order.size(); ++k) cell[k] = std::bit_cast<const SurfaceCell*>(scratch[k]);
+  }
+  count = static_cast<int>(order.size());
+}
+
+RegionPoints RegionPoints::slice(int begin, int size) const noexcept {
+  RegionPoints part = *this;
+  for (double** column : columns_of(part)) *column += begin;
+  part.cell += begin;
+  part.sample += begin;
+  part.count = part.capacity = size;
+  return part;
+}
+
+PointStore::PointStore(int capacity)
+    : numbers_(columns * stride(static_cast<std::size_t>(capacity))),
+      cells_(static_cast<std::size_t>(capacity)),
+      samples_(static_cast<std::size_t>(capacity)) {}
+
+RegionPoints PointStore::window() noexcept {
+  RegionPoints points;
+  double* next = numbers_.data();
+  for (double** column : columns_of(points)) {
+    *column = next;
+    next += stride(samples_.size());
+  }
+  points.cell = cells_.data();
+  points.sample = samples_.data();
+  points.capacity = capacity();
+  return points;
+}
+
+Detection detection_for(scene::BodyShape shape) noexcept {
+  switch (shape) {
+    case scene::BodyShape::box:
+      return detection_of<scene::Box>;
+    case scene::BodyShape::sphere:
+      return detection_of<scene::Sphere>;
+    case scene::BodyShape::ellipsoid:
+      return detection_of<scene::Ellipsoid>;
+    case scene::BodyShape::revolution:
+      return detection_of<scene::Revolution>;
+  }
+  return {};
+}
+
+Vec3 direction_from(const InsideSummary& inside, const Vec3& otherwise) noexcept {
+  const double length = inside.normal_sum.norm();
+  if (!(length > 1e-6 * inside.weight_sum)) return otherwise;
+  return -inside.normal_sum / length;
+}
+
+Vec3 follow_direction(const Vec3& d, const InsideSummary& inside) noexcept {
+  const double length = inside.normal_sum.norm();
+  const bool normals_agree = length > 0.5 * inside.weight_sum;
+  const bool same_side = -inside.normal_sum.dot(d) > 0.0;
+  return normals_agree && same_side ? Vec3(-inside.normal_sum / length) : d;
+}
+
+}  // namespace touchstone::fast

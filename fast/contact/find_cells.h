@@ -1,0 +1,65 @@
+// Finds what of the tool's surface is inside the body, cell by cell: cells that the rest surface cuts give what is
+// below it, and where few are inside they are halved.
+#pragma once
+
+#include "fast/contact/contact_detection.h"
+#include "fast/contact/rest_distance.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace touchstone::fast {
+
+/// How the tool's cells become points.
+struct CellRule {
+  int points = 1;          ///< fewer than these are too few
+  double rim_share = 1.0;  ///< of the area inside, in cut cells; more than that is too much
+};
+
+/// Halved cells that find_cells() looks at in a tick, at most.
+inline constexpr int max_cells = 1024;
+
+/// A cell at its place.
+struct PlacedCell {
+  const SurfaceCell* cell;
+  scene::Vec3 p_W;    ///< its centre
+  RestDistance rest;  ///< of that
+  double lowest_m;    ///< signed distance of its lowest corner from the tangent plane of the rest surface
+};
+
+/// What find_cells() writes on its way. Halves are kept, since a contact mostly asks for those of the last tick; the
+/// answer never depends on which are.
+class CellScratch {
+ public:
+  /// @param samples of the tool; 0 where cells are not asked for
+  explicit CellScratch(int samples);
+  /// Makes room for a tick's halves.
+  void begin() noexcept;
+  /// The first of the two halves of a sample's cell, or of a half; the second follows it.
+  [[nodiscard]] std::int32_t halves_of_sample(const ToolSamples& tool, std::int32_t sample) noexcept;
+  [[nodiscard]] std::int32_t halves_of_half(const ToolSamples& tool, std::int32_t half) noexcept;
+  [[nodiscard]] const SurfaceCell& half(std::int32_t index) const noexcept {
+    return halves_[static_cast<std::size_t>(index)];
+  }
+  [[nodiscard]] std::size_t memory_bytes() const noexcept;
+
+  std::vector<std::int32_t> now, near;  ///< cells of a round, and those of them that are near the body
+  std::vector<PlacedCell> placed;       ///< those and what else is looked for
+
+ private:
+  [[nodiscard]] std::int32_t halves_of(const ToolSamples& tool, const SurfaceCell& cell, std::int32_t& first) noexcept;
+  std::vector<SurfaceCell> halves_;
+  std::vector<std::int32_t> of_half_, of_sample_;  ///< the first half of each, -1 for not known
+  std::size_t used_ = 0;
+};
+
+/// Fills `points` with what lies inside the rest surface of the tool's cells, one point for each at the middle of that
+/// part and with its area. Where the points are too few, or too much of the area is in cut cells, all cells near the
+/// body are halved, and again, as far as there is room.
+/// @param margin_m what lies outside, but for less than that, are points too, of negative depth
+template <class Body>
+InsideSummary find_cells(const scene::Shape&, const ToolSamples&, const Placement&, const CellRule&, double margin_m,
+                         RegionPoints&, CellScratch&) noexcept;
+
+}  // namespace touchstone::fast

@@ -1,0 +1,28 @@
+// How the tool's mass is shared out over the points of a contact region, appendix III.
+#pragma once
+
+#include "fast/contact/contact_detection.h"
+
+namespace touchstone::fast {
+
+/// Sets share[i] = m_i / m of every point, from r_i (distance of p_i from the line through the tool's mass centre along
+/// d), theta_i and A_i. Shares are >= 0 and sum to 1; where all weights vanish they are uniform.
+/// @param d_T unit direction of deformation in tool coordinates
+/// @param groups of the tool's cells
+using DistributeMass = void (*)(const scene::Vec3& d_T, const CellGroups& groups, RegionPoints& points) noexcept;
+
+/// As printed: m_i ~ r_i cos(theta_i). Errata E6: the printed formula contradicts the text beside it; a point under the
+/// mass centre gets nothing. Guarded where the sum vanishes.
+void distribute_mass_published(const scene::Vec3& d_T, const CellGroups& groups, RegionPoints& points) noexcept;
+
+/// Errata E6: m_i is the integral of 1 / r over the point's area projected along d, which is the text's "inversely
+/// proportional", and the depth d_i becomes the mean depth over that area weighted by 1 / r. Both are exact to second
+/// order in the size of the area over r. Nearer to the mass centre the integral is that over the cell's shape, or over
+/// a disc for a cut cell. So the sum over the points tends to the integral over the contact, however few they are.
+void distribute_mass_corrected(const scene::Vec3& d_T, const CellGroups& groups, RegionPoints& points) noexcept;
+
+/// Mean of 1 / r over a disc [1/m], r the distance from a point of the disc's plane.
+/// @param r2_m2 squared distance of that point from the disc's centre; @param disc_radius_m > 0
+[[nodiscard]] double mean_inverse_distance_per_m(double r2_m2, double disc_radius_m) noexcept;
+
+}  // namespace touchstone::fast

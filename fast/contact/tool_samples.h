@@ -1,0 +1,58 @@
+// Points of the tool's surface that feel contact, and the bounding-sphere tree that finds them (sections III, IV-C).
+// The paper takes the vertices of the tool's mesh "provided that these vertex points are evenly distributed"; sampling
+// the surface makes that true for any tool.
+#pragma once
+
+#include "fast/contact/surface_cells.h"
+#include "scene/model/scene.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace touchstone::fast {
+
+/// Samples in a leaf of the tree, at most.
+inline constexpr std::int32_t tool_leaf_size = 8;
+
+/// Balls around the samples [begin, end) in tool coordinates, and around their cells. Nodes stand in depth-first order:
+/// the first child of an inner node follows it, and `next` is the node to visit when this one's samples are done with.
+struct SampleBall {
+  scene::Vec3 center_T_m;
+  double radius_m = 0.0;        ///< of the ball with the samples
+  double cells_radius_m = 0.0;  ///< of the one with their cells
+  std::int32_t begin = 0, end = 0;
+  std::int32_t next = 0;
+  bool leaf = true;
+};
+
+/// Evenly spread points of the tool's surface, each with outward normal and share of the surface, in the order of the
+/// tree's leaves. Frame T: its origin is the tool's mass centre.
+struct ToolSamples {
+  std::vector<double> x_T_m, y_T_m, z_T_m;
+  std::vector<double> nx_T, ny_T, nz_T;
+  std::vector<double> area_m2;    ///< A_i; sums to the surface
+  std::vector<SurfaceCell> cell;  ///< of each sample, together the surface; only of cell_tool()
+  CellGroups groups;              ///< of a fine mesh
+  double spacing_m = 0.0;         ///< sqrt(surface / count)
+  std::vector<SampleBall> tree;   ///< root first
+
+  [[nodiscard]] int count() const noexcept { return static_cast<int>(x_T_m.size()); }
+  [[nodiscard]] std::size_t memory_bytes() const noexcept;
+};
+
+/// Samples of any tool, each for nearly the same area, together for all of it. Their number is about `count` and at
+/// most twice that, but for the least a tool needs: four in each ring, one on each face or triangle that stands alone.
+/// - sphere: of equal area
+/// - capsule, cylinder: rings of evenly spaced points, at least two along each piece of the profile
+/// - box: a grid on every face
+/// - mesh: triangles are halved at their longest side until small enough; of a finer mesh, neighbouring triangles that
+///   look the same way share a sample, at the one nearest their middle. Those of a convex mesh are shared out evenly:
+///   their number is that of the shape it may stand for, to some percent
+/// The pattern is mirrored where the tool is, so a straight press has no side force or torque of the sampling's making.
+/// Samples stand within the faces, none on an edge or corner.
+[[nodiscard]] ToolSamples sample_tool(const scene::Tool& tool, int count);
+
+/// The same with their cells; of a sphere in rings, too.
+[[nodiscard]] ToolSamples cell_tool(const scene::Tool& tool, int count);
+
+}  // namespace touchstone::fast

@@ -1,0 +1,44 @@
+// What a track has in it before any law: the one contact region of every tick, found and measured, for the many times
+// that a fit runs the same track with other constants.
+#pragma once
+
+#include "fast/step/press.h"
+#include "fast/run/ticks.h"
+
+#include <optional>
+#include <vector>
+
+namespace touchstone::fast {
+
+/// One tick.
+struct RecordedTick {
+  int instant = -1;        ///< place among the instants; -1 for a tick between them
+  bool in_region = false;  ///< something of the tool is inside
+  bool created = false;    ///< for the first time
+  Motion motion;
+  scene::Vec3 d = scene::Vec3::Zero();
+  RegionExtent extent;
+  DeformationOrigin origin;  ///< as the points have it, without friction's drag
+  int points = 0;
+  bool spread = false;          ///< RegionPoints::spread
+  std::vector<double> numbers;  ///< x_T, y_T, z_T, depth, rises and share of every point, column by column
+};
+
+/// The ticks on which the answer at the instants hangs: all of them with friction, which remembers; else the instants.
+/// Nothing where the constants might decide which samples make up which region: a tool that may have several regions
+/// has one at every tick, whatever the constants, if
+/// - it has no friction, so that no anchor point moves further than the tick's deepest sample is deep and the surface
+///   stands out of the rest one by no more than that;
+/// - at every tick the samples inside are one cluster, and every sample outside but within reach of the last tick's
+///   surface is nearer than r_th to one inside, so that it joins them or is left out;
+/// - from tick to tick it keeps a sample, and once it has left the body nothing is within reach.
+/// @param bytes_max  a recording that would take more is given up
+[[nodiscard]] std::optional<std::vector<RecordedTick>> record_one_region(const FastModel& model,
+                                                                         const scene::Scene& scene,
+                                                                         std::size_t bytes_max);
+
+/// Puts the tick into the first region of a state, as find_one_region() and measure() leave it. The state borrows the
+/// tick's points.
+void recall(const RecordedTick& tick, FastState& state) noexcept;
+
+}  // namespace touchstone::fast

@@ -1,0 +1,70 @@
+// Everything the real-time step knows before the first contact. Built once from a scene, constant after that.
+#pragma once
+
+#include "fast/skeleton/anchor_points.h"
+#include "fast/skeleton/beam_skeleton.h"
+#include "fast/contact/contact_detection.h"
+#include "fast/contact/contact_law.h"
+#include "fast/contact/contact_regions.h"
+#include "fast/contact/find_cells.h"
+#include "fast/contact/friction.h"
+#include "fast/surface/interpolation.h"
+#include "fast/surface/local_factor.h"
+#include "fast/contact/mass_distribution.h"
+#include "fast/surface/normals.h"
+#include "fast/surface/region_shapes.h"
+#include "fast/surface/surface_patches.h"
+#include "fast/contact/tool_samples.h"
+#include "scene/model/scene.h"
+#include "scene/shape/surface.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+namespace touchstone::fast {
+
+/// The stages in which the published and the corrected formulation differ, chosen when the model is built.
+struct Formulas {
+  std::optional<CellRule> cells;  ///< how the tool's cells become points; without, its samples are the points
+  DistributeMass distribute_mass = nullptr;
+  ResolveFriction resolve_friction = nullptr;  ///< null where the scene has no friction: there is no such stage
+  SplitForce split_force = nullptr;
+  Interpolate interpolate = nullptr;
+  ApplyLocalFactor apply_local_factor = nullptr;  ///< null where C_n = 0: there is no such stage
+  SeveralRegions several;                         ///< only asked where the model has several regions
+  [[nodiscard]] bool local_factor() const noexcept { return apply_local_factor != nullptr; }
+};
+
+/// The constant part of the fast model.
+struct FastModel {
+  /// Allocates and precomputes; throws std::bad_alloc only.
+  /// @param scene validated
+  explicit FastModel(const scene::Scene& scene);
+
+  /// Takes over the constants of the laws, the skeleton and the local factor from a scene that differs in nothing else.
+  void set_constants(const scene::Scene& scene);
+
+  std::unique_ptr<const scene::Shape> body;  ///< rest shape
+  Detection detection;
+  ToolSamples tool;
+  ContactLaw law;
+  std::optional<FrictionLaw> friction;
+  std::unique_ptr<const AnchorPoints> anchors;
+  BeamSkeleton skeleton;
+  LocalConstants local;
+  scene::Surface surface;  ///< rest points and triangles in full precision
+  SurfacePatches rest;
+  NormalStencils normals;
+  Formulas formulas;
+  std::unique_ptr<const ClusterGrid> clusters;  ///< null where the model has one region
+  int max_regions = 1;                          ///< capacity; 1 for a convex tool
+
+  /// Points of a tick, at most: two for each cell, its part inside and, for several regions, the one outside.
+  [[nodiscard]] int max_points() const noexcept {
+    return formulas.cells ? 2 * std::max(tool.count(), max_cells / 2) : tool.count();
+  }
+  [[nodiscard]] std::size_t memory_bytes() const noexcept;
+};
+
+}  // namespace touchstone::fast

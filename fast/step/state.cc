@@ -1,0 +1,80 @@
+#include "fast/step/state.h"
+
+#include "fast/step/several_regions.h"
+
+#include <algorithm>
+
+namespace touchstone::fast {
+
+using scene::Vec3;
+
+std::string status_text(std::uint32_t status) {
+  std::string text;
+  const auto add = [&](StepStatus bit, const char* words) {
+    if ((status & static_cast<std::uint32_t>(bit)) == 0) return;
+    text += (text.empty() ? "" : ", ") + std::string(words);
+  };
+  add(StepStatus::not_finite, "pose not finite, last good answer held");
+  add(StepStatus::depth_limited, "depth limited to half of the body's thickness");
+  add(StepStatus::law_saturated, "contact law saturated at its peak");
+  add(StepStatus::regions_full, "more contact regions than fast.max_regions, the smallest left out");
+  add(StepStatus::contact_missed,
+      "contact missed: the tool is inside the body, no sample of it is (raise fast.tool_samples)");
+  add(StepStatus::anchors_limited, "anchor displacement limited to that of the contact (raise fast.s_c_m2)");
+  return text.empty() ? "ok" : text;
+}
+
+void ContactRegion::clear() noexcept {
+  active = met = false;
+  id = 0;
+  d = -Vec3::UnitZ();
+  depth_rel = 0.0;
+  points.count = 0;
+  extent = {};
+  origin = {};
+  force = {};
+  friction = {};
+  displacement_m.setZero();
+  ends.clear();
+}
+
+FastState::FastState(const FastModel& model)
+    : store(model.max_points()),
+      cells(model.formulas.cells ? model.tool.count() : 0),
+      probe(model.max_points()),
+      regions(static_cast<std::size_t>(model.max_regions), ContactRegion(model.skeleton.anchor_m.size())),
+      field(model.rest),
+      several(model.max_regions > 1 ? std::make_unique<SeveralRegionsState>(model) : nullptr) {}
+
+FastState::~FastState() = default;
+
+bool FastState::in_contact() const noexcept {
+  return std::any_of(regions.begin(), regions.begin() + region_count,
+                     [](const ContactRegion& region) { return region.pressing(); });
+}
+
+std::size_t FastState::memory_bytes() const noexcept {
+  return sizeof(FastState) + (several ? several->memory_bytes() : 0) + store.memory_bytes() + cells.memory_bytes() +
+         probe.memory_bytes() + field.memory_bytes() +
+         regions.size() * (sizeof(ContactRegion) + 2 * regions[0].ends.force_n.size() * sizeof(Vec3));
+}
+
+Vec3 total_force_n(const FastState& state) noexcept {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < state.region_count; ++i) sum += state.regions[static_cast<std::size_t>(i)].force.force_n;
+  return sum;
+}
+
+Vec3 total_torque_nm(const FastState& state) noexcept {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < state.region_count; ++i) sum += state.regions[static_cast<std::size_t>(i)].force.torque_nm;
+  return sum;
+}
+
+Vec3 support_force_n(const FastState& state) noexcept {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < state.region_count; ++i) sum += support_force_n(state.regions[static_cast<std::size_t>(i)].ends);
+  return sum;
+}
+
+}  // namespace touchstone::fast

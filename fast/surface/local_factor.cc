@@ -1,0 +1,116 @@
+#include "fast/surface/local_factor.h"
+
+#include "fast/surface/local_factor_kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace touchstone::fast {
+namespace {
+
+using scene::Vec3;
+
+/// w_p of a point contact.
+double point_factor(const LocalConstants& c, double r_m) noexcept {
+  return 1.0 + c.C_n * std::log((r_m + c.C_r_m) / (c.r_R_m + c.C_r_m));
+}
+
+/// Of a disc of the region's area: nearer points are in contact.
+double contact_radius_m(const RegionSize& size) noexcept { return std::sqrt(size.area_m2 / std::numbers::pi); }
+
+/// 0 below 0, 1 above 1, flat at both ends.
+double smoothstep(double t) noexcept {
+  const double x = std::clamp(t, 0.0, 1.0);
+  return x * x * (3.0 - 2.0 * x);
+}
+
+/// Share of the displacement that a region this many times as large as a point contact leaves.
+double area_part(double points) noexcept { return 1.0 / (1.0 + std::log(std::max(1.0, points))); }
+
+double point_areas(const LocalConstants& c, const RegionSize& size) noexcept {
+  return size.area_m2 / (std::numbers::pi * c.C_r_m * c.C_r_m);  // A / A_0
+}
+
+FactorTerms terms(const LocalConstants& c, const RegionSize& size, double points) noexcept {
+  FactorTerms out;
+  out.C_n = static_cast<float>(c.C_n);
+  out.C_r_m = static_cast<float>(c.C_r_m);
+  out.inverse_C_r_per_m = static_cast<float>(1.0 / c.C_r_m);
+  out.inverse_r_R_per_m = static_cast<float>(1.0 / c.r_R_m);
+  out.inverse_reach_per_m = static_cast<float>(1.0 / (c.r_R_m + c.C_r_m));
+  out.area_part = static_cast<float>(area_part(points));
+  out.rim_m = static_cast<float>(contact_radius_m(size));
+  return out;
+}
+
+template <class Factor>
+TOUCHSTONE_INLINE void apply(const SurfacePatches& rest, const LocalConstants& constants, const RegionSize& size,
+                             const Vec3& p0_W_m, SurfaceField& field) noexcept {
+  const FactorTerms terms = Factor::terms(constants, size);
+  const Eigen::Vector3f p0_m = p0_W_m.cast<float>();
+  const auto r_R_m2 = static_cast<float>(constants.r_R_m * constants.r_R_m);
+  const float *rx = rest.rest_W_m[0].data(), *ry = rest.rest_W_m[1].data(), *rz = rest.rest_W_m[2].data();
+  float *x = field.displacement_m[0].data(), *y = field.displacement_m[1].data(), *z = field.displacement_m[2].data();
+  for (const Patch& patch : rest.patches) {
+    if (patch.all.distance2_m2(p0_m) >= r_R_m2) continue;
+    for (std::int32_t b = patch.first_block; b < patch.last_block; ++b) {
+      const VertexBlock& block = rest.blocks[static_cast<std::size_t>(b)];
+      if (block.distance2_m2(p0_m) >= r_R_m2) continue;
+      const auto begin = static_cast<std::size_t>(block.begin), end = static_cast<std::size_t>(block.end);
+      // Columns never overlap.
+#pragma GCC ivdep
+      for (std::size_t v = begin; v < end; ++v) {
+        const float dx = rx[v] - p0_m.x(), dy = ry[v] - p0_m.y(), dz = rz[v] - p0_m.z();
+        const float r2_m2 = dx * dx + dy * dy + dz * dz;
+        const float inside = Factor::at(terms, std::sqrt(r2_m2));
+        const float w = r2_m2 < r_R_m2 ? inside : 1.0f;
+        x[v] *= w;
+        y[v] *= w;
+        z[v] *= w;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+double local_factor_published(const LocalConstants& c, const RegionSize& size, double r_m) noexcept {
+  return local_room_published(c, size, r_m) == 0.0 ? 1.0 : point_factor(c, r_m) * area_part(size.points);
+}
+
+double local_factor_corrected(const LocalConstants& c, const RegionSize& size, double r_m) noexcept {
+  const double area = area_part(point_areas(c, size));
+  const double w = std::max(0.0, point_factor(c, r_m)) * (area + (1.0 - area) * smoothstep(r_m / c.r_R_m));
+  return 1.0 + local_room_corrected(c, size, r_m) * (w - 1.0);
+}
+
+double local_room_published(const LocalConstants&, const RegionSize& size, double r_m) noexcept {
+  return r_m <= contact_radius_m(size) ? 0.0 : 1.0;
+}
+
+double local_room_corrected(const LocalConstants& c, const RegionSize& size, double r_m) noexcept {
+  return smoothstep((r_m - contact_radius_m(size)) / c.C_r_m);
+}
+
+FactorTerms FactorPublished::terms(const LocalConstants& c, const RegionSize& size) noexcept {
+  return fast::terms(c, size, size.points);
+}
+
+FactorTerms FactorCorrected::terms(const LocalConstants& c, const RegionSize& size) noexcept {
+  return fast::terms(c, size, point_areas(c, size));
+}
+
+TOUCHSTONE_WIDE_LOOPS
+void apply_local_factor_published(const SurfacePatches& rest, const LocalConstants& constants, const RegionSize& size,
+                                  const Vec3& p0_W_m, SurfaceField& field) noexcept {
+  apply<FactorPublished>(rest, constants, size, p0_W_m, field);
+}
+
+TOUCHSTONE_WIDE_LOOPS
+void apply_local_factor_corrected(const SurfacePatches& rest, const LocalConstants& constants, const RegionSize& size,
+                                  const Vec3& p0_W_m, SurfaceField& field) noexcept {
+  apply<FactorCorrected>(rest, constants, size, p0_W_m, field);
+}
+
+}  // namespace touchstone::fast

@@ -1,0 +1,385 @@
+#include "scene/input/fields.h"
+
+#include "scene/base/text.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace touchstone::scene {
+namespace {
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+Range between(double low, double high) { return {low, high, false, false}; }
+Range above(double low, double high = inf) { return {low, high, true, high == inf}; }
+
+template <class Enum, class T = Scene>
+Choice<T> choice(std::vector<std::string_view> names, Enum& (*member)(T&)) {
+  return {std::move(names), [member](const T& object) { return static_cast<int>(member(const_cast<T&>(object))); },
+          [member](T& object, int value) { member(object) = static_cast<Enum>(value); }};
+}
+
+// A table reads best with one key per row.
+// clang-format off
+
+/// The keys that give a convex solid its dimensions, each only with its shape.
+/// @param keys  shape and the five dimensions, with the prefix of their table
+template <class T, Solid& (*solid)(T&)>
+std::vector<Field<T>> solid_fields(const std::array<std::string_view, 6>& keys, const std::array<std::string_view, 4>& conditions) {
+  const std::string_view shape = keys[0];
+  const Condition<T> box{shape, conditions[0], [](const T& t) { return solid(const_cast<T&>(t)).shape == BodyShape::box; }},
+      sphere{shape, conditions[1], [](const T& t) { return solid(const_cast<T&>(t)).shape == BodyShape::sphere; }},
+      ellipsoid{shape, conditions[2], [](const T& t) { return solid(const_cast<T&>(t)).shape == BodyShape::ellipsoid; }},
+      revolution{shape, conditions[3], [](const T& t) { return solid(const_cast<T&>(t)).shape == BodyShape::revolution; }};
+  return {
+      {shape, "", Range{}, {}, Side::shared, choice<BodyShape, T>({"box", "sphere", "ellipsoid", "revolution"}, +[](T& t) -> BodyShape& { return solid(t).shape; }), {},
+           "Shape of the elastic solid, convex; a body's lowest point is on z = 0, its centre on the z axis."},
+      {keys[1], "m", between(1e-4, 10.0), {}, Side::shared, +[](T& t) -> Vec3& { return solid(t).size_m; }, box,
+           "Edge lengths of the box along x, y, z."},
+      {keys[2], "m", between(1e-4, 10.0), {}, Side::shared, +[](T& t) -> double& { return solid(t).radius_m; }, sphere,
+           "Radius of the sphere."},
+      {keys[3], "m", between(1e-4, 10.0), {}, Side::shared, +[](T& t) -> Vec3& { return solid(t).semi_axes_m; }, ellipsoid,
+           "Semi-axes of the ellipsoid along x, y, z."},
+      {keys[4], "m", between(-10.0, 10.0), {}, Side::shared, +[](T& t) -> std::vector<Eigen::Vector2d>& { return solid(t).profile.rz_m; }, revolution,
+           "Corners [r, z] of the profile, from its lowest point on the axis up to its highest; r = 0 at both."},
+      {keys[5], "m", between(0.0, 100.0), "[]", Side::shared, +[](T& t) -> std::vector<double>& { return solid(t).profile.arc_radius_m; }, revolution,
+           "For each piece between two corners the radius of an arc that bulges outwards, 0 for a straight piece; empty: all straight."},
+  };
+}
+
+/// A default need not be more exact, and reads better.
+double three_digits(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return std::strtod(text.data(), nullptr);
+}
+
+Solid& solid_of(Scene& scene) { return scene.body; }
+Solid& solid_of(Inclusion& inclusion) { return inclusion; }
+
+std::vector<Field<Scene>> make_scene_fields() {
+  using S = Scene;
+  const std::optional<Condition<S>> always,
+      body_round = Condition<S>{"body.shape", "a body without a flat bottom", [](const S& s) { return !s.body.flat_bottom(); }},
+      tool_round = Condition<S>{"tool.shape", "tool.shape = \"sphere\", \"capsule\" or \"cylinder\"", [](const S& s) { return s.tool.shape == ToolShape::sphere || s.tool.shape == ToolShape::capsule || s.tool.shape == ToolShape::cylinder; }},
+      tool_long = Condition<S>{"tool.shape", "tool.shape = \"capsule\" or \"cylinder\"", [](const S& s) { return s.tool.shape == ToolShape::capsule || s.tool.shape == ToolShape::cylinder; }},
+      tool_cylinder = Condition<S>{"tool.shape", "tool.shape = \"cylinder\"", [](const S& s) { return s.tool.shape == ToolShape::cylinder; }},
+      tool_box = Condition<S>{"tool.shape", "tool.shape = \"box\"", [](const S& s) { return s.tool.shape == ToolShape::box; }},
+      tool_mesh = Condition<S>{"tool.shape", "tool.shape = \"mesh\"", [](const S& s) { return s.tool.shape == ToolShape::mesh; }},
+      duffing = Condition<S>{"contact.law", "contact.law = \"duffing\"", [](const S& s) { return s.contact.law == ContactLaw::duffing; }},
+      area_aware = Condition<S>{"contact.law", "contact.law = \"area_aware\"", [](const S& s) { return s.contact.law == ContactLaw::area_aware; }},
+      friction = Condition<S>{"contact.friction", "[contact.friction] given", [](const S& s) { return s.contact.friction.has_value(); }};
+  const std::optional<std::string_view> required, absent;
+  constexpr Side shared = Side::shared, fast = Side::fast, reference = Side::reference, compare = Side::compare;
+  const Range any;
+  std::vector<Field<S>> fields = {
+      // key, unit, range, default, who reads it, where it lives, when it applies,
+      //     meaning
+      {"title", "", any, "\"\"", compare, +[](S& s) -> std::string& { return s.title; }, always,
+           "What the scene shows, for reports."},
+
+      {"body.support", "", any, "\"bottom\"", shared, choice({"bottom"}, +[](S& s) -> Support& { return s.body.support; }), always,
+           "Which surface region is held: a flat bottom face, else the lowest cap."},
+      {"body.support_height_m", "m", above(0.0, 10.0), required, shared, +[](S& s) -> double& { return s.body.support_height_m; }, body_round,
+           "The surface below this height is held."},
+      {"body.material.youngs_modulus_pa", "Pa", above(0.0, 1e13), required, shared, +[](S& s) -> double& { return s.body.material.youngs_modulus_pa; }, always,
+           "Young's modulus E of the body."},
+      {"body.material.poissons_ratio", "", between(0.0, 0.5), required, shared, +[](S& s) -> double& { return s.body.material.poissons_ratio; }, always,
+           "Poisson's ratio nu; exactly 0.5 is incompressible."},
+
+      {"tool.shape", "", any, required, shared, choice({"sphere", "capsule", "cylinder", "box", "mesh"}, +[](S& s) -> ToolShape& { return s.tool.shape; }), always,
+           "Shape of the rigid tool; capsule and cylinder lie along the tool's z axis."},
+      {"tool.radius_m", "m", between(1e-5, 10.0), required, shared, +[](S& s) -> double& { return s.tool.radius_m; }, tool_round,
+           "Radius of the tool."},
+      {"tool.length_m", "m", between(0.0, 10.0), required, shared, +[](S& s) -> double& { return s.tool.length_m; }, tool_long,
+           "Length of a capsule's straight part, or of a cylinder from end to end."},
+      {"tool.edge_radius_m", "m", between(0.0, 10.0), "0.0", shared, +[](S& s) -> double& { return s.tool.edge_radius_m; }, tool_cylinder,
+           "Radius of the fillet at both rims; 0 for sharp ones."},
+      {"tool.size_m", "m", between(1e-5, 10.0), required, shared, +[](S& s) -> Vec3& { return s.tool.size_m; }, tool_box,
+           "Edge lengths of the box along the tool's x, y, z."},
+      {"tool.file", "", any, required, shared, +[](S& s) -> std::string& { return s.tool.file; }, tool_mesh,
+           "Closed triangle mesh (.stl, .obj or .ply), its path relative to the scene file."},
+      {"tool.unit", "", any, required, shared, choice({"m", "cm", "mm", "in"}, +[](S& s) -> LengthUnit& { return s.tool.unit; }), tool_mesh,
+           "Unit of the mesh file's coordinates."},
+      {"tool.mass_kg", "kg", above(0.0, 1e3), "1.0", fast, +[](S& s) -> double& { return s.tool.mass_kg; }, always,
+           "Mass m of the tool; k1 and k3 hold its size already, only its shares over the contact points count."},
+      {"tool.mass_center_m", "m", between(-10.0, 10.0), absent, shared, +[](S& s) -> std::optional<Vec3>& { return s.tool.mass_center_m; }, always,
+           "Mass centre, from the shape's centre or in the mesh's own axes; a track gives its poses. Absent: that of a uniform solid."},
+
+      {"contact.law", "", any, "\"duffing\"", fast, choice({"duffing", "area_aware"}, +[](S& s) -> ContactLaw& { return s.contact.law; }), always,
+           "Contact law of the fast model."},
+      {"contact.k1_n_per_m", "N/m", between(0.0, 1e12), required, fast, +[](S& s) -> double& { return s.contact.k1_n_per_m; }, duffing,
+           "Linear constant k1 = m w0^2 of F = k1 D + k3 D^3."},
+      {"contact.k1_per_radius_n_per_m2", "N/m^2", between(0.0, 1e15), required, fast, +[](S& s) -> double& { return s.contact.k1_per_radius_n_per_m2; }, area_aware,
+           "k1 = this times the contact radius sqrt(A/pi), A the tool's area under the rest surface."},
+      {"contact.k3_n_per_m3", "N/m^3", between(-1e18, 1e18), required, fast, +[](S& s) -> double& { return s.contact.k3_n_per_m3; }, always,
+           "Cubic constant k3 = (3/4) m b0^2 eps; negative is a softening law."},
+      {"contact.friction.K", "N^(1-beta)", between(0.0, 1e6), required, shared, +[](S& s) -> double& { return s.contact.friction->K; }, friction,
+           "K of the static limit f_max = K F_n^beta; a scene without friction leaves the table out."},
+      {"contact.friction.beta", "", between(2.0 / 3.0, 1.0), required, shared, +[](S& s) -> double& { return s.contact.friction->beta; }, friction,
+           "beta of the static limit; 2/3 for a truly elastic solid."},
+      {"contact.friction.mu_D", "", between(0.0, 10.0), required, shared, +[](S& s) -> double& { return s.contact.friction->mu_D; }, friction,
+           "Dynamic friction coefficient."},
+      {"contact.friction.stiffness_ratio", "", between(1e-3, 1e3), "1.0", fast, +[](S& s) -> double& { return s.contact.friction->stiffness_ratio; }, friction,
+           "kappa: stiffness F_t / D_t of the stuck contact over F_n / D_n; 1 as in the paper. Only the corrected formulation has another."},
+
+      {"fast.formulation", "", any, "\"corrected\"", fast, choice({"published", "corrected"}, +[](S& s) -> Formulation& { return s.fast.formulation; }), always,
+           "The paper's printed method, or its corrected form."},
+      {"fast.triangles", "", between(12, 1e5), "3952", fast, +[](S& s) -> int& { return s.fast.triangles; }, always,
+           "Triangles on the body; their corners are the rest points compared. Times compare.instants at most 1e7."},
+      {"fast.tool_samples", "", between(1, 1e5), "2000", fast, +[](S& s) -> int& { return s.fast.tool_samples; }, always,
+           "Points on the tool's surface. The corrected form takes cells, a quarter as many, and smaller ones where few "
+           "are in contact."},
+      {"fast.rate_hz", "Hz", between(1.0, 1e5), "1000.0", fast, +[](S& s) -> double& { return s.fast.rate_hz; }, always,
+           "Ticks per second of virtual time."},
+      {"fast.max_regions", "", between(1, 64), "10", fast, +[](S& s) -> int& { return s.fast.max_regions; }, tool_mesh,
+           "Contact regions at a time; 1 takes all contact points as one region. A convex tool on a convex body has one."},
+      {"fast.r_th_m", "m", above(0.0, 1.0), required, fast, +[](S& s) -> double& { return s.fast.r_th_m; }, always,
+           "r_th: contact points closer than this belong to one contact region; a convex tool is always in one.",
+           +[](const S& s) { return three_digits(body_size_m(s.body) / 15.0); }, "L / 15"},
+      {"fast.r_R_m", "m", above(0.0, 10.0), required, fast, +[](S& s) -> double& { return s.fast.r_R_m; }, always,
+           "r_R: radius of the local neighbourhood R.",
+           +[](const S& s) { return three_digits(body_size_m(s.body) / 4.0); }, "L / 4"},
+      {"fast.C_n", "", between(0.0, 1e3), "0.2", fast, +[](S& s) -> double& { return s.fast.C_n; }, always,
+           "C_n: strength of the local factor; 0 leaves it out."},
+      {"fast.C_r_m", "m", above(0.0, 10.0), required, fast, +[](S& s) -> double& { return s.fast.C_r_m; }, always,
+           "C_r: core radius of the local factor.",
+           +[](const S& s) { return three_digits(body_size_m(s.body) / 30.0); }, "L / 30"},
+      {"fast.s_c_m2", "m^2", above(0.0, 1e3), required, fast, +[](S& s) -> double& { return s.fast.s_c_m2; }, always,
+           "s_c: cross-section area of all beams together.",
+           +[](const S& s) { return three_digits(body_size_m(s.body) * body_size_m(s.body) / 3.6); }, "L^2 / 3.6"},
+
+      {"live.force_max_n", "N", above(0.0, 1e4), "40.0", fast, +[](S& s) -> double& { return s.live.force_max_n; }, always,
+           "Device loop: largest norm of the force sent to the device."},
+      {"live.force_slew_n_per_s", "N/s", above(0.0, 1e9), "2.0e4", fast, +[](S& s) -> double& { return s.live.force_slew_n_per_s; }, always,
+           "Device loop: fastest change of that force."},
+      {"live.release_s", "s", above(0.0, 10.0), "0.1", fast, +[](S& s) -> double& { return s.live.release_s; }, always,
+           "Device loop: after a pose that is no placement the force falls to zero in this time."},
+      {"live.hand_mass_kg", "kg", above(0.0, 100.0), "0.2", fast, +[](S& s) -> double& { return s.live.hand_mass_kg; }, always,
+           "Virtual hand: its mass with the tool's handle."},
+      {"live.hand_damping_n_s_per_m", "N s/m", between(0.0, 1e4), "5.0", fast, +[](S& s) -> double& { return s.live.hand_damping_n_s_per_m; }, always,
+           "Virtual hand: damper between hand and track."},
+      {"live.hand_stiffness_n_per_m", "N/m", above(0.0, 1e6), "500.0", fast, +[](S& s) -> double& { return s.live.hand_stiffness_n_per_m; }, always,
+           "Virtual hand: spring between hand and track."},
+
+      {"reference.kinematics", "", any, "\"finite\"", reference, choice({"finite", "small"}, +[](S& s) -> Kinematics& { return s.reference.kinematics; }), always,
+           "Finite strain, or small strain for closed forms."},
+      {"reference.error", "", between(1e-4, 0.5), "0.01", reference, +[](S& s) -> double& { return s.reference.error; }, always,
+           "Meshes are refined until the uncertainties of force and shape, relative, are at most this."},
+      {"reference.levels", "", between(1, 9), absent, reference, +[](S& s) -> std::optional<int>& { return s.reference.levels; }, always,
+           "Number of refined meshes in place of reference.error; an uncertainty needs at least 3."},
+      {"reference.element_size_m", "m", above(0.0, 1.0), absent, reference, +[](S& s) -> std::optional<double>& { return s.reference.element_size_m; }, always,
+           "Element size under the tool on the coarsest mesh; chosen from the contact radius when absent."},
+
+      {"compare.instants", "", between(2, 2000), "25", shared, +[](S& s) -> int& { return s.compare.instants; }, always,
+           "Evenly spaced track instants at which both sides are recorded."},
+  };
+  const auto body = solid_fields<S, solid_of>(
+      {"body.shape", "body.size_m", "body.radius_m", "body.semi_axes_m", "body.profile_rz_m", "body.profile_arc_radius_m"},
+      {"body.shape = \"box\"", "body.shape = \"sphere\"", "body.shape = \"ellipsoid\"", "body.shape = \"revolution\""});
+  fields.insert(fields.begin() + 1, body.begin(), body.end());
+  return fields;
+}
+
+std::vector<Field<Inclusion>> make_inclusion_fields() {
+  using I = Inclusion;
+  std::vector<Field<I>> fields = solid_fields<I, solid_of>(
+      {"shape", "size_m", "radius_m", "semi_axes_m", "profile_rz_m", "profile_arc_radius_m"},
+      {"shape = \"box\"", "shape = \"sphere\"", "shape = \"ellipsoid\"", "shape = \"revolution\""});
+  fields.push_back({"center_m", "m", between(-10.0, 10.0), {}, Side::shared, +[](I& i) -> Vec3& { return i.center_m; }, {},
+       "Centre of the inclusion's bounding box in the body at rest."});
+  fields.push_back({"material.youngs_modulus_pa", "Pa", above(0.0, 1e13), {}, Side::shared, +[](I& i) -> double& { return i.material.youngs_modulus_pa; }, {},
+       "Young's modulus of the inclusion."});
+  fields.push_back({"material.poissons_ratio", "", between(0.0, 0.5), {}, Side::shared, +[](I& i) -> double& { return i.material.poissons_ratio; }, {},
+       "Poisson's ratio of the inclusion."});
+  return fields;
+}
+
+std::vector<Field<TrackRow>> make_track_fields() {
+  using R = TrackRow;
+  return {
+      {"time_s", "s", between(-1e5, 1e5), {}, Side::shared, +[](R& r) -> double& { return r.time_s; }, {},
+           "Time of the pose, increasing from row to row."},
+      {"position_m", "m", between(-1e3, 1e3), {}, Side::shared, +[](R& r) -> OpenPosition& { return r.position; }, {},
+           "Tool frame origin (mass centre) in the world."},
+      {"depth_m", "m", between(-1e3, 1e3), {}, Side::shared, +[](R& r) -> std::optional<double>& { return r.depth_m; }, {},
+           "In place of the height: how far the tool has moved straight down since it first touched the undeformed body; negative: so far before that."},
+      {"direction", "", between(-1e3, 1e3), {}, Side::shared, +[](R& r) -> std::optional<Vec3>& { return r.direction; }, {},
+           "Only with `depth_m`: the direction to move in, of any non-zero length, along the line through `position_m` = [x, y, z]. Absent: straight down, [0, 0, -1]."},
+      {"orientation_wxyz", "", between(-orientation_norm_max, orientation_norm_max), "[1.0, 0.0, 0.0, 0.0]", Side::shared, +[](R& r) -> Eigen::Quaterniond& { return r.orientation; }, {},
+           "Quaternion of the tool frame; it is normalised."},
+  };
+}
+// clang-format on
+
+}  // namespace
+
+std::string number_text(double value) {
+  char text[32];
+  const std::to_chars_result end = std::to_chars(text, text + sizeof text, value);
+  std::string out(text, end.ptr);
+  if (out.find_first_of(".en") == std::string::npos) out += ".0";
+  return out;
+}
+
+double body_size_m(const Body& body) {
+  const Bounds bounds = body_shape(body)->bounds();
+  return std::cbrt((bounds.upper_m - bounds.lower_m).prod());
+}
+
+std::optional<Eigen::Quaterniond> orientation_of(const Eigen::Quaterniond& q) {
+  if (!orientation_norm.contains(q.norm())) return std::nullopt;
+  // Dividing by a length that differs from one by rounding alone would change the last digits at every reading.
+  constexpr double rounding = 2e-15;
+  return std::abs(q.squaredNorm() - 1.0) < rounding ? q : q.normalized();
+}
+
+bool Range::contains(double value) const noexcept {
+  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+}
+
+std::string Range::text() const {
+  char out[80];
+  std::snprintf(out, sizeof out, "%c%g, %g%c", low_open ? '(' : '[', low, high, high_open ? ')' : ']');
+  return out;
+}
+
+const std::vector<Field<Scene>>& scene_fields() {
+  static const std::vector<Field<Scene>> fields = make_scene_fields();
+  return fields;
+}
+
+const std::vector<Field<Inclusion>>& inclusion_fields() {
+  static const std::vector<Field<Inclusion>> fields = make_inclusion_fields();
+  return fields;
+}
+
+const std::vector<OptionalTable>& optional_tables() {
+  static const std::vector<OptionalTable> tables = {
+      {"contact.friction", [](Scene& s) { s.contact.friction.emplace(); }},
+  };
+  return tables;
+}
+
+const std::vector<Field<TrackRow>>& track_fields() {
+  static const std::vector<Field<TrackRow>> fields = make_track_fields();
+  return fields;
+}
+
+const Field<TrackRow>& track_field(std::string_view key) {
+  return *std::ranges::find(track_fields(), key, &Field<TrackRow>::key);
+}
+
+namespace {
+
+template <class Numbers>
+std::string numbers(const Numbers& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ", ") + number_text(value);
+  return "[" + text + "]";
+}
+
+}  // namespace
+
+template <class T>
+std::string value_text(const Field<T>& field, const T& object) {
+  T& o = const_cast<T&>(object);  // the accessors serve reading and writing; this only reads
+  struct Visitor {
+    T& o;
+    std::string operator()(double& (*at)(T&)) const { return number_text(at(o)); }
+    std::string operator()(int& (*at)(T&)) const { return std::to_string(at(o)); }
+    std::string operator()(std::string& (*at)(T&)) const { return toml_quoted(at(o)); }
+    std::string operator()(std::optional<double>& (*at)(T&)) const { return at(o) ? number_text(*at(o)) : ""; }
+    std::string operator()(std::optional<int>& (*at)(T&)) const { return at(o) ? std::to_string(*at(o)) : ""; }
+    std::string operator()(Vec3& (*at)(T&)) const { return numbers(at(o)); }
+    std::string operator()(std::optional<Vec3>& (*at)(T&)) const { return at(o) ? numbers(*at(o)) : ""; }
+    std::string operator()(std::vector<double>& (*at)(T&)) const { return numbers(at(o)); }
+    std::string operator()(std::vector<Eigen::Vector2d>& (*at)(T&)) const {
+      std::string text;
+      for (const Eigen::Vector2d& pair : at(o)) text += (text.empty() ? "" : ", ") + numbers(pair);
+      return "[" + text + "]";
+    }
+    std::string operator()(OpenPosition& (*at)(T&)) const {
+      const OpenPosition& p = at(o);
+      return p.height_open ? numbers(Eigen::Vector2d(p.position_m.head<2>())) : numbers(p.position_m);
+    }
+    std::string operator()(Eigen::Quaterniond& (*at)(T&)) const {
+      const Eigen::Quaterniond& q = at(o);
+      return numbers(std::array{q.w(), q.x(), q.y(), q.z()});
+    }
+    std::string operator()(const Choice<T>& access) const {
+      return toml_quoted(std::string(access.names[static_cast<std::size_t>(access.get(o))]));
+    }
+  };
+  return std::visit(Visitor{o}, field.access);
+}
+
+template <class T>
+std::string expected_text(const Field<T>& field) {
+  if (const auto* access = std::get_if<Choice<T>>(&field.access)) {
+    std::string out;
+    for (const std::string_view name : access->names) {
+      out += (out.empty() ? "" : " or ") + toml_quoted(std::string(name));
+    }
+    return out;
+  }
+  if (std::holds_alternative<std::string& (*)(T&)>(field.access))
+    return std::string("a text") + (field.default_value ? "" : ", not empty,") + " without control characters";
+  std::string out = "a number in ";
+  if (std::holds_alternative<Vec3& (*)(T&)>(field.access) ||
+      std::holds_alternative<std::optional<Vec3>& (*)(T&)>(field.access)) {
+    out = "three numbers, each in ";
+  } else if (std::holds_alternative<OpenPosition& (*)(T&)>(field.access)) {
+    out = "three numbers [x, y, z], or two [x, y] with depth_m, each in ";
+  } else if (std::holds_alternative<Eigen::Quaterniond& (*)(T&)>(field.access)) {
+    out = "four numbers of a norm in " + orientation_norm.text() + ", each in ";
+  } else if (std::holds_alternative<int& (*)(T&)>(field.access) ||
+             std::holds_alternative<std::optional<int>& (*)(T&)>(field.access)) {
+    out = "a whole number in ";
+  } else if (std::holds_alternative<std::vector<double>& (*)(T&)>(field.access)) {
+    out = "a list of numbers, each in ";
+  } else if (std::holds_alternative<std::vector<Eigen::Vector2d>& (*)(T&)>(field.access)) {
+    out = "a list of pairs [r, z], each number in ";
+  }
+  out += field.range.text();
+  if (!field.unit.empty()) out += " " + std::string(field.unit);
+  return out;
+}
+
+template std::string value_text(const Field<Scene>&, const Scene&);
+template std::string value_text(const Field<TrackRow>&, const TrackRow&);
+template std::string value_text(const Field<Inclusion>&, const Inclusion&);
+template std::string expected_text(const Field<Scene>&);
+template std::string expected_text(const Field<TrackRow>&);
+template std::string expected_text(const Field<Inclusion>&);
+
+namespace {
+
+template <class T>
+std::string reference_rows(const std::vector<Field<T>>& fields, const std::string& prefix) {
+  std::string out;
+  for (const auto& field : fields) {
+    out += "| `" + prefix + std::string(field.key) + "` | " + expected_text(field) + " | " +
+           (field.default_value ? "`" + std::string(*field.default_value) + "`"
+            : field.default_of  ? "`" + std::string(field.default_words) + "`"
+            : optional(field)   ? "absent"
+                                : "required") +
+           " | " + std::string(field.doc);
+    if (field.only_when) out += " Only with `" + std::string(field.only_when->text) + "`.";
+    out += " |\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string scene_reference_markdown() {
+  return "| key | value | default | meaning |\n|---|---|---|---|\n" + reference_rows(scene_fields(), "") +
+         reference_rows(inclusion_fields(), "body.inclusion[].") + reference_rows(track_fields(), "track[].");
+}
+
+}  // namespace touchstone::scene

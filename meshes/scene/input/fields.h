@@ -1,0 +1,139 @@
+// The scene's keys, declared once: parsing, error texts, `touchstone plan`, the resolved scene, the
+// content hash and the scene reference in the documentation all read the tables below.
+#pragma once
+
+#include "scene/model/scene.h"
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace touchstone::scene {
+
+/// Who reads a key. What `shared` holds changes both sides' answers.
+enum class Side { shared, fast, reference, compare };
+
+/// Allowed values of a number, or of every element of a vector.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false, high_open = false;
+
+  [[nodiscard]] bool contains(double value) const noexcept;  ///< false for NaN
+  [[nodiscard]] std::string text() const;                    ///< "(0, 0.5]"
+};
+
+/// A place whose height may be left open, as [x, y].
+struct OpenPosition {
+  Vec3 position_m = Vec3::Zero();
+  bool height_open = false;  ///< z means nothing
+};
+
+/// One row of a track as a file gives it. Where the depth is given, the position along `direction` follows from it.
+struct TrackRow {
+  double time_s = 0.0;
+  OpenPosition position;
+  std::optional<double> depth_m;
+  std::optional<Vec3> direction;
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+};
+
+/// Edge of the cube that holds as much as the body's bounding box [m]: what lengths without a value are fractions of.
+[[nodiscard]] double body_size_m(const Body& body);
+
+/// How long a quaternion may be that is meant as an orientation. One far from 1 is a slip, and the squares of a very
+/// short or long one lose its digits.
+inline constexpr double orientation_norm_max = 2.0;
+inline constexpr Range orientation_norm{0.5, orientation_norm_max};
+
+/// At unit length, and such that what is written out reads back bit for bit; nothing for a norm out of range.
+[[nodiscard]] std::optional<Eigen::Quaterniond> orientation_of(const Eigen::Quaterniond& q);
+
+/// Where a key's value lives in a T (the Scene, one Inclusion or one TrackRow).
+template <class T>
+struct Choice {
+  std::vector<std::string_view> names;  ///< in the order of the enumeration
+  std::function<int(const T&)> get;
+  std::function<void(T&, int)> set;
+};
+template <class T>
+using Access =
+    std::variant<double& (*)(T&), int& (*)(T&), std::string& (*)(T&), std::optional<double>& (*)(T&),
+                 std::optional<int>& (*)(T&), Vec3& (*)(T&), std::optional<Vec3>& (*)(T&), Eigen::Quaterniond& (*)(T&),
+                 std::vector<double>& (*)(T&), std::vector<Eigen::Vector2d>& (*)(T&), OpenPosition& (*)(T&), Choice<T>>;
+
+/// The key applies only where this holds; elsewhere giving it is an error.
+template <class T>
+struct Condition {
+  std::string_view key;   ///< of the value it hangs on
+  std::string_view text;  ///< in TOML: body.shape = "box"
+  bool (*holds)(const T&) = nullptr;
+};
+
+/// A table that a scene may leave out altogether; its keys apply only where it is given.
+struct OptionalTable {
+  std::string_view key;
+  void (*give)(Scene&);
+};
+[[nodiscard]] const std::vector<OptionalTable>& optional_tables();
+
+template <class T>
+struct Field {
+  std::string_view key;   ///< dotted, with the unit as suffix
+  std::string_view unit;  ///< SI; empty for a pure number, a word or a text
+  Range range;
+  std::optional<std::string_view> default_value;  ///< as TOML; a key without one must be given, unless optional
+  Side side;
+  Access<T> access;
+  std::optional<Condition<T>> only_when;
+  std::string_view doc;  ///< one line
+  /// A default that follows from the scene's other values, and in words; the key then has no other default.
+  double (*default_of)(const T&) = nullptr;
+  std::string_view default_words = {};
+};
+
+/// Every key of a scene file but the track's.
+[[nodiscard]] const std::vector<Field<Scene>>& scene_fields();
+
+/// The keys of one [[track]] row.
+[[nodiscard]] const std::vector<Field<TrackRow>>& track_fields();
+
+/// One of them: its range holds for every source of a pose, a table's columns too.
+[[nodiscard]] const Field<TrackRow>& track_field(std::string_view key);
+
+/// The keys of one [[body.inclusion]] row.
+[[nodiscard]] const std::vector<Field<Inclusion>>& inclusion_fields();
+
+/// Is the key's value in force (its condition holds)?
+template <class T>
+[[nodiscard]] bool applies(const Field<T>& field, const T& object) {
+  return !field.only_when || field.only_when->holds(object);
+}
+
+/// May the key be left out without a default taking its place?
+template <class T>
+[[nodiscard]] bool optional(const Field<T>& field) {
+  return std::holds_alternative<std::optional<double>& (*)(T&)>(field.access) ||
+         std::holds_alternative<std::optional<int>& (*)(T&)>(field.access) ||
+         std::holds_alternative<std::optional<Vec3>& (*)(T&)>(field.access);
+}
+
+/// Shortest text that reads back as the same double and is a TOML float.
+[[nodiscard]] std::string number_text(double value);
+
+/// The value as TOML; empty for an optional value that is absent.
+template <class T>
+[[nodiscard]] std::string value_text(const Field<T>& field, const T& object);
+
+/// The allowed values in words: a range with unit, or the list of choices.
+template <class T>
+[[nodiscard]] std::string expected_text(const Field<T>& field);
+
+/// The scene reference of the documentation, as a Markdown table.
+[[nodiscard]] std::string scene_reference_markdown();
+
+}  // namespace touchstone::scene

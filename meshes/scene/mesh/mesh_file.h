@@ -1,0 +1,25 @@
+// A mesh together with the content of the file it was read from, which result folders keep a copy of.
+#pragma once
+
+#include "scene/mesh/triangle_mesh.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace touchstone::scene {
+
+/// A mesh tool is no larger than the other tools, and checking one is a matter of seconds.
+inline constexpr double mesh_reach_max_m = 10.0;  ///< of every coordinate
+inline constexpr std::size_t mesh_triangles_max = 500'000, mesh_pieces_max = 1000;
+
+/// As read_triangle_mesh(). @param file  the content is of; @returns null when there were faults
+[[nodiscard]] std::shared_ptr<const TriangleMesh> mesh_of_file(std::string content, const std::filesystem::path& file,
+                                                               double unit_m, std::vector<Fault>& faults);
+
+/// The file's content as it was when the mesh was read, whatever became of the file; null for a mesh that
+/// mesh_of_file() did not make. It lives as long as the mesh.
+[[nodiscard]] const std::string* content_of_file(const std::shared_ptr<const TriangleMesh>& mesh);
+
+}  // namespace touchstone::scene

@@ -1,0 +1,88 @@
+#include "scene/model/scene.h"
+
+#include <algorithm>
+
+namespace touchstone::scene {
+
+bool Body::flat_bottom() const noexcept {
+  return shape == BodyShape::box || (shape == BodyShape::revolution && scene::flat_bottom(profile));
+}
+
+std::unique_ptr<const Shape> solid_shape(const Solid& solid, const Vec3& center_m) {
+  switch (solid.shape) {
+    case BodyShape::box:
+      return std::make_unique<Box>(center_m, solid.size_m);
+    case BodyShape::sphere:
+      return std::make_unique<Sphere>(center_m, solid.radius_m);
+    case BodyShape::ellipsoid:
+      return std::make_unique<Ellipsoid>(center_m, solid.semi_axes_m);
+    case BodyShape::revolution: {
+      const double middle_m = 0.5 * (solid.profile.rz_m.front().y() + solid.profile.rz_m.back().y());
+      return std::make_unique<Revolution>(solid.profile, center_m - Vec3(0.0, 0.0, middle_m));
+    }
+  }
+  return nullptr;
+}
+
+std::unique_ptr<const Shape> body_shape(const Body& body) {
+  switch (body.shape) {
+    case BodyShape::box:
+      return solid_shape(body, Vec3(0.0, 0.0, 0.5 * body.size_m.z()));
+    case BodyShape::sphere:
+      return solid_shape(body, Vec3(0.0, 0.0, body.radius_m));
+    case BodyShape::ellipsoid:
+      return solid_shape(body, Vec3(0.0, 0.0, body.semi_axes_m.z()));
+    case BodyShape::revolution:
+      // Not through the centre: the bottom is at zero exactly.
+      return std::make_unique<Revolution>(body.profile, Vec3(0.0, 0.0, -body.profile.rz_m.front().y()));
+  }
+  return nullptr;
+}
+
+std::unique_ptr<const Shape> tool_shape(const Tool& tool) {
+  const Vec3 center_T_m = -tool.mass_center_m.value_or(Vec3::Zero());
+  switch (tool.shape) {
+    case ToolShape::sphere:
+      return std::make_unique<Sphere>(center_T_m, tool.radius_m);
+    case ToolShape::capsule:
+      return std::make_unique<Revolution>(capsule_profile(tool.radius_m, tool.length_m), center_T_m);
+    case ToolShape::cylinder:
+      return std::make_unique<Revolution>(cylinder_profile(tool.radius_m, tool.length_m, tool.edge_radius_m),
+                                          center_T_m);
+    case ToolShape::box:
+      return std::make_unique<Box>(center_T_m, tool.size_m);
+    case ToolShape::mesh:
+      return nullptr;
+  }
+  return nullptr;
+}
+
+TriangleMesh tool_mesh(const Tool& tool) {
+  TriangleMesh mesh = *tool.mesh;
+  const Vec3 center_m = tool.mass_center_m ? *tool.mass_center_m : mesh.centroid_m();
+  mesh.points_m.colwise() -= center_m;
+  return mesh;
+}
+
+Pose pose_at(const std::vector<Waypoint>& track, double time_s) {
+  const auto after = std::upper_bound(track.begin(), track.end(), time_s,
+                                      [](double t_s, const Waypoint& w) { return t_s < w.time_s; });
+  if (after == track.begin()) return track.front().pose;
+  const Waypoint& a = *(after - 1);
+  if (after == track.end()) return a.pose;
+  const double s = (time_s - a.time_s) / (after->time_s - a.time_s);
+  return {(1.0 - s) * a.pose.position_m + s * after->pose.position_m,
+          a.pose.orientation.slerp(s, after->pose.orientation)};
+}
+
+std::vector<double> instants_s(const Scene& scene) {
+  const double begin_s = scene.track.front().time_s;
+  const double end_s = scene.track.back().time_s;
+  std::vector<double> times;
+  for (int i = 0; i < scene.compare.instants; ++i) {
+    times.push_back(begin_s + (end_s - begin_s) * i / (scene.compare.instants - 1));
+  }
+  return times;
+}
+
+}  // namespace touchstone::scene

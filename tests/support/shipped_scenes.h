@@ -1,0 +1,35 @@
+// The scenes of meshes/scenes, for tests that hold for every one of them.
+#pragma once
+
+#include "scene/input/scene_io.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace touchstone::test {
+
+/// Their names without ".toml", sorted.
+inline std::vector<std::string> shipped_scenes() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes")) {
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+inline scene::Scene shipped_scene(const std::string& name, scene::Formulation formulation) {
+  scene::Scene scene = scene::load_scene(std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/" + name + ".toml", {});
+  scene.fast.formulation = formulation;
+  return scene;
+}
+
+/// "ball-on-cube-press" as gtest takes it for a test's name.
+inline std::string test_name(std::string name) {
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+}  // namespace touchstone::test

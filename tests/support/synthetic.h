@@ -1,0 +1,36 @@
+// Made-up answers of both sides, close in size and form to real ones: a ball on a cube, a half-space-like
+// reference and a fast model with a cubic law and a cone for a dimple.
+#pragma once
+
+#include "compare/comparison/compare.h"
+
+namespace touchstone::compare::testing {
+
+/// The ball on the cube of the paper, `instants` instants to a depth of 5 mm.
+[[nodiscard]] scene::Scene ball_on_cube(int instants, int triangles);
+
+/// Everything a comparison needs.
+struct Sides {
+  scene::Scene scene;
+  fast::Run run;
+  reference::Result result;
+  Plans plans;
+  scene::Manifest manifest;
+  Call call = {};
+};
+[[nodiscard]] Sides pressed(int instants = 23, int triangles = 3952);
+
+/// The same answers of a scene whose tool is the shipped mallet, loaded from copies made in this folder.
+[[nodiscard]] Sides pressed_by_mallet(const std::filesystem::path& folder, int instants = 3);
+
+/// Two instants at depths 1 and 10 mm, four rest points of a tetrahedron with vertex areas 1, 2, 3, 4 m^2, no
+/// displacement, no force, no uncertainty: a case to be filled by hand.
+[[nodiscard]] Sides small();
+
+/// The page of a comparison.
+[[nodiscard]] std::string report_of(const Sides& sides);
+
+/// One region with this force on the tool, at this instant.
+void set_force(scene::InstantRecord& record, const scene::Vec3& force_n);
+
+}  // namespace touchstone::compare::testing
