@@ -5,7 +5,7 @@ if(NOT COMMIT)
   set(COMMIT "unknown")
 endif()
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [=[
-#include "scene/build_info.h"
+#include "scene/base/build_info.h"
 namespace touchstone::scene {
 const BuildInfo build_info = {"@VERSION@", "@COMMIT@", "@COMPILER@", "@BUILD_TYPE@"};
 }

@@ -29,14 +29,14 @@ void require_names(const GateOptions& options, const char* flag) {
 int gate(const GateOptions& options, const std::string& command) {
   for (const std::string& name : options.names) {
     // A file in place of a name: what it is, when it is no gate file.
-    if (std::filesystem::is_regular_file(name)) (void)scene::load_gate_file(name);
+    if (std::filesystem::is_regular_file(name)) (void)load_gate_file(name);
   }
   const GateFolder folder = load_gates(options.folder);
   require_known(folder, options.names);
   if (options.list) {
-    for (const scene::GateFile& file : folder.files) {
+    for (const GateFile& file : folder.files) {
       std::cout << file.name << ": " << file.title << '\n';
-      for (const scene::Gate& one : file.gates) {
+      for (const Gate& one : file.gates) {
         std::cout << fmt::format("  {}.{}: {} within {:g} {}\n", file.name, one.name, one.quantity, one.limit,
                                  one.unit);
       }
@@ -107,7 +107,7 @@ void add_gate_verb(CLI::App& app, GateOptions& options, int& exit_code) {
   verb->add_flag_callback(
       "--keys",
       [] {
-        std::cout << scene::gate_reference_markdown();
+        std::cout << gate_reference_markdown();
         throw CLI::Success();
       },
       "print every key of a gate file as Markdown tables");

@@ -13,10 +13,10 @@
 #include "fast/app/completion.h"
 #include "fast/live/live_verb.h"
 #include "fast/app/new_verb.h"
-#include "reference/contact/contact_shares.h"
 #include "reference/linear/blas.h"
 #include "reference/linear/ranks.h"
 #include "scene/input/fields.h"
+#include "reference/contact/contact_ranks.h"
 
 #include <cstdlib>
 #include <iostream>

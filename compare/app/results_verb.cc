@@ -1,6 +1,6 @@
 #include "compare/app/results_verb.h"
 
-#include "compare/report/results_page.h"
+#include "compare/study/results_page.h"
 #include "fast/command/command_line.h"
 #include "scene/base/error.h"
 

@@ -3,7 +3,7 @@
 #include "compare/study/study_run.h"
 #include "compare/study/study_table.h"
 #include "compare/app/verbs.h"
-#include "compare/study/study_file.h"
+#include "compare/input/study_file.h"
 
 #include <fmt/format.h>
 
@@ -30,7 +30,7 @@ void warn_of_no_contact(const StudyManifest& manifest) {
 }
 
 int expand_verb(const StudyOptions& options) {
-  const scene::Study study = scene::load_study(options.study);
+  const Study study = load_study(options.study);
   const std::filesystem::path folder =
       options.out.empty() ? std::filesystem::path("out") / (study.name + "-study") : options.out;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
@@ -101,9 +101,9 @@ void add_study_verb(CLI::App& app, StudyOptions& options, int& exit_code) {
   CLI::App* run = add("run", "run what is not done of a study; several processes may do so at a time", "DIR",
                       "the study's folder", run_verb);
   CLI::Option* index = run->add_option("--index", options.index, "only this case, from 1")
-                           ->check(CLI::Range(1, static_cast<int>(scene::study_cases_max)));
+                           ->check(CLI::Range(1, static_cast<int>(study_cases_max)));
   run->add_option("--step", options.step, "and every case this far behind it, for long studies in short arrays")
-      ->check(CLI::Range(1, static_cast<int>(scene::study_cases_max)))
+      ->check(CLI::Range(1, static_cast<int>(study_cases_max)))
       ->needs(index);
   add_store(run);
   run->add_flag("--quiet", options.quiet, "no progress of the cases' solvers");

@@ -34,7 +34,7 @@ std::string model_text(const Tuning& tuning, const TunedModel& model) {
 }
 
 int run(const TuneOptions& options, const ReferenceOptions& reference) {
-  const scene::TuningStudy study = scene::load_tuning_study(
+  const TuningStudy study = load_tuning_study(
       options.study, [&](const scene::Scene& scene) { return reference::unsupported(asked(scene, reference)); });
   const std::filesystem::path folder =
       options.out.empty() ? std::filesystem::path("out") / (study.name + "-tune") : options.out;

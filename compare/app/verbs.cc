@@ -9,7 +9,7 @@
 #include "reference/solver.h"
 #include "scene/output/results.h"
 #include "scene/input/scene_io.h"
-#include "scene/tuning_study.h"
+#include "compare/input/tuning_study.h"
 
 #include <iostream>
 
@@ -74,7 +74,7 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
                 const std::filesystem::path& parameters, bool plots) {
   const scene::Scene given = asked(options.load(), reference);
   refuse(reference::unsupported(given));
-  const scene::Scene scene = parameters.empty() ? given : scene::with_parameters(given, parameters);
+  const scene::Scene scene = parameters.empty() ? given : with_parameters(given, parameters);
   const std::filesystem::path folder = options.folder(scene, "compare");
   const scene::FolderLock lock = scene::prepare_result_folder(folder);
   const Call call{options.scene_file, options.overrides, reference, parameters, folder};

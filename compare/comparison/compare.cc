@@ -6,8 +6,9 @@
 #include "compare/report/plot_files.h"
 #include "compare/report/report.h"
 #include "compare/format/svg_plot.h"
-#include "compare/errors/verdict.h"
+#include "compare/report/verdict.h"
 #include "compare/report/vtk_out.h"
+#include "compare/errors/compute_errors.h"
 
 #include <limits>
 

@@ -4,18 +4,14 @@
 
 #include "compare/errors/errors.h"
 #include "compare/report/next_steps.h"
-#include "scene/model/plan.h"
 #include "scene/output/results.h"
+#include "fast/run/run.h"
+#include "reference/solver.h"
 
 #include <filesystem>
 #include <string>
 
 namespace touchstone::compare {
-
-/// What each side models of the scene and leaves out.
-struct Plans {
-  scene::Plan fast, reference;
-};
 
 /// Columns of curve.csv: time, tool pose and depth; both sides' regions (fast_..., reference_...); the reference's
 /// uncertainty; errors per instant. A column that has no meaning at an instant holds nan there.

@@ -1,6 +1,6 @@
 #include "compare/errors/contact_errors.h"
 
-#include "compare/errors/error_sums.h"
+#include "compare/errors/measure.h"
 
 #include <algorithm>
 #include <limits>

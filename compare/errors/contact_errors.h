@@ -2,6 +2,8 @@
 #pragma once
 
 #include "compare/errors/errors.h"
+#include "fast/run/run.h"
+#include "reference/solver.h"
 
 namespace touchstone::compare {
 

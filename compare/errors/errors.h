@@ -2,9 +2,8 @@
 // uncertainty beside every error. Aligned by track instant and by rest point, never by nearest vertex.
 #pragma once
 
+#include "compare/errors/measure.h"
 #include "compare/errors/reference_quality.h"
-#include "fast/run/run.h"
-#include "reference/solver.h"
 
 #include <optional>
 #include <vector>
@@ -14,15 +13,6 @@ namespace touchstone::compare {
 /// A rest point touches the tool when its moved place is nearer to the tool's surface than this share of the
 /// instant's depth, or inside the tool.
 inline constexpr double contact_tolerance_share = 0.01;
-
-/// An error, and how much of it may be the reference's own, in the same norm.
-struct Measure {
-  std::optional<double> value;        ///< absent where the figure has no meaning, such as a ratio to no force
-  std::optional<double> uncertainty;  ///< absent where the reference does not know it
-
-  /// False where the error is no larger than the reference's uncertainty: the two sides may then agree.
-  [[nodiscard]] bool distinguishable() const noexcept;
-};
 
 /// Errors at one track instant. F is the total contact force on the tool, u_i the displacement of rest
 /// point i, A_i its share of the rest surface's area; f is the fast model, r the reference.
@@ -115,9 +105,5 @@ struct Errors {
 
   ReferenceQuality reference;
 };
-
-/// Compares one run with one reference result of the same scene.
-/// @throws std::logic_error when the sides differ in instants (time to 1e-12 s, tool place to 1e-9 m) or rest points
-[[nodiscard]] Errors compute_errors(const scene::Scene& scene, const fast::Run& run, const reference::Result& result);
 
 }  // namespace touchstone::compare

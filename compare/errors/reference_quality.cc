@@ -1,6 +1,6 @@
 #include "compare/errors/reference_quality.h"
 
-#include "compare/errors/error_sums.h"
+#include "compare/errors/measure.h"
 
 #include <algorithm>
 #include <cmath>

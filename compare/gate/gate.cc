@@ -57,8 +57,8 @@ bool is_asked(const std::string& file, const std::string& gate, const GateNames&
          std::ranges::any_of(names, [&](const std::string& name) { return name == file || name == file + "." + gate; });
 }
 
-bool is_asked(const scene::GateFile& file, const GateNames& names) {
-  return std::ranges::any_of(file.gates, [&](const scene::Gate& g) { return is_asked(file.name, g.name, names); });
+bool is_asked(const GateFile& file, const GateNames& names) {
+  return std::ranges::any_of(file.gates, [&](const Gate& g) { return is_asked(file.name, g.name, names); });
 }
 
 /// The figures, or why there are none.
@@ -67,7 +67,7 @@ struct Answer {
   std::string failure;
 };
 
-Answer answer(const scene::GateFile& file, const std::vector<std::string>& change) {
+Answer answer(const GateFile& file, const std::vector<std::string>& change) {
   try {
     return {gate_figures(file, change), ""};
   } catch (const reference::Interrupted&) {
@@ -87,20 +87,20 @@ const AcceptedValue* accepted_of(const GateFolder& folder, const std::string& na
   return found == folder.accepted.end() ? nullptr : &found->second;
 }
 
-const scene::GateFile& file_of(const GateFolder& folder, const std::string& name) {
-  return *std::ranges::find(folder.files, name, &scene::GateFile::name);
+const GateFile& file_of(const GateFolder& folder, const std::string& name) {
+  return *std::ranges::find(folder.files, name, &GateFile::name);
 }
 
-GateRecord judged(const GateFolder& folder, const scene::GateFile& file, const scene::Gate& gate, const Answer& answer,
+GateRecord judged(const GateFolder& folder, const GateFile& file, const Gate& gate, const Answer& answer,
                   const std::string& scene_hash) {
   if (!answer.failure.empty()) return {file.name, gate, {}, {}, {}, answer.failure};
   return judge(file.name, gate, answer.figures, accepted_of(folder, file.name + "." + gate.name), scene_hash);
 }
 
 /// A gate on a figure that its run does not have, or against reference data that is not there, is a fault of its file.
-void require_answerable(const scene::GateFile& file, const GateNames& names, const Answer& answer) {
+void require_answerable(const GateFile& file, const GateNames& names, const Answer& answer) {
   std::vector<scene::Fault> faults;
-  for (const scene::Gate& gate : file.gates) {
+  for (const Gate& gate : file.gates) {
     if (!is_asked(file.name, gate.name, names) || !answer.failure.empty()) continue;
     if (find(answer.figures, gate.quantity) != nullptr) continue;
     std::vector<std::string> keys;
@@ -114,7 +114,7 @@ void require_answerable(const scene::GateFile& file, const GateNames& names, con
   if (!faults.empty()) throw scene::InputError(std::move(faults));
 }
 
-void require_reference(const scene::GateFile& file) {
+void require_reference(const GateFile& file) {
   if (file.reference.empty() || std::filesystem::is_directory(file.reference)) return;
   scene::Fault fault = file.gates.front().place;
   fault.line = fault.column = 0;
@@ -123,19 +123,19 @@ void require_reference(const scene::GateFile& file) {
   throw scene::InputError({fault});
 }
 
-std::string hash_of(const scene::GateFile& file) { return scene::scene_hash(scene_of(file)); }
+std::string hash_of(const GateFile& file) { return scene::scene_hash(scene_of(file)); }
 
 bool is_drift(const GateFolder& folder, const std::string& name) {
-  for (const scene::GateFile& file : folder.files) {
-    for (const scene::Gate& gate : file.gates) {
-      if (gate.kind == scene::GateKind::drift && file.name + "." + gate.name == name) return true;
+  for (const GateFile& file : folder.files) {
+    for (const Gate& gate : file.gates) {
+      if (gate.kind == GateKind::drift && file.name + "." + gate.name == name) return true;
     }
   }
   return false;
 }
 
 /// What is wrong with the scenes of a file, its own and the changed ones, told with the gate they are of.
-std::vector<scene::Fault> scene_faults(const scene::GateFile& file) {
+std::vector<scene::Fault> scene_faults(const GateFile& file) {
   std::vector<scene::Fault> faults;
   const auto check = [&](const std::vector<std::string>& change, const std::string& whose) {
     std::vector<scene::Fault> found;
@@ -151,13 +151,13 @@ std::vector<scene::Fault> scene_faults(const scene::GateFile& file) {
   };
   check({}, "gates of " + file.name);
   if (!faults.empty()) return faults;
-  for (const scene::Gate& gate : file.gates) check(gate.red, "gate " + file.name + "." + gate.name + ", red");
+  for (const Gate& gate : file.gates) check(gate.red, "gate " + file.name + "." + gate.name + ", red");
   return faults;
 }
 
 void find_unused(GateFolder& folder) {
   std::set<path> wanted_folders;
-  for (const scene::GateFile& file : folder.files) {
+  for (const GateFile& file : folder.files) {
     if (!file.reference.empty()) wanted_folders.insert(std::filesystem::weakly_canonical(file.reference));
   }
   if (std::filesystem::is_directory(data_folder(folder.folder))) {
@@ -179,7 +179,7 @@ void find_unused(GateFolder& folder) {
 
 double GateRecord::held() const noexcept {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  if (gate.kind == scene::GateKind::drift) return std::abs(value.value_or(none) - accepted.value_or(none));
+  if (gate.kind == GateKind::drift) return std::abs(value.value_or(none) - accepted.value_or(none));
   return std::abs(value.value_or(none)) + uncertainty.value_or(none);
 }
 
@@ -197,23 +197,23 @@ GateFolder load_gates(const path& folder) {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
     if (entry.path().extension() != ".toml" || entry.path().filename() == waivers_name) continue;
-    collecting([&] { out.files.push_back(scene::load_gate_file(entry.path())); });
+    collecting([&] { out.files.push_back(load_gate_file(entry.path())); });
   }
-  for (const scene::GateFile& file : out.files) {
+  for (const GateFile& file : out.files) {
     for (scene::Fault& fault : scene_faults(file)) faults.push_back(std::move(fault));
   }
-  collecting([&] { out.waivers = scene::load_gate_waivers(folder / waivers_name); });
+  collecting([&] { out.waivers = load_gate_waivers(folder / waivers_name); });
   collecting([&] { out.accepted = read_accepted(accepted_file(folder)); });
   if (out.files.empty() && faults.empty()) {
     faults.push_back({folder.string(), 0, 0, "no gate files; expected a folder with some, such as tests/gates"});
   }
   if (!faults.empty()) throw scene::InputError(std::move(faults));
-  std::ranges::sort(out.files, {}, &scene::GateFile::name);
+  std::ranges::sort(out.files, {}, &GateFile::name);
   find_unused(out);
   return out;
 }
 
-GateRecord judge(const std::string& file, const scene::Gate& gate, const scene::Figures& figures,
+GateRecord judge(const std::string& file, const Gate& gate, const scene::Figures& figures,
                  const AcceptedValue* accepted, const std::string& scene_hash) {
   GateRecord record{file, gate, {}, {}, {}, ""};
   const scene::Figure* figure = find(figures, gate.quantity);
@@ -230,7 +230,7 @@ GateRecord judge(const std::string& file, const scene::Gate& gate, const scene::
     record.failure = fmt::format("unit \"{}\"; {} has \"{}\"", gate.unit, gate.quantity, figure->unit);
     return record;
   }
-  if (gate.kind == scene::GateKind::truth) {
+  if (gate.kind == GateKind::truth) {
     const std::string key = gate.quantity + std::string(uncertainty_suffix);
     const scene::Figure* uncertainty = find(figures, key);
     if (uncertainty == nullptr || !uncertainty->text.empty() || !std::isfinite(uncertainty->number)) {
@@ -256,10 +256,10 @@ GateRecord judge(const std::string& file, const scene::Gate& gate, const scene::
 void require_known(const GateFolder& folder, const GateNames& names) {
   std::string known;
   std::set<std::string> all;
-  for (const scene::GateFile& file : folder.files) {
+  for (const GateFile& file : folder.files) {
     all.insert(file.name);
     known += (known.empty() ? "" : ", ") + file.name;
-    for (const scene::Gate& gate : file.gates) all.insert(file.name + "." + gate.name);
+    for (const Gate& gate : file.gates) all.insert(file.name + "." + gate.name);
   }
   for (const std::string& name : names) {
     if (!all.contains(name)) {
@@ -272,14 +272,14 @@ void require_known(const GateFolder& folder, const GateNames& names) {
 std::vector<GateRecord> run_gates(const GateFolder& folder, const GateNames& names,
                                   const std::function<void(const std::string&)>& working) {
   std::vector<GateRecord> records;
-  for (const scene::GateFile& file : folder.files) {
+  for (const GateFile& file : folder.files) {
     if (!is_asked(file, names)) continue;
     require_reference(file);
     if (working) working(file.name);
     const Answer own = answer(file, {});
     require_answerable(file, names, own);
     const std::string hash = hash_of(file);
-    for (const scene::Gate& gate : file.gates) {
+    for (const Gate& gate : file.gates) {
       if (is_asked(file.name, gate.name, names)) records.push_back(judged(folder, file, gate, own, hash));
     }
   }
@@ -291,7 +291,7 @@ std::vector<GateProof> prove_gates(const GateFolder& folder, const std::vector<G
   std::map<std::pair<std::string, std::vector<std::string>>, Answer> answers;
   std::vector<GateProof> proofs;
   for (const GateRecord& record : records) {
-    const scene::GateFile& file = file_of(folder, record.file);
+    const GateFile& file = file_of(folder, record.file);
     const auto key = std::pair(record.file, record.gate.red);
     if (!answers.contains(key)) {
       if (working) working(record.file + " with " + fmt::format("{}", fmt::join(record.gate.red, " ")));
@@ -314,7 +314,7 @@ std::vector<std::string> regenerate(const GateFolder& folder, const GateNames& n
                                     bool quiet) {
   std::vector<std::string> lines;
   std::set<path> written;
-  for (const scene::GateFile& file : folder.files) {
+  for (const GateFile& file : folder.files) {
     if (file.reference.empty() || !is_asked(file, names) || !written.insert(file.reference).second) continue;
     const scene::Scene scene = scene_of(file);
     const scene::Surface surface = rest_surface(scene);
@@ -337,7 +337,7 @@ std::vector<std::string> accept(const GateFolder& folder, const std::vector<Gate
   std::vector<std::string> lines;
   std::vector<scene::Fault> faults;
   for (const GateRecord& record : records) {
-    if (record.gate.kind != scene::GateKind::drift) continue;
+    if (record.gate.kind != GateKind::drift) continue;
     if (!record.value || !std::isfinite(*record.value)) {
       scene::Fault fault = record.gate.place;
       fault.message = record.name() + " cannot be accepted: " + record.failure;

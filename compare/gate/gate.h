@@ -9,7 +9,7 @@
 
 #include "compare/gate/gate_figures.h"
 #include "compare/solve/reference_run.h"
-#include "scene/gate_file.h"
+#include "compare/input/gate_file.h"
 #include "scene/output/results.h"
 
 #include <chrono>
@@ -32,8 +32,8 @@ struct AcceptedValue {
 /// All of a folder of gates.
 struct GateFolder {
   std::filesystem::path folder;
-  std::vector<scene::GateFile> files;  ///< by name
-  std::vector<scene::GateWaiver> waivers;
+  std::vector<GateFile> files;  ///< by name
+  std::vector<GateWaiver> waivers;
   std::map<std::string, AcceptedValue> accepted;  ///< by "file.gate"
   std::vector<std::string> unused;                ///< reference data and accepted values that no gate asks for
 };
@@ -44,7 +44,7 @@ struct GateFolder {
 /// What one gate found.
 struct GateRecord {
   std::string file;
-  scene::Gate gate;
+  Gate gate;
   std::optional<double> value, uncertainty, accepted;
   std::string failure;  ///< why it is red whatever the number: no number, stale data, a wider limit; empty otherwise
 
@@ -63,7 +63,7 @@ struct GateRecord {
 /// a drift without an accepted value of this scene are red.
 /// @param accepted    of this gate, or null
 /// @param scene_hash  of the file's own scene
-[[nodiscard]] GateRecord judge(const std::string& file, const scene::Gate& gate, const scene::Figures& figures,
+[[nodiscard]] GateRecord judge(const std::string& file, const Gate& gate, const scene::Figures& figures,
                                const AcceptedValue* accepted, const std::string& scene_hash);
 
 /// Which gates are asked for: names of files or "file.gate"; none: all.

@@ -9,6 +9,7 @@
 #include "fast/run/run.h"
 #include "reference/verification/closed_forms.h"
 #include "scene/input/scene_io.h"
+#include "compare/errors/compute_errors.h"
 
 #include <fmt/format.h>
 
@@ -66,7 +67,7 @@ std::size_t deepest(const std::vector<scene::InstantRecord>& instants) {
   return static_cast<std::size_t>(at - instants.begin());
 }
 
-scene::Figures fast_figures(const scene::GateFile& file, const scene::Scene& own, const scene::Scene& changed) {
+scene::Figures fast_figures(const GateFile& file, const scene::Scene& own, const scene::Scene& changed) {
   if (file.reference.empty()) {
     const fast::Run run = fast::run(changed);
     scene::Figures figures = fast::figures(run);
@@ -98,7 +99,7 @@ void add_resolved(const reference::Result& result, const reference::Result& stor
   figures.push_back({"resolved.shape_rel_l2", std::sqrt(error / scale), "", ""});
 }
 
-scene::Figures reference_side_figures(const scene::GateFile& file, const scene::Scene& own,
+scene::Figures reference_side_figures(const GateFile& file, const scene::Scene& own,
                                       const scene::Scene& changed) {
   const scene::Surface surface = rest_surface(own);
   std::optional<reference::Result> stored;
@@ -163,27 +164,27 @@ double peak_n(const std::vector<scene::InstantRecord>& instants) {
   return peak;
 }
 
-std::vector<scene::Fault> unsupported_by_gate(const scene::GateFile& file, const scene::Scene& scene) {
+std::vector<scene::Fault> unsupported_by_gate(const GateFile& file, const scene::Scene& scene) {
   std::vector<scene::Fault> faults;
-  if (file.run != scene::GateRun::fast || !file.reference.empty()) faults = reference::unsupported(scene);
-  if (file.run == scene::GateRun::second_code && faults.empty()) faults = reference::unsupported_in_deck(scene);
+  if (file.run != GateRun::fast || !file.reference.empty()) faults = reference::unsupported(scene);
+  if (file.run == GateRun::second_code && faults.empty()) faults = reference::unsupported_in_deck(scene);
   return faults;
 }
 
-scene::Scene scene_of(const scene::GateFile& file, const std::vector<std::string>& change) {
+scene::Scene scene_of(const GateFile& file, const std::vector<std::string>& change) {
   std::vector<std::string> settings = file.set;
   settings.insert(settings.end(), change.begin(), change.end());
   return scene::load_scene(file.scene_file, settings);
 }
 
-scene::Figures gate_figures(const scene::GateFile& file, const std::vector<std::string>& change) {
+scene::Figures gate_figures(const GateFile& file, const std::vector<std::string>& change) {
   const scene::Scene own = scene_of(file), changed = scene_of(file, change);
   switch (file.run) {
-    case scene::GateRun::fast:
+    case GateRun::fast:
       return fast_figures(file, own, changed);
-    case scene::GateRun::reference:
+    case GateRun::reference:
       return reference_side_figures(file, own, changed);
-    case scene::GateRun::second_code:
+    case GateRun::second_code:
       return second_code_figures(own, changed);
   }
   return {};

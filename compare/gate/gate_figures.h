@@ -2,7 +2,7 @@
 #pragma once
 
 #include "scene/base/error.h"
-#include "scene/gate_file.h"
+#include "compare/input/gate_file.h"
 #include "scene/output/results.h"
 #include "scene/model/scene.h"
 #include "scene/shape/surface.h"
@@ -28,14 +28,14 @@ namespace touchstone::compare {
 /// @param change  values over the file's own, as for --set
 /// @throws scene::InputError, UnusableReference, reference::NotConverged, std::logic_error when `change` makes the
 ///         answer incomparable
-[[nodiscard]] scene::Figures gate_figures(const scene::GateFile& file, const std::vector<std::string>& change = {});
+[[nodiscard]] scene::Figures gate_figures(const GateFile& file, const std::vector<std::string>& change = {});
 
 /// Why a file's scene cannot give its figures; none when it can.
-[[nodiscard]] std::vector<scene::Fault> unsupported_by_gate(const scene::GateFile& file, const scene::Scene& scene);
+[[nodiscard]] std::vector<scene::Fault> unsupported_by_gate(const GateFile& file, const scene::Scene& scene);
 
 /// A gate file's scene under a change.
 /// @throws scene::InputError
-[[nodiscard]] scene::Scene scene_of(const scene::GateFile& file, const std::vector<std::string>& change = {});
+[[nodiscard]] scene::Scene scene_of(const GateFile& file, const std::vector<std::string>& change = {});
 
 /// The rest points of committed reference data.
 [[nodiscard]] scene::Surface rest_surface(const scene::Scene& scene);

@@ -42,9 +42,9 @@ std::optional<std::string> git(const std::filesystem::path& folder, std::vector<
   return child > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0 ? std::optional(text) : std::nullopt;
 }
 
-const scene::Gate* find_gate(const std::vector<scene::GateFile>& files, const std::string& name) {
-  for (const scene::GateFile& file : files) {
-    for (const scene::Gate& gate : file.gates) {
+const Gate* find_gate(const std::vector<GateFile>& files, const std::string& name) {
+  for (const GateFile& file : files) {
+    for (const Gate& gate : file.gates) {
       if (file.name + "." + gate.name == name) return &gate;
     }
   }
@@ -57,8 +57,8 @@ std::string date_text(std::chrono::year_month_day day) {
 }
 
 /// Why a gate holds less than it did; empty when it does not.
-std::string loosened(const scene::GateFile& base_file, const scene::Gate& base, const scene::GateFile& file,
-                     const scene::Gate& gate) {
+std::string loosened(const GateFile& base_file, const Gate& base, const GateFile& file,
+                     const Gate& gate) {
   const auto changed = [](const char* what, const std::string& before, const std::string& now) {
     return fmt::format("{} \"{}\" instead of \"{}\"", what, now, before);
   };
@@ -85,7 +85,7 @@ BaseGates base_gates(const std::filesystem::path& folder, const std::string& com
     if (!name.ends_with(".toml") || name == "waivers.toml") continue;
     const std::optional<std::string> text = git(folder, {"show", commit + ":./" + name});
     if (!text) throw scene::InputError("--base " + commit + ": git cannot show " + name);
-    base.files.push_back(scene::parse_gate_file(*text, commit + ":" + (folder / name).string()));
+    base.files.push_back(parse_gate_file(*text, commit + ":" + (folder / name).string()));
   }
   return base;
 }
@@ -94,11 +94,11 @@ std::vector<std::string> hold_limits(const GateFolder& folder, const BaseGates* 
                                      std::vector<GateRecord>& records) {
   std::vector<std::string> faults;
   const auto waived = [&](const std::string& gate, bool removed) {
-    return std::ranges::any_of(folder.waivers, [&](const scene::GateWaiver& waiver) {
+    return std::ranges::any_of(folder.waivers, [&](const GateWaiver& waiver) {
       return waiver.gate == gate && waiver.removed == removed && today <= waiver.until;
     });
   };
-  for (const scene::GateWaiver& waiver : folder.waivers) {
+  for (const GateWaiver& waiver : folder.waivers) {
     scene::Fault fault = waiver.place;
     const bool there = find_gate(folder.files, waiver.gate) != nullptr;
     if (today > waiver.until) {
@@ -113,10 +113,10 @@ std::vector<std::string> hold_limits(const GateFolder& folder, const BaseGates* 
     faults.push_back(fault.text());
   }
   if (base == nullptr) return faults;
-  for (const scene::GateFile& base_file : base->files) {
-    for (const scene::Gate& before : base_file.gates) {
+  for (const GateFile& base_file : base->files) {
+    for (const Gate& before : base_file.gates) {
       const std::string name = base_file.name + "." + before.name;
-      const scene::Gate* gate = find_gate(folder.files, name);
+      const Gate* gate = find_gate(folder.files, name);
       if (gate == nullptr) {
         if (!waived(name, true)) {
           faults.push_back(fmt::format("{} of {} is gone; expected it, or a waiver with removed = true in {}", name,
@@ -124,7 +124,7 @@ std::vector<std::string> hold_limits(const GateFolder& folder, const BaseGates* 
         }
         continue;
       }
-      const scene::GateFile& file = *std::ranges::find(folder.files, base_file.name, &scene::GateFile::name);
+      const GateFile& file = *std::ranges::find(folder.files, base_file.name, &GateFile::name);
       const std::string why = loosened(base_file, before, file, *gate);
       if (why.empty() || waived(name, false)) continue;
       for (GateRecord& record : records) {

@@ -8,7 +8,7 @@ namespace touchstone::compare {
 /// Gates as they are at another commit.
 struct BaseGates {
   std::string commit;  ///< as it was named
-  std::vector<scene::GateFile> files;
+  std::vector<GateFile> files;
 };
 
 /// Asks git for the folder's gate files at a commit. Without the folder there, none.

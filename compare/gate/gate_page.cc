@@ -50,7 +50,7 @@ std::string bar(const GateRecord& record) {
       "<rect x=\"0\" y=\"5\" width=\"{3:.0f}\" height=\"4\" fill=\"currentColor\" opacity=\"0.18\"/>",
       whole_px, record.passes() ? "holds" : "broken", escape_xml(margin_text(record)), limit_px);
   if (std::isfinite(held)) {
-    const bool truth = record.gate.kind == scene::GateKind::truth;
+    const bool truth = record.gate.kind == GateKind::truth;
     const double value_px = truth ? px(std::abs(*record.value)) : px(held);
     out += fmt::format("<rect x=\"0\" y=\"2\" width=\"{:.2f}\" height=\"10\" fill=\"currentColor\"/>", value_px);
     if (truth) {
@@ -67,7 +67,7 @@ std::string bar(const GateRecord& record) {
 std::string held_text(const GateRecord& record) {
   const std::string& unit = record.gate.unit;
   if (!record.value) return "no number";
-  if (record.gate.kind == scene::GateKind::drift) {
+  if (record.gate.kind == GateKind::drift) {
     return fmt::format("{}, {} from the accepted {}; at most {}", in_unit(*record.value, unit),
                        in_unit(record.held(), unit), in_unit(record.accepted.value_or(NAN), unit),
                        in_unit(record.gate.limit, unit));
@@ -157,7 +157,7 @@ std::string table(const GateFolder& folder, const std::vector<GateRecord>& recor
   for (const GateRecord& record : records) {
     if (record.file != file) {
       file = record.file;
-      const auto of = std::ranges::find(folder.files, file, &scene::GateFile::name);
+      const auto of = std::ranges::find(folder.files, file, &GateFile::name);
       out += "<tr class=\"group\"><th colspan=\"2\">" + escape_xml(of != folder.files.end() ? of->title : file);
       if (of != folder.files.end()) {
         out += "<span class=\"under\">" + link(folder.folder / (file + ".toml"), out_folder) + ", scene " +

@@ -36,7 +36,7 @@ std::string table(const std::array<const char*, columns>& head,
 std::string beyond_text(const GateRecord& record) {
   const std::string limit =
       fmt::format("{:.4g}{}{}", record.gate.limit, record.gate.unit.empty() ? "" : " ", record.gate.unit);
-  if (record.gate.kind == scene::GateKind::truth) {
+  if (record.gate.kind == GateKind::truth) {
     return fmt::format("|{:.4g}| + {:.4g} is beyond {}", *record.value, *record.uncertainty, limit);
   }
   return fmt::format("{:.9g} is beyond {} of the accepted {:.9g}", *record.value, limit, *record.accepted);

@@ -4,6 +4,8 @@
 #include "compare/errors/errors.h"
 #include "compare/report/fast_drawings.h"
 #include "compare/format/svg_plot.h"
+#include "fast/run/run.h"
+#include "reference/solver.h"
 
 #include <optional>
 #include <string>

@@ -4,6 +4,7 @@
 #include "compare/format/text.h"
 #include "fast/step/state.h"
 #include "scene/model/area_law.h"
+#include "compare/errors/compute_errors.h"
 
 #include <fmt/format.h>
 

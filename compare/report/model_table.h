@@ -3,6 +3,8 @@
 #pragma once
 
 #include "compare/errors/errors.h"
+#include "fast/run/run.h"
+#include "reference/solver.h"
 
 #include <string>
 #include <vector>

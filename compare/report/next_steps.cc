@@ -1,13 +1,13 @@
 #include "compare/report/next_steps.h"
 
 #include "compare/report/comparison_drawings.h"
-#include "compare/errors/error_sums.h"
+#include "compare/errors/measure.h"
 #include "compare/report/model_table.h"
 #include "compare/format/text.h"
 #include "fast/command/command_line.h"
 #include "fast/step/state.h"
 #include "scene/base/error.h"
-#include "scene/tuning_study.h"
+#include "compare/input/tuning_study.h"
 
 #include <fmt/format.h>
 
@@ -70,7 +70,7 @@ std::filesystem::path tuning_study_of(const std::filesystem::path& scene_file) {
       const std::string text = scene::read_file(file).value_or("");
       if (text.find("kind = \"tuning\"") == std::string::npos) continue;
       try {
-        const scene::TuningStudy study = scene::load_tuning_study(file, {});
+        const TuningStudy study = load_tuning_study(file, {});
         const bool trains = std::any_of(study.training.begin(), study.training.end(),
                                         [&](const auto& contact) { return contact.scene.name == scene_file.stem(); });
         if (trains) return file;

@@ -4,6 +4,8 @@
 
 #include "compare/errors/errors.h"
 #include "compare/solve/reference_run.h"
+#include "fast/run/run.h"
+#include "reference/solver.h"
 
 #include <filesystem>
 #include <string>

@@ -3,6 +3,8 @@
 
 #include "compare/errors/errors.h"
 #include "compare/format/svg_plot.h"
+#include "fast/run/run.h"
+#include "reference/solver.h"
 
 #include <array>
 #include <string>

@@ -3,7 +3,7 @@
 #include "compare/errors/figures.h"
 #include "compare/format/page.h"
 #include "compare/format/text.h"
-#include "compare/viewer/viewer.h"
+#include "compare/report/viewer.h"
 
 #include <fmt/format.h>
 

@@ -1,14 +1,24 @@
 // The page a reader opens first: one self-contained HTML file, nothing fetched; a script only for the view in space.
 #pragma once
 
-#include "compare/comparison/compare.h"
 #include "compare/report/comparison_drawings.h"
 #include "compare/report/model_table.h"
-#include "compare/errors/verdict.h"
+#include "compare/report/verdict.h"
+#include "compare/errors/errors.h"
+#include "compare/report/next_steps.h"
+#include "scene/model/plan.h"
+#include "scene/output/results.h"
+#include "fast/run/run.h"
+#include "reference/solver.h"
 
 #include <filesystem>
 
 namespace touchstone::compare {
+
+/// What each side models of the scene and leaves out.
+struct Plans {
+  scene::Plan fast, reference;
+};
 
 /// All a report is made of; refers to what the caller holds.
 struct ReportContent {

@@ -102,9 +102,9 @@ std::string case_id(const std::string& run, const scene::Scene& scene) {
   return scene::hash_text(run + '\n' + scene::scene_hash(scene));
 }
 
-StudyManifest expand(const scene::Study& study, const std::filesystem::path& folder,
+StudyManifest expand(const Study& study, const std::filesystem::path& folder,
                      const std::filesystem::path& program, const std::filesystem::path& store) {
-  std::vector<scene::Scene> scenes = scene::load_cases(study, [&](const scene::Scene& scene) {
+  std::vector<scene::Scene> scenes = load_cases(study, [&](const scene::Scene& scene) {
     return study.run == "fast" ? std::vector<scene::Fault>{} : reference::unsupported(scene);
   });
   const scene::FolderLock lock = scene::prepare_result_folder(folder);
@@ -114,7 +114,7 @@ StudyManifest expand(const scene::Study& study, const std::filesystem::path& fol
   std::set<std::string> ids;
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     scene::Scene& scene = scenes[k];
-    const scene::StudyCase& one = study.cases[k];
+    const StudyCase& one = study.cases[k];
     scene.title = (scene.title.empty() ? scene.name : scene.title) + ": " + one.name;
     if (scene.tool.mesh) scene.tool.file = keep_tool(scene.tool, folder);
     const std::string text = scene::resolved_toml(scene);
@@ -125,7 +125,7 @@ StudyManifest expand(const scene::Study& study, const std::filesystem::path& fol
                        {}};
     if (!ids.insert(entry.id).second) continue;
     entry.warning = scene::no_contact_warning(scene);
-    for (const scene::StudySetting& setting : one.settings) entry.settings.emplace_back(setting.key, setting.value);
+    for (const scene::Setting& setting : one.settings) entry.settings.emplace_back(setting.key, setting.value);
     scene::write_file(manifest.scene_file(entry), text);
     manifest.cases.push_back(std::move(entry));
   }

@@ -11,7 +11,7 @@
 // Expanding again, with more values, keeps the results that are there.
 #pragma once
 
-#include "compare/study/study_file.h"
+#include "compare/input/study_file.h"
 
 #include <filesystem>
 #include <optional>
@@ -52,7 +52,7 @@ struct StudyManifest {
 /// @param store    of the reference, for the batch script
 /// @throws scene::InputError with what is wrong in any case, before anything is written,
 ///         std::filesystem::filesystem_error
-StudyManifest expand(const scene::Study& study, const std::filesystem::path& folder,
+StudyManifest expand(const Study& study, const std::filesystem::path& folder,
                      const std::filesystem::path& program, const std::filesystem::path& store);
 
 /// Where a result folder stands in the study it lies in.

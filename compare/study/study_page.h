@@ -1,7 +1,7 @@
 // A study on one page: every case by its name, and how the errors change along what varies.
 #pragma once
 
-#include "compare/study/study_table.h"
+#include "compare/study/study_run.h"
 
 #include <string>
 #include <vector>

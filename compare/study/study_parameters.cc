@@ -76,7 +76,7 @@ std::string value_of(const StudyManifest& manifest, const ManifestCase& one, con
   const std::filesystem::path file = manifest.scene_file(one);
   const std::optional<std::string> text = scene::read_file(file);
   if (!text) throw scene::InputError({{file.string(), 0, 0, "cannot be read; expected the scene of " + one.name}});
-  return words_of(scene::value_in(*text, file, key).value_or(""));
+  return words_of(value_in(*text, file, key).value_or(""));
 }
 
 /// Places of the cases beside the axes on this axis, when it is this key that varies along it: the label of the cases

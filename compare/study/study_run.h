@@ -7,6 +7,7 @@
 #pragma once
 
 #include "compare/study/study.h"
+#include "scene/model/record.h"
 
 #include <functional>
 #include <string>
@@ -23,6 +24,13 @@ struct CaseStatus {
   double wall_s = 0.0;  ///< done: of the run that finished it
 };
 [[nodiscard]] CaseStatus case_status(const StudyManifest& manifest, const ManifestCase& one);
+
+/// One case with what it left.
+struct StudyRow {
+  const ManifestCase* one = nullptr;  ///< of the manifest
+  CaseStatus status;
+  scene::Figures figures;  ///< of its summary.json where it is done
+};
 
 /// Runs one scene file into a prepared folder as the verb of that name does. Messages go to std::cerr.
 /// @returns the verb's exit code; may throw what the verb throws

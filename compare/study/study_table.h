@@ -13,13 +13,6 @@ struct StudyTable {
   std::string text;  ///< for the terminal: what is not done, why, and the indices to run again
 };
 
-/// One case with what it left.
-struct StudyRow {
-  const ManifestCase* one = nullptr;  ///< of the manifest
-  CaseStatus status;
-  scene::Figures figures;  ///< of its summary.json where it is done
-};
-
 /// Merges the summaries into summary.csv, summary.json, summary.md and report.html in the study's folder: one row per
 /// case with its place on every axis, its state, and every figure. What a case does not have is empty; a number that is
 /// not known is nan, in JSON null. Cases may be running.

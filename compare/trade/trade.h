@@ -5,7 +5,8 @@
 #include "compare/errors/errors.h"
 #include "compare/tune/tune.h"
 #include "scene/output/results.h"
-#include "scene/tuning_study.h"
+#include "compare/input/tuning_study.h"
+#include "reference/solver.h"
 
 #include <filesystem>
 #include <functional>
@@ -60,7 +61,7 @@ using TradeError = Measure TradeRow::*;
 
 struct Trade {
   std::string title;
-  std::vector<scene::TuningContact> contacts;  ///< what the errors are judged on
+  std::vector<TuningContact> contacts;  ///< what the errors are judged on
   bool held_out = false;                       ///< they are a study's held-out ones
   double tick_us = 1000.0;                     ///< of the scene's device loop
   std::vector<TradeRow> rows;

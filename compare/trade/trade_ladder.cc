@@ -11,6 +11,7 @@
 
 #ifdef TOUCHSTONE_BULLET
 #include "fast/bench/bullet_peer.h"
+#include "compare/errors/compute_errors.h"
 #endif
 
 #include <fmt/format.h>
@@ -135,11 +136,11 @@ class Ladder {
     if (options.held_out.empty()) {
       trade_.contacts = {{trade_.title, "", scene}};
     } else {
-      trade_.contacts = scene::load_tuning_study(options.held_out, reference::unsupported).held_out;
+      trade_.contacts = load_tuning_study(options.held_out, reference::unsupported).held_out;
       trade_.held_out = true;
     }
     // Bad files are refused before any work.
-    for (const auto& file : options.parameters) (void)scene::with_parameters(scene, file);
+    for (const auto& file : options.parameters) (void)with_parameters(scene, file);
   }
 
   Trade climb() {
@@ -178,7 +179,7 @@ class Ladder {
     if (triangles != own) levels = static_cast<int>(data_of(contact, own).result.levels.size());
     const auto [found, is_new] = data_.try_emplace({contact, triangles});
     if (is_new) {
-      scene::TuningContact one = trade_.contacts[contact];
+      TuningContact one = trade_.contacts[contact];
       one.scene.fast.triangles = triangles;
       tell("reference of \"" + one.name + "\" on " + thousands(triangles) + " triangles");
       found->second = std::make_unique<TuningData>(tuning_data(
@@ -254,7 +255,7 @@ class Ladder {
                    {});
     }
     for (const std::filesystem::path& file : options_.parameters) {
-      const Scene tuned = scene::with_parameters(scene_, file);
+      const Scene tuned = with_parameters(scene_, file);
       const bool area_aware = tuned.contact.law == scene::ContactLaw::area_aware;
       const std::string formulation =
           tuned.fast.formulation == scene::Formulation::published ? "published" : "corrected";
@@ -263,7 +264,7 @@ class Ladder {
                     .key = "tuned-" + file.stem().string(),
                     .label = formulation + (area_aware ? ", area-aware" : "") + ", tuned",
                     .family = area_aware ? TradeFamily::area_aware : TradeFamily::paper},
-                   [file](const Scene& scene) { return scene::with_parameters(scene, file); }, {});
+                   [file](const Scene& scene) { return with_parameters(scene, file); }, {});
     }
   }
 
@@ -274,7 +275,7 @@ class Ladder {
       if (triangles == scene_.fast.triangles) continue;  // is there already
       const bool tuned = !options_.parameters.empty();
       const Change change = [this, tuned, triangles](Scene scene) {
-        if (tuned) scene = scene::with_parameters(std::move(scene), options_.parameters.front());
+        if (tuned) scene = with_parameters(std::move(scene), options_.parameters.front());
         scene.fast.formulation = scene::Formulation::corrected;
         scene.fast.triangles = triangles;
         return scene;
@@ -414,7 +415,7 @@ class Ladder {
   using TuningContactRef = std::reference_wrapper<const Scene>;
   [[nodiscard]] std::vector<TuningContactRef> scenes() const {
     std::vector<TuningContactRef> out{scene_};
-    for (const scene::TuningContact& contact : trade_.contacts) out.emplace_back(contact.scene);
+    for (const TuningContact& contact : trade_.contacts) out.emplace_back(contact.scene);
     return out;
   }
 #else

@@ -94,7 +94,7 @@ std::string one_plot(const Trade& trade, const Judged& figure, int width_px, int
 
 std::string judged_on(const Trade& trade) {
   std::string names;
-  for (const scene::TuningContact& contact : trade.contacts) names += (names.empty() ? "" : "; ") + contact.name;
+  for (const TuningContact& contact : trade.contacts) names += (names.empty() ? "" : "; ") + contact.name;
   return trade.held_out ? "Errors are the worst of the held-out contacts: " + names + "."
                         : "Errors are those on the scene's own contacts.";
 }

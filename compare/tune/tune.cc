@@ -3,6 +3,7 @@
 #include "compare/format/text.h"
 #include "fast/run/replay.h"
 #include "scene/model/rules.h"
+#include "compare/errors/compute_errors.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +16,6 @@
 namespace touchstone::compare {
 namespace {
 
-using scene::TuningStage;
 using scene::Vec3;
 
 constexpr int profile_points = 9;
@@ -57,11 +57,11 @@ double at_least(double uncertainty, double floor) {
   return std::isfinite(uncertainty) ? std::max(uncertainty, floor) : floor;
 }
 
-void set_values(scene::Scene& scene, const std::vector<scene::TuningParameter>& parameters,
+void set_values(scene::Scene& scene, const std::vector<TuningParameter>& parameters,
                 const Eigen::VectorXd& values) {
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     if (parameters[k].key.starts_with("contact.friction.") && !scene.contact.friction) continue;
-    scene::set_parameter(scene, parameters[k].key, values[static_cast<Eigen::Index>(k)]);
+    set_parameter(scene, parameters[k].key, values[static_cast<Eigen::Index>(k)]);
   }
 }
 
@@ -106,7 +106,7 @@ class Training {
   [[nodiscard]] int observations() const noexcept { return observations_; }
 
   /// Difference of the force vectors over the band, three components an instant.
-  std::optional<Eigen::VectorXd> force(const std::vector<scene::TuningParameter>& parameters,
+  std::optional<Eigen::VectorXd> force(const std::vector<TuningParameter>& parameters,
                                        const Eigen::VectorXd& values) {
     Eigen::VectorXd out(3 * observations_);
     Eigen::Index row = 0;
@@ -126,7 +126,7 @@ class Training {
 
   /// Difference of the displacements times sqrt(area), so scaled that the mean of an instant's sum of squares is
   /// (shape.rel_l2 / the reference's uncertainty of it)^2.
-  std::optional<Eigen::VectorXd> shape(const std::vector<scene::TuningParameter>& parameters,
+  std::optional<Eigen::VectorXd> shape(const std::vector<TuningParameter>& parameters,
                                        const Eigen::VectorXd& values) {
     Eigen::VectorXd out(shape_rows_);
     Eigen::Index row = 0;
@@ -178,7 +178,7 @@ std::vector<std::string> notes_of(const StageFit& stage) {
   std::vector<std::string> notes;
   const Fit& fit = stage.fit;
   for (std::size_t k = 0; k < stage.parameters.size(); ++k) {
-    const scene::TuningParameter& one = stage.parameters[k];
+    const TuningParameter& one = stage.parameters[k];
     const Determination& found = fit.parameters[k];
     if (found.at_bound != AtBound::no) {
       const bool low = found.at_bound == AtBound::low;
@@ -208,7 +208,7 @@ std::vector<std::string> notes_of(const StageFit& stage) {
                     fit.rank, fit.free));
   }
   for (const Profile& profile : stage.profiles) {
-    const scene::TuningParameter& one = stage.parameters[profile.parameter];
+    const TuningParameter& one = stage.parameters[profile.parameter];
     const Determination& found = fit.parameters[profile.parameter];
     if (found.open || found.at_bound != AtBound::no) continue;
     if (profile.open_low && profile.open_high) {
@@ -226,8 +226,8 @@ std::vector<std::string> notes_of(const StageFit& stage) {
 StageFit fit_stage(const Tuning& tuning, const TunedModel& model, TuningStage stage, double deepest) {
   StageFit out;
   out.stage = stage;
-  for (const scene::TuningParameter& one : tuning.study.parameters) {
-    if (one.stage != stage || !scene::applies(one, model.formulation, model.law)) continue;
+  for (const TuningParameter& one : tuning.study.parameters) {
+    if (one.stage != stage || !applies(one, model.formulation, model.law)) continue;
     out.parameters.push_back(one);
     out.searched.push_back({one.key, one.low, one.high, one.start, one.log});
   }
@@ -416,7 +416,7 @@ std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model
 
 }  // namespace
 
-TuningData tuning_data(const scene::TuningContact& contact, const SolveReference& solve) {
+TuningData tuning_data(const TuningContact& contact, const SolveReference& solve) {
   TuningData data{
       contact, {}, {}, scene::tessellate(*scene::body_shape(contact.scene.body), contact.scene.fast.triangles)};
   data.result = solve(contact.scene, data.surface);
@@ -463,7 +463,7 @@ scene::Scene tuned_scene(const scene::Scene& scene, const TunedModel& model) {
   return out;
 }
 
-Tuning tune(const scene::TuningStudy& study, const SolveReference& solve,
+Tuning tune(const TuningStudy& study, const SolveReference& solve,
             const std::function<void(const std::string&)>& say) {
   const auto tell = [&](const std::string& line) {
     if (say) say(line);
@@ -471,7 +471,7 @@ Tuning tune(const scene::TuningStudy& study, const SolveReference& solve,
   Tuning tuning{study, {}, {}};
   double deepest = 0.0;
   for (const auto* list : {&study.training, &study.held_out}) {
-    for (const scene::TuningContact& contact : *list) {
+    for (const TuningContact& contact : *list) {
       tell("reference of \"" + contact.name + "\"");
       tuning.data.push_back(tuning_data(contact, solve));
       deepest = std::max(deepest, deepest_m(tuning.data.back()));

@@ -5,7 +5,9 @@
 #include "compare/errors/errors.h"
 #include "compare/tune/fit.h"
 #include "scene/output/results.h"
-#include "scene/tuning_study.h"
+#include "compare/input/tuning_study.h"
+#include "fast/run/run.h"
+#include "reference/solver.h"
 
 #include <filesystem>
 #include <functional>
@@ -20,7 +22,7 @@ using SolveReference = std::function<reference::Result(const scene::Scene&, cons
 
 /// One contact with the reference's answer at the instants that count.
 struct TuningData {
-  scene::TuningContact contact;
+  TuningContact contact;
   reference::Result result;           ///< only those instants
   std::vector<std::size_t> instants;  ///< their indices in the whole track
   scene::Surface surface;
@@ -30,8 +32,8 @@ struct TuningData {
 
 /// Fit of one stage.
 struct StageFit {
-  scene::TuningStage stage = scene::TuningStage::force;
-  std::vector<scene::TuningParameter> parameters;
+  TuningStage stage = TuningStage::force;
+  std::vector<TuningParameter> parameters;
   std::vector<FitParameter> searched;  ///< the same, as the fit takes them
   Fit fit;
   std::vector<Profile> profiles;
@@ -78,13 +80,13 @@ struct TunedModel {
 };
 
 struct Tuning {
-  scene::TuningStudy study;
+  TuningStudy study;
   std::vector<TuningData> data;  ///< training contacts first
   std::vector<TunedModel> models;
 };
 
 /// Solves a contact. @throws InputError when the reference is never in contact at an instant that counts
-[[nodiscard]] TuningData tuning_data(const scene::TuningContact& contact, const SolveReference& solve);
+[[nodiscard]] TuningData tuning_data(const TuningContact& contact, const SolveReference& solve);
 
 /// Keeps of a run over a contact's whole track the instants that count. @param instants  of TuningData
 void keep_instants(fast::Run& run, const std::vector<std::size_t>& instants);
@@ -94,7 +96,7 @@ void keep_instants(fast::Run& run, const std::vector<std::size_t>& instants);
 
 /// @param say  one line about what begins; may be empty
 /// @throws what `solve` throws, std::runtime_error when the model has no answer at any start of a fit
-[[nodiscard]] Tuning tune(const scene::TuningStudy& study, const SolveReference& solve,
+[[nodiscard]] Tuning tune(const TuningStudy& study, const SolveReference& solve,
                           const std::function<void(const std::string&)>& say = {});
 
 /// Keys of summary.json: of a comparison under training. and held_out., the worst of the contacts, with

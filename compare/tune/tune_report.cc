@@ -44,7 +44,7 @@ std::string worst_tile(const Tuning& tuning, bool held_out, const std::string& w
 }
 
 std::string head_section(const Tuning& tuning) {
-  const scene::TuningStudy& study = tuning.study;
+  const TuningStudy& study = tuning.study;
   std::string out = tag("h1", study.title.empty() ? study.name : study.title) + "\n";
   out += tag("p",
              "The fast model's free numbers, fitted to the finite-element reference on training contacts and judged on "
@@ -131,7 +131,7 @@ std::string unit_text(double value, const std::string& unit) {
   return number_text(value) + (unit.empty() ? "" : std::string(no_break) + unit);
 }
 
-std::string error_text(const scene::TuningParameter& parameter, const Determination& found, bool another_at_bound) {
+std::string error_text(const TuningParameter& parameter, const Determination& found, bool another_at_bound) {
   if (found.at_bound != AtBound::no)
     return found.at_bound == AtBound::low ? "none: at its lower bound" : "none: at its upper bound";
   if (!found.error) return "none: the data leave it open";
@@ -147,7 +147,7 @@ std::string parameter_table(const StageFit& stage) {
       "error</th>"
       "<th class=\"n\">bounds</th><th>searched</th></tr>\n";
   for (std::size_t k = 0; k < stage.parameters.size(); ++k) {
-    const scene::TuningParameter& one = stage.parameters[k];
+    const TuningParameter& one = stage.parameters[k];
     const Determination& found = stage.fit.parameters[k];
     out += "<tr>" + cell(one.key) + number_cell(unit_text(found.value, one.unit)) +
            number_cell(error_text(one, found, bound)) +
@@ -171,7 +171,7 @@ std::string fit_sentence(const StageFit& stage) {
 std::string correlation_table(const StageFit& stage) {
   if (stage.parameters.size() < 2) return "";
   std::string out = tag("h4", "Correlation") + "\n<div class=\"scroll\"><table>\n<tr><th></th>";
-  for (const scene::TuningParameter& one : stage.parameters) out += tag("th", one.key, "class=\"n\"");
+  for (const TuningParameter& one : stage.parameters) out += tag("th", one.key, "class=\"n\"");
   out += "</tr>\n";
   for (std::size_t i = 0; i < stage.parameters.size(); ++i) {
     out += "<tr>" + tag("th", stage.parameters[i].key);
@@ -186,7 +186,7 @@ std::string correlation_table(const StageFit& stage) {
 
 std::string starts_table(const StageFit& stage) {
   std::string out = "<details>\n<summary>Every start</summary>\n<div class=\"scroll\"><table>\n<tr>";
-  for (const scene::TuningParameter& one : stage.parameters) out += tag("th", one.key, "class=\"n\"");
+  for (const TuningParameter& one : stage.parameters) out += tag("th", one.key, "class=\"n\"");
   out += "<th class=\"n\">squared differences</th></tr>\n";
   for (const FitStart& start : stage.fit.starts) {
     out += "<tr>";
@@ -202,7 +202,7 @@ std::string profile_plots(const StageFit& stage) {
   if (stage.profiles.empty()) return "";
   std::string out = "<div class=\"plots\">\n";
   for (const Profile& profile : stage.profiles) {
-    const scene::TuningParameter& one = stage.parameters[profile.parameter];
+    const TuningParameter& one = stage.parameters[profile.parameter];
     Plot plot;
     plot.title = "Profile of " + one.key;
     plot.x_label = one.key + (one.unit.empty() ? "" : " [" + one.unit + "]");
@@ -219,7 +219,7 @@ std::string profile_plots(const StageFit& stage) {
 
 std::string stage_section(const StageFit& stage) {
   std::string out =
-      tag("h3", stage.stage == scene::TuningStage::force ? "Force" : "Shape, with the force as found") + "\n";
+      tag("h3", stage.stage == TuningStage::force ? "Force" : "Shape, with the force as found") + "\n";
   out += parameter_table(stage) + tag("p", fit_sentence(stage)) + "\n";
   for (const std::string& note : stage.notes) out += tag("p", note) + "\n";
   return out + correlation_table(stage) + profile_plots(stage) + starts_table(stage);

@@ -104,7 +104,7 @@ scene::Figures model_figures(const Tuning& tuning, const TunedModel& model) {
   out.push_back({"training.shape_parts.hat_alone", model.shape_parts.hat_alone, "", ""});
   for (const StageFit& stage : model.stages) {
     for (std::size_t k = 0; k < stage.parameters.size(); ++k) {
-      const scene::TuningParameter& one = stage.parameters[k];
+      const TuningParameter& one = stage.parameters[k];
       const Determination& found = stage.fit.parameters[k];
       out.push_back({"parameter." + one.key, found.value, "", one.unit});
       const std::string key = "parameter." + one.key + (one.log ? ".error_rel" : ".error");
@@ -118,7 +118,7 @@ scene::Figures model_figures(const Tuning& tuning, const TunedModel& model) {
                        ""});
       }
     }
-    const std::string key = stage.stage == scene::TuningStage::force ? "fit.force." : "fit.shape.";
+    const std::string key = stage.stage == TuningStage::force ? "fit.force." : "fit.shape.";
     out.push_back({key + "chi2_per_freedom", stage.fit.chi2_per_freedom, "", ""});
     out.push_back({key + "free", static_cast<double>(stage.fit.free), "", ""});
     out.push_back({key + "rank", static_cast<double>(stage.fit.rank), "", ""});
@@ -170,7 +170,7 @@ std::string parameters_toml(const Tuning& tuning, const TunedModel& model) {
                                    "contact.k3_n_per_m3", "fast.formulation"};
   const scene::Scene* scene = nullptr;
   for (const StageFit& stage : model.stages) {
-    for (const scene::TuningParameter& one : stage.parameters) {
+    for (const TuningParameter& one : stage.parameters) {
       keys.push_back(one.key);
       if (!one.key.starts_with("contact.friction.")) continue;
       for (const TuningData& data : tuning.data) {

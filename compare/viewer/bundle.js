@@ -33,7 +33,7 @@ const notice = licences.join('\n\n').replaceAll('*/', '* /').replaceAll(/[^\n\x2
 const code = result.outputFiles[0].text.replaceAll(']]>', ']] >');
 if (/<\/script|<!--/i.test(code)) throw new Error('the bundle holds text that would end the script early');
 if (code.includes(')bundle"')) throw new Error('the bundle holds text that would end the string early');
-writeFileSync('viewer_bundle.cc', `#include "compare/viewer_bundle.h"
+writeFileSync('viewer_bundle.cc', `#include "compare/viewer/viewer_bundle.h"
 
 namespace touchstone::compare {
 

@@ -1,6 +1,6 @@
 #include "fast/contact/pull_back.h"
 
-#include "fast/surface/patch_kernels.h"
+#include "fast/realtime/wide_loops.h"
 #include "fast/contact/rest_distance.h"
 
 #include <algorithm>

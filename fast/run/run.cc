@@ -5,7 +5,6 @@
 #include "fast/step/several_regions.h"
 #include "fast/step/step.h"
 #include "fast/run/ticks.h"
-#include "scene/input/fields.h"
 #include "scene/model/rest_depth.h"
 
 #include <xxhash.h>

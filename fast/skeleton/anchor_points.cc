@@ -1,6 +1,6 @@
 #include "fast/skeleton/anchor_points.h"
 
-#include "fast/surface/patch_kernels.h"
+#include "fast/realtime/wide_loops.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "fast/realtime/flush_tiny_numbers.h"
 #include "fast/step/press.h"
 #include "fast/step/several_regions.h"
-#include "scene/input/fields.h"
+#include "scene/base/range.h"
 
 namespace touchstone::fast {
 namespace {

@@ -42,6 +42,9 @@ struct FactorTerms {
 [[nodiscard]] double local_room_published(const LocalConstants&, const RegionSize&, double r_m) noexcept;
 [[nodiscard]] double local_room_corrected(const LocalConstants&, const RegionSize&, double r_m) noexcept;
 
+[[nodiscard]] FactorTerms factor_terms_published(const LocalConstants&, const RegionSize&) noexcept;
+[[nodiscard]] FactorTerms factor_terms_corrected(const LocalConstants&, const RegionSize&) noexcept;
+
 /// Multiplies the displacement of every vertex with r < r_R, r its rest distance from p0.
 using ApplyLocalFactor = void (*)(const SurfacePatches&, const LocalConstants&, const RegionSize&,
                                   const scene::Vec3& p0_W_m, SurfaceField&) noexcept;

@@ -8,7 +8,9 @@ namespace touchstone::fast {
 
 /// local_factor_published
 struct FactorPublished {
-  [[nodiscard]] static FactorTerms terms(const LocalConstants&, const RegionSize&) noexcept;
+  [[nodiscard]] static FactorTerms terms(const LocalConstants& c, const RegionSize& size) noexcept {
+    return factor_terms_published(c, size);
+  }
   [[nodiscard]] TOUCHSTONE_INLINE static float at(const FactorTerms& c, float r_m) noexcept {
     const float w = (1.0f + c.C_n * log_of((r_m + c.C_r_m) * c.inverse_reach_per_m)) * c.area_part;
     return r_m > c.rim_m ? w : 1.0f;
@@ -21,7 +23,9 @@ struct FactorPublished {
 
 /// local_factor_corrected
 struct FactorCorrected {
-  [[nodiscard]] static FactorTerms terms(const LocalConstants&, const RegionSize&) noexcept;
+  [[nodiscard]] static FactorTerms terms(const LocalConstants& c, const RegionSize& size) noexcept {
+    return factor_terms_corrected(c, size);
+  }
   [[nodiscard]] TOUCHSTONE_INLINE static float at(const FactorTerms& c, float r_m) noexcept {
     const float point = 1.0f + c.C_n * log_of((r_m + c.C_r_m) * c.inverse_reach_per_m);
     const float w =

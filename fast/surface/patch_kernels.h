@@ -1,6 +1,7 @@
 // Building blocks of the loops over the vertices of a patch, for the files that have such loops.
 #pragma once
 
+#include "fast/realtime/wide_loops.h"
 #include "fast/surface/hat.h"
 
 #include <algorithm>
@@ -9,17 +10,6 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-
-/// Compiles a function with loops over vertices for 128 and for 256 bit registers and picks one at load. Neither has
-/// fused multiplication, so both give the same bits. The picking runs before a sanitizer is ready, hence not there.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define TOUCHSTONE_WIDE_LOOPS [[gnu::target_clones("default", "avx2")]]
-#else
-#define TOUCHSTONE_WIDE_LOOPS
-#endif
-/// Takes a function into the registers of the one that calls it.
-#define TOUCHSTONE_INLINE [[gnu::always_inline]] inline
 
 namespace touchstone::fast {
 

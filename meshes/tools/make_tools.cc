@@ -2,6 +2,7 @@
 #include "scene/mesh/mesh_checks.h"
 #include "scene/shape/surface_builder.h"
 #include "scene/mesh/triangle_mesh.h"
+#include "scene/mesh/mesh_formats.h"
 
 #include <algorithm>
 #include <cmath>

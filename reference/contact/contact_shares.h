@@ -1,4 +1,4 @@
-// A contact problem on several ranks: who has which cells, and what goes between the first rank and the others.
+// Which rank has which cells of a mesh.
 #pragma once
 
 #include "reference/mesh/mesh.h"
@@ -17,8 +17,5 @@ template <int dim>
 /// @returns the rank of every cell
 template <int dim>
 [[nodiscard]] std::vector<int> ranks_of_cells(const Mesh<dim>& mesh, int ranks);
-
-/// The life of every rank but the first, until the first one's session ends.
-void follow_first_rank();
 
 }  // namespace touchstone::reference

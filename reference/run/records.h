@@ -2,7 +2,8 @@
 #pragma once
 
 #include "reference/run/step_record.h"
-#include "reference/solver.h"
+#include "reference/run/options.h"
+#include "reference/run/result.h"
 
 #include <Eigen/Core>
 

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "reference/run/model_choice.h"
-#include "reference/solver.h"
+#include "reference/run/options.h"
+#include "reference/run/result.h"
 
 #include <chrono>
 

@@ -5,7 +5,8 @@
 #include "reference/run/cost.h"
 #include "reference/run/model_choice.h"
 #include "reference/run/store.h"
-#include "reference/solver.h"
+#include "reference/run/options.h"
+#include "reference/run/result.h"
 
 #include <functional>
 #include <string>

@@ -149,4 +149,17 @@ std::shared_ptr<const ToolDistance> tool_distance(const scene::Tool& tool) {
   return nullptr;
 }
 
+template <int dim>
+RigidTool<dim> ball_tool(double radius_m, const Eigen::Matrix<double, dim, 1>& center_m) {
+  scene::Tool tool;
+  tool.radius_m = radius_m;
+  scene::Pose pose;
+  if constexpr (dim == 3) pose.position_m = center_m;
+  else pose.position_m = {center_m.x(), 0.0, center_m.y()};
+  return {tool_distance(tool), pose};
+}
+
+template RigidTool<2> ball_tool(double, const Eigen::Vector2d&);
+template RigidTool<3> ball_tool(double, const Eigen::Vector3d&);
+
 }  // namespace touchstone::reference

@@ -13,4 +13,8 @@ namespace touchstone::reference {
 
 inline constexpr double box_edge_share = 0.125;
 
+/// A ball about its mass centre.
+template <int dim>
+[[nodiscard]] RigidTool<dim> ball_tool(double radius_m, const Eigen::Matrix<double, dim, 1>& center_m);
+
 }  // namespace touchstone::reference

@@ -1,6 +1,5 @@
 #include "reference/tool/tool_gap.h"
 
-#include "reference/tool/tool_distance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -107,16 +106,7 @@ Gap<dim> RigidTool<dim>::gap_along(const Point& X_m, const Point& N, const Point
   return g;
 }
 
-template <int dim>
-RigidTool<dim> ball_tool(double radius_m, const Eigen::Matrix<double, dim, 1>& center_m) {
-  scene::Tool tool;
-  tool.radius_m = radius_m;
-  return {tool_distance(tool), {in_space<dim>(center_m), Eigen::Quaterniond::Identity()}};
-}
-
 template class RigidTool<2>;
 template class RigidTool<3>;
-template RigidTool<2> ball_tool(double, const Eigen::Vector2d&);
-template RigidTool<3> ball_tool(double, const Eigen::Vector3d&);
 
 }  // namespace touchstone::reference

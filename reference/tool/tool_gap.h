@@ -71,8 +71,4 @@ class RigidTool {
   scene::Mat3 to_world_;
 };
 
-/// A ball about its mass centre.
-template <int dim>
-[[nodiscard]] RigidTool<dim> ball_tool(double radius_m, const Eigen::Matrix<double, dim, 1>& center_m);
-
 }  // namespace touchstone::reference

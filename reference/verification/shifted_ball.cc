@@ -2,6 +2,7 @@
 
 #include "reference/contact/contact_problem.h"
 #include "reference/mesh/mesh.h"
+#include "reference/tool/tool_distance.h"
 
 #include <algorithm>
 #include <cmath>

@@ -15,10 +15,10 @@ foreach(folder meshes fast reference compare)
   foreach(file ${files})
     file(STRINGS "${file}" includes REGEX "^[ \t]*#[ \t]*include")
     foreach(line ${includes})
-      # Three files may see TOML: the readers of gates and scenes, and what the studies' readers share. One may ask FCL,
-      # which allocates: a tick never includes it. One may speak MPI.
+      # Two files may see TOML: the reader of scenes, and what it shares with those of studies and gates. One may ask
+      # FCL, which allocates: a tick never includes it. One may speak MPI.
       if(line MATCHES "[<\"](${forbidden_${folder}})" OR
-         (folder STREQUAL meshes AND line MATCHES "[<\"]toml" AND NOT file MATCHES "/(gate_file\\.cc|scene_io\\.cc|toml_reader\\.h)$") OR
+         (folder STREQUAL meshes AND line MATCHES "[<\"]toml" AND NOT file MATCHES "/(scene_io\\.cc|toml_reader\\.h)$") OR
          (folder STREQUAL reference AND line MATCHES "[<\"]mpi" AND NOT file MATCHES "/ranks\\.cc$") OR
          (folder STREQUAL fast AND line MATCHES "[<\"]fcl/" AND NOT file MATCHES "/separation\\.cc$"))
         list(APPEND wrong "${file}: ${line}")

@@ -8,16 +8,17 @@
 #include "reference/run/step_record.h"
 #include "scene/base/error.h"
 #include "scene/base/files.h"
-#include "scene/gate_file.h"
+#include "compare/input/gate_file.h"
 #include "scene/base/hash.h"
 #include "scene/mesh/mesh_formats.h"
 #include "scene/input/scene_io.h"
-#include "compare/study/study_file.h"
+#include "compare/input/study_file.h"
 #include "scene/shape/surface.h"
 #include "scene/base/text.h"
 #include "scene/input/track_csv.h"
 #include "scene/mesh/triangle_mesh.h"
-#include "scene/tuning_study.h"
+#include "compare/input/tuning_study.h"
+#include "scene/mesh/mesh_file.h"
 
 #include <unistd.h>
 #include <zlib.h>
@@ -113,17 +114,17 @@ void scene_file(const std::string& bytes) {
     finding("the resolved scene is another one:\n" + resolved);
 }
 
-void study_file(const std::string& bytes) { (void)scene::load_study(folder().file("studies/input.toml", bytes)); }
+void study_file(const std::string& bytes) { (void)compare::load_study(folder().file("studies/input.toml", bytes)); }
 void tuning_file(const std::string& bytes) {
-  (void)scene::load_tuning_study(folder().file("studies/input.toml", bytes));
+  (void)compare::load_tuning_study(folder().file("studies/input.toml", bytes));
 }
 
-void gate_file(const std::string& bytes) { (void)scene::parse_gate_file(bytes, "gates/input.toml"); }
-void waiver_file(const std::string& bytes) { (void)scene::load_gate_waivers(folder().file("waivers.toml", bytes)); }
+void gate_file(const std::string& bytes) { (void)compare::parse_gate_file(bytes, "gates/input.toml"); }
+void waiver_file(const std::string& bytes) { (void)compare::load_gate_waivers(folder().file("waivers.toml", bytes)); }
 
 void parameter_file(const std::string& bytes) {
   static const scene::Scene scene = scene::load_scene(source / "meshes/scenes/ball-on-cube-press.toml");
-  (void)scene::with_parameters(scene, folder().file("parameters/input.toml", bytes));
+  (void)compare::with_parameters(scene, folder().file("parameters/input.toml", bytes));
 }
 
 void track_file(const std::string& bytes) {

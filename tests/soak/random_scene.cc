@@ -2,6 +2,7 @@
 
 #include "scene/base/error.h"
 #include "scene/model/rules.h"
+#include "scene/mesh/mesh_file.h"
 
 #include <algorithm>
 #include <array>

@@ -3,6 +3,7 @@
 #include "compare/errors/figures.h"
 #include "compare/report/report.h"
 #include "scene/input/scene_io.h"
+#include "compare/errors/compute_errors.h"
 
 #include <algorithm>
 #include <cmath>

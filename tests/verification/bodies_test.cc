@@ -3,6 +3,7 @@
 #include "reference/mesh/round_mesh.h"
 #include "reference/run/model_choice.h"
 #include "reference/verification/closed_forms.h"
+#include "reference/tool/tool_distance.h"
 
 #include <gtest/gtest.h>
 

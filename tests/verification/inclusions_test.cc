@@ -3,6 +3,7 @@
 #include "reference/contact/contact_problem.h"
 #include "reference/mesh/round_mesh.h"
 #include "reference/verification/closed_forms.h"
+#include "reference/tool/tool_distance.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 // Reduced models against fuller ones on the same cells: equal to the solver's tolerance.
 #include "reference/contact/contact_problem.h"
 #include "reference/mesh/mesh.h"
+#include "reference/tool/tool_distance.h"
 
 #include <gtest/gtest.h>
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 
@@ -112,6 +113,14 @@ double rounded(double value, int digits) {
 
 std::string_view without_mark(std::string_view text) noexcept {
   return text.substr(text.starts_with("\xef\xbb\xbf") ? 3 : 0);
+}
+
+std::string number_text(double value) {
+  char text[32];
+  const std::to_chars_result end = std::to_chars(text, text + sizeof text, value);
+  std::string out(text, end.ptr);
+  if (out.find_first_of(".en") == std::string::npos) out += ".0";
+  return out;
 }
 
 }  // namespace touchstone::scene

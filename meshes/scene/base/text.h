@@ -34,6 +34,9 @@ inline constexpr std::size_t faults_shown_max = 40;
 /// As a TOML basic string, which reads back the same. @param text  UTF-8
 [[nodiscard]] std::string toml_quoted(std::string_view text);
 
+/// Shortest text that reads back as the same double and is a TOML float.
+[[nodiscard]] std::string number_text(double value);
+
 /// The number that is written with so many significant digits.
 [[nodiscard]] double rounded(double value, int digits);
 

@@ -218,36 +218,6 @@ std::vector<Field<TrackRow>> make_track_fields() {
 
 }  // namespace
 
-std::string number_text(double value) {
-  char text[32];
-  const std::to_chars_result end = std::to_chars(text, text + sizeof text, value);
-  std::string out(text, end.ptr);
-  if (out.find_first_of(".en") == std::string::npos) out += ".0";
-  return out;
-}
-
-double body_size_m(const Body& body) {
-  const Bounds bounds = body_shape(body)->bounds();
-  return std::cbrt((bounds.upper_m - bounds.lower_m).prod());
-}
-
-std::optional<Eigen::Quaterniond> orientation_of(const Eigen::Quaterniond& q) {
-  if (!orientation_norm.contains(q.norm())) return std::nullopt;
-  // Dividing by a length that differs from one by rounding alone would change the last digits at every reading.
-  constexpr double rounding = 2e-15;
-  return std::abs(q.squaredNorm() - 1.0) < rounding ? q : q.normalized();
-}
-
-bool Range::contains(double value) const noexcept {
-  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
-}
-
-std::string Range::text() const {
-  char out[80];
-  std::snprintf(out, sizeof out, "%c%g, %g%c", low_open ? '(' : '[', low, high, high_open ? ')' : ']');
-  return out;
-}
-
 const std::vector<Field<Scene>>& scene_fields() {
   static const std::vector<Field<Scene>> fields = make_scene_fields();
   return fields;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "scene/model/scene.h"
+#include "scene/base/range.h"
 
 #include <functional>
 #include <limits>
@@ -16,16 +17,6 @@ namespace touchstone::scene {
 
 /// Who reads a key. What `shared` holds changes both sides' answers.
 enum class Side { shared, fast, reference, compare };
-
-/// Allowed values of a number, or of every element of a vector.
-struct Range {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  bool low_open = false, high_open = false;
-
-  [[nodiscard]] bool contains(double value) const noexcept;  ///< false for NaN
-  [[nodiscard]] std::string text() const;                    ///< "(0, 0.5]"
-};
 
 /// A place whose height may be left open, as [x, y].
 struct OpenPosition {
@@ -41,17 +32,6 @@ struct TrackRow {
   std::optional<Vec3> direction;
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
 };
-
-/// Edge of the cube that holds as much as the body's bounding box [m]: what lengths without a value are fractions of.
-[[nodiscard]] double body_size_m(const Body& body);
-
-/// How long a quaternion may be that is meant as an orientation. One far from 1 is a slip, and the squares of a very
-/// short or long one lose its digits.
-inline constexpr double orientation_norm_max = 2.0;
-inline constexpr Range orientation_norm{0.5, orientation_norm_max};
-
-/// At unit length, and such that what is written out reads back bit for bit; nothing for a norm out of range.
-[[nodiscard]] std::optional<Eigen::Quaterniond> orientation_of(const Eigen::Quaterniond& q);
 
 /// Where a key's value lives in a T (the Scene, one Inclusion or one TrackRow).
 template <class T>
@@ -121,9 +101,6 @@ template <class T>
          std::holds_alternative<std::optional<int>& (*)(T&)>(field.access) ||
          std::holds_alternative<std::optional<Vec3>& (*)(T&)>(field.access);
 }
-
-/// Shortest text that reads back as the same double and is a TOML float.
-[[nodiscard]] std::string number_text(double value);
 
 /// The value as TOML; empty for an optional value that is absent.
 template <class T>

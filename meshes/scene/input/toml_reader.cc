@@ -227,8 +227,8 @@ std::vector<const toml::table*> TomlReader::rows(const std::string& key) {
   return list;
 }
 
-std::vector<StudySetting> TomlReader::settings(const toml::table& table, const std::string& key) {
-  std::vector<StudySetting> list;
+std::vector<Setting> TomlReader::settings(const toml::table& table, const std::string& key) {
+  std::vector<Setting> list;
   const toml::node* node = table.get(key);
   if (node == nullptr) return list;
   if (node->is_table()) {
@@ -239,7 +239,7 @@ std::vector<StudySetting> TomlReader::settings(const toml::table& table, const s
   return list;
 }
 
-void TomlReader::flatten(const toml::table& table, const std::string& above, std::vector<StudySetting>& list) const {
+void TomlReader::flatten(const toml::table& table, const std::string& above, std::vector<Setting>& list) const {
   for (const auto& [key, node] : table) {
     const std::string name = above + std::string(key.str());
     if (node.is_table()) {

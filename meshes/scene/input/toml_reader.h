@@ -1,7 +1,7 @@
 // What the readers of study files share: typed access to a TOML document that collects every fault with its place.
 #pragma once
 
-#include "compare/study/study_file.h"
+#include "scene/base/error.h"
 
 #include <toml++/toml.h>
 
@@ -12,6 +12,12 @@
 #include <vector>
 
 namespace touchstone::scene {
+
+/// One value of one key of the scene.
+struct Setting {
+  std::string key, value;  ///< value as TOML
+  Fault place;             ///< where it stands in the file; its message is empty
+};
 
 /// What a TOML file of ours is for, told by the tables it has.
 enum class FileKind { scene, sweep, tuning, gates };
@@ -50,14 +56,14 @@ class TomlReader {
   /// The tables of [[key]].
   std::vector<const toml::table*> rows(const std::string& key);
   /// A table of settings, its tables within tables spelt as dotted keys.
-  std::vector<StudySetting> settings(const toml::table& table, const std::string& key);
+  std::vector<Setting> settings(const toml::table& table, const std::string& key);
 
   const toml::table& document_;
   const std::filesystem::path& file_;
   std::vector<Fault> faults_;
 
  private:
-  void flatten(const toml::table& table, const std::string& above, std::vector<StudySetting>& list) const;
+  void flatten(const toml::table& table, const std::string& above, std::vector<Setting>& list) const;
 };
 
 }  // namespace touchstone::scene

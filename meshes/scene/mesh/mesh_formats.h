@@ -3,6 +3,8 @@
 
 #include "scene/base/frames.h"
 #include "scene/base/text.h"
+#include "scene/base/error.h"
+#include "scene/mesh/triangle_mesh.h"
 
 #include <array>
 #include <cstdint>
@@ -81,5 +83,12 @@ class BinaryReader {
   bool big_endian_;
   std::string name_;
 };
+
+/// Binary STL, coordinates divided by unit_m. @throws InputError when the file cannot be written
+void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file, double unit_m);
+
+/// OBJ text with shared vertices, coordinates divided by unit_m and rounded to 1e-5 of that unit.
+/// @throws InputError when the file cannot be written
+void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, double unit_m);
 
 }  // namespace touchstone::scene

@@ -1,13 +1,10 @@
-// Closed triangle meshes of rigid tools: reading, welding, orienting, refusing.
+// Closed triangle meshes of rigid tools: areas, volumes, bounds.
 #pragma once
 
-#include "scene/base/error.h"
 #include "scene/base/frames.h"
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
-#include <optional>
 #include <vector>
 
 namespace touchstone::scene {
@@ -32,21 +29,5 @@ struct TriangleMesh {
 /// triangles, 2e-5 on one of 20,000. Single precision leaves less than 1e-6, and 7e-6 at a hundred diagonals from the
 /// origin. A contact that is deeper than the dent spans it, and is one region.
 inline constexpr double convex_tolerance_rel = 1e-3;
-
-/// Reads STL (text or binary), OBJ or PLY (text or binary), by the file's ending; multiplies coordinates by unit_m,
-/// welds duplicate vertices, drops triangles without area, turns every piece outwards, tells whether it is convex. A
-/// mesh that is open, has an edge with more than two triangles, cuts itself or holds a number that is not finite is
-/// refused.
-/// @param faults takes what is wrong, with the file, the line or byte, and the place in the mesh
-/// @returns nothing when there were faults
-[[nodiscard]] std::optional<TriangleMesh> read_triangle_mesh(const std::filesystem::path& file, double unit_m,
-                                                             std::vector<Fault>& faults);
-
-/// Binary STL, coordinates divided by unit_m. @throws InputError when the file cannot be written
-void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file, double unit_m);
-
-/// OBJ text with shared vertices, coordinates divided by unit_m and rounded to 1e-5 of that unit.
-/// @throws InputError when the file cannot be written
-void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, double unit_m);
 
 }  // namespace touchstone::scene

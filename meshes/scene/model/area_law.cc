@@ -1,6 +1,5 @@
 #include "scene/model/area_law.h"
 
-#include "scene/input/fields.h"
 #include "scene/base/text.h"
 
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "scene/model/scene.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace touchstone::scene {
 
@@ -83,6 +84,16 @@ std::vector<double> instants_s(const Scene& scene) {
     times.push_back(begin_s + (end_s - begin_s) * i / (scene.compare.instants - 1));
   }
   return times;
+}
+
+Surface tool_surface(const Tool& tool, int triangles) {
+  if (tool.shape == ToolShape::mesh) return surface_of(tool_mesh(tool));
+  return tessellate(*tool_shape(tool), triangles);
+}
+
+double body_size_m(const Body& body) {
+  const Bounds bounds = body_shape(body)->bounds();
+  return std::cbrt((bounds.upper_m - bounds.lower_m).prod());
 }
 
 }  // namespace touchstone::scene

@@ -6,6 +6,7 @@
 #include "scene/shape/revolution.h"
 #include "scene/shape/shape.h"
 #include "scene/mesh/triangle_mesh.h"
+#include "scene/shape/surface.h"
 
 #include <cstdint>
 #include <memory>
@@ -180,5 +181,11 @@ struct Scene {
 /// is measured along the diagonal. Of a mesh the surface counts, not the space within. The one depth both sides quote.
 /// Not for a real-time step: 2 to 80 us, for a mesh of 6000 triangles up to 3 ms.
 [[nodiscard]] double rest_depth_m(const Shape& body, const Tool& tool, const Pose& pose);
+
+/// Edge of the cube that holds as much as the body's bounding box [m]: what lengths without a value are fractions of.
+[[nodiscard]] double body_size_m(const Body& body);
+
+/// Any tool's surface in the tool frame. @param triangles wished number; a mesh tool keeps its own
+[[nodiscard]] Surface tool_surface(const Tool& tool, int triangles);
 
 }  // namespace touchstone::scene

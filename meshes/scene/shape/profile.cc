@@ -1,6 +1,4 @@
-#include "scene/shape/revolution.h"
-
-#include "scene/shape/profile_pieces.h"
+#include "scene/shape/profile.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,5 @@
 #include "scene/shape/revolution.h"
 
-#include "scene/shape/profile_pieces.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>

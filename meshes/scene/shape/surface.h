@@ -30,13 +30,8 @@ struct Surface {
 /// @param triangles wished number, at least 8
 [[nodiscard]] Surface tessellate(const Shape& shape, int triangles);
 
-struct Tool;
-
 /// A mesh as a surface of one patch, for drawing: every triangle has three vertices of its own with the triangle's
 /// normal, so edges stay sharp.
 [[nodiscard]] Surface surface_of(const TriangleMesh& mesh);
-
-/// Any tool's surface in the tool frame. @param triangles wished number; a mesh tool keeps its own
-[[nodiscard]] Surface tool_surface(const Tool& tool, int triangles);
 
 }  // namespace touchstone::scene

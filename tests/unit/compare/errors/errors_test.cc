@@ -3,6 +3,7 @@
 #include "compare/errors/figures.h"
 #include "support/synthetic.h"
 #include "support/mesh_tools.h"
+#include "compare/errors/compute_errors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 #include "compare/errors/figures.h"
 
 #include "support/synthetic.h"
+#include "compare/errors/compute_errors.h"
 
 #include <gtest/gtest.h>
 

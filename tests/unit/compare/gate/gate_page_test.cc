@@ -15,7 +15,7 @@ using ::testing::Not;
 GateRecord truth(const std::string& name, double value, double uncertainty) {
   GateRecord record;
   record.file = "ball";
-  record.gate = {name, scene::GateKind::truth, "force.nrmse", 0.02, "", "because <this>", {"a=1"}, {}};
+  record.gate = {name, GateKind::truth, "force.nrmse", 0.02, "", "because <this>", {"a=1"}, {}};
   record.value = value;
   record.uncertainty = uncertainty;
   return record;
@@ -24,7 +24,7 @@ GateRecord truth(const std::string& name, double value, double uncertainty) {
 GateFolder folder() {
   GateFolder out;
   out.folder = "/gates";
-  scene::GateFile& file = out.files.emplace_back();
+  GateFile& file = out.files.emplace_back();
   file.name = "ball";
   file.title = "A ball & a cube";
   file.scene_file = "/scenes/ball.toml";

@@ -32,11 +32,11 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const std::string scenes = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/";
 
-scene::Gate truth(double limit) {
-  return {"g", scene::GateKind::truth, "force.nrmse", limit, "", "because", {"a=1"}, {}};
+Gate truth(double limit) {
+  return {"g", GateKind::truth, "force.nrmse", limit, "", "because", {"a=1"}, {}};
 }
-scene::Gate drift(double limit) {
-  return {"g", scene::GateKind::drift, "force.peak_fast_n", limit, "N", "because", {"a=1"}, {}};
+Gate drift(double limit) {
+  return {"g", GateKind::drift, "force.peak_fast_n", limit, "N", "because", {"a=1"}, {}};
 }
 scene::Figures error_of(double value, double uncertainty) {
   return {{"force.nrmse", value, "", ""}, {"force.nrmse_uncertainty", uncertainty, "", ""}};

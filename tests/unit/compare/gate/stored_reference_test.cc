@@ -7,6 +7,7 @@
 #include "scene/base/text.h"
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
+#include "compare/errors/compute_errors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,8 +2,9 @@
 
 #include "compare/gate/stored_reference.h"
 #include "scene/input/scene_io.h"
-#include "scene/tuning_study.h"
+#include "compare/input/tuning_study.h"
 #include "support/synthetic.h"
+#include "compare/errors/compute_errors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -107,7 +108,7 @@ TEST(ModelFigures, HaveAKeyPerModel) {
 TEST(ShippedParameters, AreTunedToTheBallOnTheCube) {
   const std::filesystem::path source = TOUCHSTONE_SOURCE_DIR;
   const scene::Scene scene =
-      scene::with_parameters(scene::load_scene(source / "meshes/scenes/ball-on-cube-press.toml", {}),
+      with_parameters(scene::load_scene(source / "meshes/scenes/ball-on-cube-press.toml", {}),
                              source / "meshes/parameters/ball-on-cube.toml");
   const fast::Run run = fast::run(scene);
   const Errors errors = compute_errors(

@@ -3,9 +3,10 @@
 #include "compare/format/text.h"
 #include "fast/step/state.h"
 #include "scene/base/files.h"
-#include "scene/tuning_study.h"
+#include "compare/input/tuning_study.h"
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
+#include "compare/errors/compute_errors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -56,7 +57,7 @@ TEST(NextSteps, OfferTheAreaAwareLawWhereItIsNearerAndSayByHowMuch) {
   // What was promised is what the command gives.
   const testing::TemporaryFolder folder;
   scene::write_file(folder.path() / step.file_name, step.file_text);
-  const scene::Scene changed = scene::with_parameters(sides.scene, folder.path() / step.file_name);
+  const scene::Scene changed = with_parameters(sides.scene, folder.path() / step.file_name);
   EXPECT_EQ(changed.contact.law, scene::ContactLaw::area_aware);
   EXPECT_NEAR(changed.fast.s_c_m2, 0.036, 1e-9);
   const Errors after = compute_errors(changed, fast::run(changed), sides.result);

@@ -5,6 +5,7 @@
 #include "fast/step/state.h"
 #include "support/synthetic.h"
 #include "support/xml.h"
+#include "compare/errors/compute_errors.h"
 
 #include <gtest/gtest.h>
 

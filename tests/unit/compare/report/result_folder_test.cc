@@ -4,6 +4,7 @@
 #include "scene/base/error.h"
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
+#include "compare/errors/compute_errors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,6 +3,7 @@
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
 #include "support/xml.h"
+#include "compare/errors/compute_errors.h"
 
 #include <gtest/gtest.h>
 #include <vtkCell.h>

@@ -33,7 +33,7 @@ class StudyPage : public ::testing::Test {
     std::ofstream(file) << "title = \"How deep & how soft\"\nscene = \"" TOUCHSTONE_SOURCE_DIR
                            "/meshes/scenes/ball-on-cube-press.toml\"\nrun = \"compare\"\n"
                         << rest;
-    return expand(scene::load_study(file), folder_.path() / "study", "/usr/bin/touchstone", "store");
+    return expand(load_study(file), folder_.path() / "study", "/usr/bin/touchstone", "store");
   }
   /// Runs every case: a force error of 1 % for each 0.01 of C_n, and an uncertainty of 0.2 %, unknown above C_n = 0.25.
   std::string page_of(const StudyManifest& manifest) {

@@ -44,7 +44,7 @@ class StudyFolderTest : public ::testing::Test {
     const path file = folder_.path() / "study.toml";
     std::ofstream(file) << "scene = \"" << scenes << scene << ".toml\"\nrun = \"" << run
                         << "\"\n[[axis]]\nkey = \"fast.C_n\"\nvalues = " << values << '\n';
-    return expand(scene::load_study(file), study(), "/usr/bin/touchstone", "store");
+    return expand(load_study(file), study(), "/usr/bin/touchstone", "store");
   }
   [[nodiscard]] path study() const { return folder_.path() / "study"; }
 
@@ -103,7 +103,7 @@ TEST_F(StudyFolderTest, CasesWithTheSameContentAreOne) {
   std::ofstream(file) << "scene = \"" << scenes << "ball-on-cube-press.toml\"\nrun = \"fast\"\n"
                       << "[[case]]\nname = \"as it is\"\nset = {}\n[[case]]\nname = \"said again\"\n"
                       << "set = { tool.mass_kg = 1.0 }\n[[case]]\nname = \"heavier\"\nset = { tool.mass_kg = 2.0 }\n";
-  const StudyManifest manifest = expand(scene::load_study(file), study(), "/usr/bin/touchstone", "store");
+  const StudyManifest manifest = expand(load_study(file), study(), "/usr/bin/touchstone", "store");
   ASSERT_EQ(manifest.cases.size(), 2u);
   EXPECT_EQ(manifest.cases[0].name, "as it is");
   EXPECT_EQ(manifest.cases[1].name, "heavier");
@@ -138,7 +138,7 @@ TEST_F(StudyFolderTest, WhatASolverCannotDoIsRefusedBeforeAnythingIsWritten) {
                       << "tool.edge_radius_m = 0.0, \"track[0].position_m[2]\" = 0.09, "
                       << "\"track[1].position_m[2]\" = 0.065 }\n";
   try {
-    (void)expand(scene::load_study(file), study(), "/usr/bin/touchstone", "store");
+    (void)expand(load_study(file), study(), "/usr/bin/touchstone", "store");
     FAIL() << "accepted";
   } catch (const scene::InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("(case \"sharp\")"));
@@ -335,7 +335,7 @@ TEST_F(StudyFolderTest, TheBatchScriptRunsEveryCaseOnceAndIsShell) {
   const path program = folder_.path() / "it's a program";
   std::ofstream(program) << "#!/bin/sh\necho \"$@\" >> '" << (folder_.path() / "asked").string() << "'\n";
   std::filesystem::permissions(program, std::filesystem::perms::owner_all);
-  (void)expand(scene::load_study(folder_.path() / "study.toml"), study(), program, "store");
+  (void)expand(load_study(folder_.path() / "study.toml"), study(), program, "store");
   for (const char* task : {"1", "3"}) {
     ASSERT_EQ(
         std::system(("SLURM_ARRAY_TASK_ID=" + std::string(task) + " bash '" + (study() / "array.sbatch").string() + "'")

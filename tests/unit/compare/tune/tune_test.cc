@@ -37,7 +37,7 @@ scene::Scene small(const std::vector<std::string>& more = {}) {
 SolveReference made_with(const std::map<std::string, double>& constants) {
   return [constants](const scene::Scene& asked, const scene::Surface&) {
     scene::Scene scene = asked;
-    for (const auto& [key, value] : constants) scene::set_parameter(scene, key, value);
+    for (const auto& [key, value] : constants) set_parameter(scene, key, value);
     reference::Result result;
     const fast::Run run = fast::run(scene);
     result.instants = run.instants;
@@ -60,13 +60,13 @@ SolveReference made_with(const std::map<std::string, double>& constants) {
   };
 }
 
-scene::TuningParameter free(const std::string& key, double low, double high,
-                            scene::TuningStage stage = scene::TuningStage::force) {
+TuningParameter free(const std::string& key, double low, double high,
+                            TuningStage stage = TuningStage::force) {
   return {key, "", stage, low, high, std::sqrt(low * high), true, false};
 }
 
-scene::TuningStudy study(std::vector<scene::TuningParameter> parameters) {
-  scene::TuningStudy out;
+TuningStudy study(std::vector<TuningParameter> parameters) {
+  TuningStudy out;
   out.name = "made";
   out.formulations = {scene::Formulation::corrected};
   out.laws = {scene::ContactLaw::duffing};
@@ -177,8 +177,8 @@ TEST(Replay, MemoryDoesNotHangOnTheTicks) {
 TEST(Tune, BringsBackTheConstantsOfForceAndShape) {
   const Tuning tuning = tune(
       study({free("contact.k1_n_per_m", 1e1, 1e5), free("contact.k3_n_per_m3", 1e7, 1e11),
-             free("fast.s_c_m2", 1e-4, 1e-1, scene::TuningStage::shape),
-             free("fast.C_n", 1e-2, 0.4, scene::TuningStage::shape)}),
+             free("fast.s_c_m2", 1e-4, 1e-1, TuningStage::shape),
+             free("fast.C_n", 1e-2, 0.4, TuningStage::shape)}),
       made_with(
           {{"contact.k1_n_per_m", 900.0}, {"contact.k3_n_per_m3", 2.0e9}, {"fast.s_c_m2", 6.0e-3}, {"fast.C_n", 0.1}}));
   const TunedModel& model = tuning.models.at(0);
@@ -209,10 +209,10 @@ TEST(Tune, JudgesOnlyTheInstantsOfTheAskedDepths) {
 
 TEST(Tune, SaysWhatTheDataCannotDetermine) {
   // A local factor of strength zero has no radius.
-  scene::TuningStudy asked = study({free("fast.s_c_m2", 1e-2, 1.0, scene::TuningStage::shape),
-                                    free("fast.r_R_m", 0.005, 0.03, scene::TuningStage::shape)});
+  TuningStudy asked = study({free("fast.s_c_m2", 1e-2, 1.0, TuningStage::shape),
+                                    free("fast.r_R_m", 0.005, 0.03, TuningStage::shape)});
   for (auto* list : {&asked.training, &asked.held_out}) {
-    for (scene::TuningContact& contact : *list) contact.scene.fast.C_n = 0.0;
+    for (TuningContact& contact : *list) contact.scene.fast.C_n = 0.0;
   }
   const Tuning tuning = tune(asked, made_with({{"fast.s_c_m2", 0.1}}));
   const TunedModel& model = tuning.models.at(0);
@@ -238,7 +238,7 @@ TEST(Tune, NamesAnActiveBoundInEveryAnswer) {
 TEST(Tune, SaysWhatThePartsOfTheShapeAreGoodFor) {
   const auto constants = std::map<std::string, double>{{"contact.k1_n_per_m", 900.0}, {"fast.s_c_m2", 6.0e-3}};
   const Tuning tuning =
-      tune(study({free("contact.k1_n_per_m", 1e1, 1e5), free("fast.s_c_m2", 1e-4, 1e-1, scene::TuningStage::shape)}),
+      tune(study({free("contact.k1_n_per_m", 1e1, 1e5), free("fast.s_c_m2", 1e-4, 1e-1, TuningStage::shape)}),
            made_with(constants));
   const TunedModel& model = tuning.models.at(0);
   const ShapeParts& parts = model.shape_parts;
@@ -272,15 +272,15 @@ TEST(Tune, HeldOutFiguresAreTheWorstContactsAndNoneOfTraining) {
 }
 
 TEST(Tune, RefusesAContactWithoutAnInstantThatCounts) {
-  scene::TuningStudy asked = study({free("contact.k1_n_per_m", 1e1, 1e5)});
+  TuningStudy asked = study({free("contact.k1_n_per_m", 1e1, 1e5)});
   asked.held_out[0].depth_m = {0.1, 1.0};
   EXPECT_THROW((void)tune(asked, made_with({})), scene::InputError);
 }
 
 TEST(Tune, LeavesAFolderWhoseParametersASceneTakesOver) {
   const testing::TemporaryFolder folder;
-  scene::TuningStudy asked = study({free("contact.k3_n_per_m3", 1e7, 1e11), free("contact.k1_n_per_m", 1e1, 1e5),
-                                    free("fast.s_c_m2", 1e-4, 1e-1, scene::TuningStage::shape)});
+  TuningStudy asked = study({free("contact.k3_n_per_m3", 1e7, 1e11), free("contact.k1_n_per_m", 1e1, 1e5),
+                                    free("fast.s_c_m2", 1e-4, 1e-1, TuningStage::shape)});
   asked.parameters[2].profile = true;
   asked.title = "Made & tuned";
   const Tuning tuning = tune(asked, made_with({{"contact.k1_n_per_m", 900.0}}));

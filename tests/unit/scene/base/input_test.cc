@@ -5,7 +5,6 @@
 #include "scene/input/fields.h"
 #include "scene/base/json_text.h"
 #include "scene/input/scene_io.h"
-#include "compare/study/study_file.h"
 #include "scene/base/text.h"
 
 #include <gmock/gmock.h>
@@ -122,8 +121,6 @@ TEST_F(InputFile, OfEveryKindIsOpenedTheSameWay) {
   };
   EXPECT_EQ(told([&] { return load_scene(folder_); }),
             folder + ": cannot read the scene: it is a folder; expected a TOML file of at most 4 MiB");
-  EXPECT_EQ(told([&] { return load_study(folder_); }),
-            folder + ": cannot read the study: it is a folder; expected a TOML file of at most 4 MiB");
   const std::string file = (folder_ / "a.toml").string();
   for (const std::string included : {".", "", "/dev/zero", "/proc/self/environ"}) {
     EXPECT_THAT(refusal("include = \"" + included + "\"\n" + good, file),

@@ -3,6 +3,8 @@
 #include "scene/shape/surface.h"
 #include "scene/mesh/triangle_mesh.h"
 #include "support/shapes.h"
+#include "scene/mesh/mesh_file.h"
+#include "scene/mesh/mesh_formats.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -2,7 +2,6 @@
 #include "scene/model/first_contact.h"
 
 #include "scene/input/scene_io.h"
-#include "compare/study/study_file.h"
 #include "scene/shape/surface.h"
 
 #include <gmock/gmock.h>
@@ -257,27 +256,6 @@ TEST_F(DepthFileTest, ATableMayHaveDepthsInPlaceOfHeights) {
   EXPECT_THAT(read_csv("time_s,depth_m,x_m,y_m\n0,-0.0005,0,0\n1,0.003,0.05,0\n"),
               HasSubstr("t.csv:3:1: track[1].depth_m: moved straight down the tool never meets the body"));
   EXPECT_THAT(read_csv("time_s,x_m,y_m,z_m,depth_m\n"), HasSubstr("the header has both z_m and depth_m"));
-}
-
-TEST_F(DepthFileTest, DepthAndRadiusAreTwoAxesOfOneStudy) {
-  written(by_depth, "scene.toml");
-  const Study study = load_study(written(R"(scene = "scene.toml"
-run = "fast"
-[[axis]]
-key = "tool.radius_m"
-values = [0.005, 0.01]
-[[axis]]
-key = "track[1].depth_m"
-values = [0.001, 0.004]
-)",
-                                         "study.toml"));
-  const std::vector<Scene> scenes = load_cases(study);
-  ASSERT_EQ(scenes.size(), 4u);
-  const double heights_m[] = {0.064, 0.061, 0.069, 0.066};
-  for (std::size_t k = 0; k < 4; ++k) {
-    EXPECT_EQ(scenes[k].track[1].pose.position_m.z(), heights_m[k]);
-    EXPECT_EQ(scenes[k].track[0].pose.position_m.z(), k < 2 ? 0.0655 : 0.0705);
-  }
 }
 
 TEST(NoContact, SaysTheLeastGapAndWhen) {

@@ -1,0 +1,66 @@
+// An error beside what of it may be the reference's own, and the sums and maxima that errors are made from.
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+namespace touchstone::compare {
+
+/// An error, and how much of it may be the reference's own, in the same norm.
+struct Measure {
+  std::optional<double> value;        ///< absent where the figure has no meaning, such as a ratio to no force
+  std::optional<double> uncertainty;  ///< absent where the reference does not know it
+
+  /// False where the error is no larger than the reference's uncertainty: the two sides may then agree.
+  [[nodiscard]] bool distinguishable() const noexcept {
+    return value && (!uncertainty || !(std::abs(*value) <= *uncertainty));
+  }
+};
+
+/// Known only when finite: a reference with too few levels has no band.
+[[nodiscard]] inline std::optional<double> known(double uncertainty) {
+  return std::isfinite(uncertainty) ? std::optional(uncertainty) : std::nullopt;
+}
+
+/// Keeps the larger; once NaN, stays NaN, so that no bad number is lost in a maximum.
+inline void keep_larger(double& largest, double value) {
+  if (std::isnan(value) || value > largest) largest = value;
+}
+
+inline void keep_larger(std::optional<double>& largest, double value) {
+  double kept = largest.value_or(value);
+  keep_larger(kept, value);
+  largest = kept;
+}
+
+/// Sums whose ratio's root is a relative L2 error.
+struct SquareSums {
+  double error = 0.0, uncertainty = 0.0, scale = 0.0;
+
+  void add(double weight, double error_by, double uncertainty_by, double scale_by) {
+    error += weight * error_by * error_by;
+    uncertainty += weight * uncertainty_by * uncertainty_by;
+    scale += weight * scale_by * scale_by;
+  }
+  [[nodiscard]] Measure relative() const {
+    if (scale == 0.0) return {};
+    return {std::sqrt(error / scale), known(std::sqrt(uncertainty / scale))};
+  }
+};
+
+/// Root mean square over a number of instants, relative to one scale.
+struct MeanSquares {
+  double error = 0.0, uncertainty = 0.0;
+  int count = 0;
+
+  void add(double error_by, double uncertainty_by) {
+    error += error_by * error_by;
+    uncertainty += uncertainty_by * uncertainty_by;
+    ++count;
+  }
+  [[nodiscard]] Measure over(double scale) const {
+    return {std::sqrt(error / count) / scale, known(std::sqrt(uncertainty / count) / scale)};
+  }
+};
+
+}  // namespace touchstone::compare

@@ -1,0 +1,347 @@
+#include "compare/report/verdict.h"
+
+#include "compare/report/comparison_drawings.h"
+#include "compare/format/text.h"
+#include "fast/step/state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+namespace touchstone::compare {
+namespace {
+
+/// The paper's Table I for rubber, read in millimetres and newtons: k1 = m w0^2, k3 = (3/4) m b0^2 eps (errata E2).
+constexpr double table1_k1_n_per_m = 40.0, table1_k3_n_per_m3 = 3.0e8;
+
+/// The law and the material disagree when one gives this many times the other's force.
+constexpr double mismatch = 2.0;
+
+/// A surface left inside the tool by more than this share of the depth is seen at once.
+constexpr double large_penetration_share = 0.1;
+
+std::string newtons(double force_n) { return quantity_text(force_n, "N"); }
+
+/// "169.6 N ± 0.2 N": the value to the digit its uncertainty leaves, four digits at most.
+std::string with_band(double force_n, double band_n) {
+  if (!std::isfinite(band_n)) return newtons(force_n) + " (uncertainty unknown)";
+  const auto exponent = [](double value) { return static_cast<int>(std::floor(std::log10(value))); };
+  const int most = force_n > 0.0 ? std::max(0, 3 - exponent(force_n)) : 3;
+  const int decimals = band_n > 0.0 ? std::clamp(-exponent(band_n), 0, most) : most;
+  return fmt::format("{:.{}f}{}N ± {}{}N", force_n, decimals, no_break, number_text(band_n, 1), no_break);
+}
+
+/// "78 % too low", "2.5 times too high".
+std::string how_wrong(double ratio) {
+  if (ratio >= 2.0) return number_text(ratio) + " times the reference's";
+  const double off = std::abs(ratio - 1.0);
+  return percent_text(off) + (ratio < 1.0 ? " too low" : " too high");
+}
+
+std::string force_sentence(const Errors& errors) {
+  const InstantErrors& deepest = errors.instants[errors.deepest];
+  const std::string where = fmt::format("at the deepest instant ({} deep)", quantity_text(deepest.depth_m, "m"));
+  const std::string numbers = fmt::format("{} against the reference's {}", newtons(deepest.force_fast_n),
+                                          with_band(deepest.force_reference_n, deepest.force_uncertainty_n));
+  if (std::isfinite(deepest.force_uncertainty_n) && deepest.force_error_n <= deepest.force_uncertainty_n) {
+    return fmt::format("The fast model's force {} is not distinguishable from the reference's: {}.", where, numbers);
+  }
+  if (!std::isfinite(deepest.force_fast_n)) {
+    return fmt::format("The fast model's force {} is not a finite number.", where);
+  }
+  if (!(deepest.force_reference_n > 0.0)) {
+    return fmt::format("The reference feels no force {}; the fast model's is {}.", where,
+                       newtons(deepest.force_fast_n));
+  }
+  return fmt::format("The fast model's force {} is {}: {}.", where,
+                     how_wrong(deepest.force_fast_n / deepest.force_reference_n), numbers);
+}
+
+/// The force over the whole track, and its direction.
+Reason force_paragraph(const Errors& errors) {
+  if (!errors.force_nrmse.value) return {};
+  std::string text = fmt::format("Over the whole track the error is {} of the peak force (root mean square)",
+                                 percent_text(*errors.force_nrmse.value));
+  if (errors.force_rel_deep.value) {
+    text += fmt::format(". It is {} of the force itself where the depth exceeds {} of its largest",
+                        percent_text(*errors.force_rel_deep.value), percent_text(deep_share));
+  }
+  text += errors.force_nrmse.distinguishable() ? "." : ". Neither can be told from none.";
+  const InstantErrors& deepest = errors.instants[errors.deepest];
+  // Same size, other direction.
+  if (deepest.force_error_n > deepest.force_uncertainty_n && deepest.force_reference_n > 0.0 &&
+      std::abs(deepest.force_fast_n - deepest.force_reference_n) < 0.5 * deepest.force_error_n) {
+    text += fmt::format(" At the deepest instant mostly the direction is wrong: the two force vectors are {} apart.",
+                        newtons(deepest.force_error_n));
+  }
+  return {.about = "Force", .detail = text};
+}
+
+/// Why the force is off, as far as the scene's own numbers show; empty when they do not.
+Reason cause_paragraph(const scene::Scene& scene, const Errors& errors) {
+  const InstantErrors& deepest = errors.instants[errors.deepest];
+  if (!errors.force_peak_rel.distinguishable() || !(deepest.force_fast_n > 0.0)) return {};
+  const double d = deepest.depth_m;
+  const double law_n = scene.contact.k1_n_per_m * d + scene.contact.k3_n_per_m3 * d * d * d;
+  // Only Duffing's force is one of the depth alone, as Hertz's is.
+  const bool duffing = scene.contact.law == scene::ContactLaw::duffing;
+  const std::optional<double> hertz_n = duffing ? hertz_force_n(scene, d) : std::nullopt;
+  Reason out{.about = "Likely cause"};
+  const bool too_low = hertz_n && law_n * mismatch < *hertz_n && deepest.force_fast_n < deepest.force_reference_n;
+  const bool too_high = hertz_n && law_n > mismatch * *hertz_n && deepest.force_fast_n > deepest.force_reference_n;
+  if (too_low || too_high) {
+    out.brief = fmt::format(
+        "The contact constants do not describe the material: the contact law gives {} at D = {}, Hertz's formula "
+        "about {}.",
+        newtons(law_n), quantity_text(d, "m"), newtons(*hertz_n));
+    out.detail = fmt::format(
+        "The law is F\u00a0=\u00a0k1\u00a0D\u00a0+\u00a0k3\u00a0D³ with k1 = {} N/m and k3 = {} N/m³; Hertz's formula "
+        "takes "
+        "E = {} MPa and ν = {}. Nothing ties k1 and k3 to Young's modulus: they must be tuned.",
+        number_text(scene.contact.k1_n_per_m), number_text(scene.contact.k3_n_per_m3),
+        number_text(1e-6 * scene.body.material.youngs_modulus_pa), number_text(scene.body.material.poissons_ratio));
+    if (scene.contact.k1_n_per_m == table1_k1_n_per_m && scene.contact.k3_n_per_m3 == table1_k3_n_per_m3) {
+      out.detail += " These constants are the paper's Table I for rubber, read in millimetres and newtons.";
+    }
+    if (deepest.force_fast_n < 0.95 * law_n) {
+      out.detail += fmt::format(
+          " The model's force of {} is less than the law's, because it takes a mean depth of the contact region.",
+          newtons(deepest.force_fast_n));
+    }
+  }
+  // A constant factor could be scaled away; a factor that runs with the depth cannot.
+  double least = std::numeric_limits<double>::infinity(), most = 0.0, at_least_m = 0.0, at_most_m = 0.0;
+  for (const InstantErrors& e : errors.instants) {
+    if (!e.deep || !(e.force_reference_n > 0.0)) continue;
+    const double ratio = e.force_fast_n / e.force_reference_n;
+    if (ratio < least) {
+      least = ratio;
+      at_least_m = e.depth_m;
+    }
+    if (ratio > most) {
+      most = ratio;
+      at_most_m = e.depth_m;
+    }
+  }
+  if (most > 1.3 * least) {
+    const std::string form = fmt::format(
+        "the fast model gives {} of the reference's force at {} and {} at {}, so no single factor would put it right.",
+        percent_text(least), quantity_text(at_least_m, "m"), percent_text(most), quantity_text(at_most_m, "m"));
+    if (out.brief.empty()) {
+      out.brief = "The form of the contact law: " + form;
+    } else {
+      out.detail += " The law's form matters too: " + form;
+    }
+  } else if (out.brief.empty() && least < most * (1.0 + 1e-12) && std::isfinite(least) && std::abs(most - 1.0) > 0.05) {
+    out.brief = fmt::format(
+        "The contact constants are not tuned to this contact. The fast model gives {} to {} of the reference's force "
+        "at every depth, so another constant would put it right.",
+        percent_text(least), percent_text(most));
+  }
+  return out;
+}
+
+/// What the fast model says of its own steps.
+std::vector<Reason> status_paragraphs(const scene::Scene& scene, const fast::Run& run) {
+  std::vector<Reason> out;
+  const auto add = [&](fast::StepStatus bit, std::string text) {
+    if ((run.status & static_cast<std::uint32_t>(bit)) != 0) out.push_back({"Status", std::move(text)});
+  };
+  add(fast::StepStatus::not_finite,
+      "Some poses of the tool were not finite numbers; the fast model held its last good answer there.");
+  add(fast::StepStatus::contact_missed,
+      "At some instant the tool is inside the body and none of its samples is, so the fast model has no force there. "
+      "Raise fast.tool_samples.");
+  add(fast::StepStatus::depth_limited,
+      "The tool goes deeper than half of the body's thickness. The fast model held its depth there.");
+  add(fast::StepStatus::law_saturated, "The contact law is past its peak. The fast model held its force there.");
+  add(fast::StepStatus::regions_full,
+      fmt::format("There are more contact regions than fast.max_regions = {}. The smallest were left out.",
+                  scene.fast.max_regions));
+  add(fast::StepStatus::anchors_limited,
+      fmt::format(
+          "The beams are too soft for this force (fast.s_c_m2 = {} m²). An anchor point would have moved farther "
+          "than the tool presses, and was held back there.",
+          number_text(scene.fast.s_c_m2)));
+  return out;
+}
+
+Reason friction_paragraph(const Errors& errors) {
+  if (!errors.friction || !errors.force_friction_nrmse.value) return {};
+  std::string text = fmt::format("The error is {} of the reference's peak friction (root mean square)",
+                                 percent_text(*errors.force_friction_nrmse.value));
+  if (errors.force_friction_work_rel.value) {
+    const double work = *errors.force_friction_work_rel.value;
+    text += fmt::format(", and the work against it is {} too {}", percent_text(std::abs(work)),
+                        work < 0.0 ? "low" : "high");
+  }
+  return {"Friction", text + ".", slip_text(errors)};
+}
+
+std::string shape_sentence(const Errors& errors) {
+  if (!errors.shape_rel_l2.value)
+    return "The reference's body does not move, so a relative shape error has no meaning.";
+  const double error = *errors.shape_rel_l2.value;
+  if (!errors.shape_rel_l2.distinguishable()) {
+    return fmt::format(
+        "The deformed shapes are not distinguishable: they differ by {} of the displacement, the reference itself is "
+        "good to {}.",
+        percent_text(error), percent_text(*errors.shape_rel_l2.uncertainty));
+  }
+  const std::string known = errors.shape_rel_l2.uncertainty ? " ± " + percent_text(*errors.shape_rel_l2.uncertainty)
+                                                            : std::string(" (uncertainty unknown)");
+  if (error > 1.0) {
+    return fmt::format(
+        "The fast model's shape is off by {}{} of the displacement. That is worse than no deformation: a surface that "
+        "never moves is 100{}% off.",
+        percent_text(error), known, no_break);
+  }
+  return fmt::format(
+      "The fast model's shape is off by {}{} of the displacement; a surface that never moves is 100{}% off.",
+      percent_text(error), known, no_break);
+}
+
+/// How far the fast model's surface goes along with the reference's: sum A u_f.u_r / sum A u_r.u_r. 1 where it goes as
+/// far in the mean, 0 where it stays.
+double moved_share(const fast::Run& run, const reference::Result& result) {
+  double along = 0.0, scale = 0.0;
+  for (std::size_t t = 0; t < run.instants.size(); ++t) {
+    const Eigen::Matrix3Xd &f = run.instants[t].displacement_m, &r = result.instants[t].displacement_m;
+    for (Eigen::Index i = 0; i < r.cols(); ++i) {
+      const double area_m2 = run.surface.vertex_area_m2[static_cast<std::size_t>(i)];
+      along += area_m2 * f.col(i).dot(r.col(i));
+      scale += area_m2 * r.col(i).squaredNorm();
+    }
+  }
+  return along / scale;
+}
+
+Reason shape_paragraph(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
+                       const Errors& errors) {
+  if (!errors.shape_rel_l2.value) return {};
+  std::string text;
+  const double share = moved_share(run, result);
+  if (errors.shape_rel_l2.distinguishable() && std::isfinite(share) && (share < 0.8 || share > 1.25)) {
+    text += fmt::format(" In the mean the surface moves {} times as far as the reference's.", number_text(share, 2));
+  }
+  if (errors.shape_inside_r_rel_l2.value && errors.shape_outside_r_rel_l2.value) {
+    text += fmt::format(" Nearer than {} to the contact the error is {}, beyond that {}.",
+                        quantity_text(scene.fast.r_R_m, "m"), percent_text(*errors.shape_inside_r_rel_l2.value),
+                        percent_text(*errors.shape_outside_r_rel_l2.value));
+    if (errors.shape_error_outside_share && *errors.shape_error_outside_share > 0.5) {
+      text += fmt::format(" {} of the squared error lies away from the contact, where it is easily overlooked.",
+                          percent_text(*errors.shape_error_outside_share));
+    }
+  }
+  const auto worst =
+      std::max_element(errors.instants.begin(), errors.instants.end(),
+                       [](const InstantErrors& a, const InstantErrors& b) { return a.shape_max_m < b.shape_max_m; });
+  if (worst->shape_max_m > 0.0 && worst->depth_m > 0.0) {
+    const scene::Vec3 at_mm = 1e3 * run.surface.points_m.col(worst->shape_max_at);
+    text += fmt::format(
+        " The worst point, at rest at ({:.1f}, {:.1f}, {:.1f}) mm, is {} out of place when the tool is {} deep.",
+        at_mm.x(), at_mm.y(), at_mm.z(), quantity_text(worst->shape_max_m, "m"), quantity_text(worst->depth_m, "m"));
+  }
+  if (errors.penetration_fast_rel.value_or(0.0) > large_penetration_share) {
+    text += fmt::format(
+        " The fast model's surface does not follow the tool: it is left inside it by up to {} of the depth.",
+        percent_text(*errors.penetration_fast_rel));
+  }
+  return {.about = "Shape", .detail = text.empty() ? text : text.substr(1)};
+}
+
+Reason cost_paragraph(const fast::Run& run, const reference::Result& result) {
+  const double wall_s =
+      std::accumulate(result.levels.begin(), result.levels.end(), 0.0,
+                      [](double sum, const reference::LevelRecord& level) { return sum + level.wall_s; });
+  return {.about = "Cost",
+          .detail = fmt::format("One step of the fast model takes {} (median; 99.9{}% of the steps below {}). The "
+                                "reference took {} for {} instants on {} mesh{}.",
+                                quantity_text(run.step.p50_us, "us"), no_break, quantity_text(run.step.p999_us, "us"),
+                                quantity_text(wall_s, "s"), result.instants.size(), result.levels.size(),
+                                result.levels.size() == 1 ? "" : "es")};
+}
+
+}  // namespace
+
+std::optional<double> hertz_force_n(const scene::Scene& scene, double depth_m) {
+  const scene::Body& body = scene.body;
+  if (scene.tool.shape != scene::ToolShape::sphere || body.shape == scene::BodyShape::revolution ||
+      !body.inclusions.empty())
+    return std::nullopt;
+  double curvature_per_m = 1.0 / scene.tool.radius_m;
+  if (body.shape == scene::BodyShape::sphere) curvature_per_m += 1.0 / body.radius_m;
+  if (body.shape == scene::BodyShape::ellipsoid)
+    curvature_per_m += body.semi_axes_m.z() / (body.semi_axes_m.x() * body.semi_axes_m.y());
+  return 4.0 / 3.0 * body.material.contact_modulus_pa() * std::sqrt(1.0 / curvature_per_m) * std::pow(depth_m, 1.5);
+}
+
+std::string reference_sentence(const reference::Result& result, const Errors& errors) {
+  const std::optional<double> force = force_known_to(errors);
+  const auto& shape = errors.shape_rel_l2.uncertainty;
+  if (errors.force_peak_reference_n > 0.0 && !(force && shape)) {
+    return "The reference's uncertainty is unknown. " + why_uncertainty_unknown(result);
+  }
+  std::string text;
+  if (force && shape) {
+    text = fmt::format("The reference's force is known to {}, its shape to {}.", percent_text(*force),
+                       percent_text(*shape));
+  }
+  if (const std::string& why = result.refinement.why_ended; !why.empty()) {
+    text += fmt::format("{}Refinement ended: {}.", text.empty() ? "" : " ", why);
+  }
+  return text;
+}
+
+std::string Reason::text() const { return brief + (brief.empty() || detail.empty() ? "" : " ") + detail; }
+
+Verdict verdict(const scene::Scene& scene, const fast::Run& run, const reference::Result& result, const Errors& errors,
+                const Call& call) {
+  Verdict out;
+  const auto add = [&](Reason reason) {
+    if (!reason.text().empty()) out.reasons.push_back(std::move(reason));
+  };
+  if (errors.force_peak_reference_n == 0.0) {
+    out.force = errors.depth_max_m == 0.0
+                    ? "The tool never touches the body on this track, so there is no force or shape to compare."
+                    : "The reference never feels a force on this track, so relative errors have no meaning.";
+    if (errors.force_peak_fast_n > 0.0) {
+      out.force += fmt::format(" Yet the fast model reports a force of up to {}.", newtons(errors.force_peak_fast_n));
+    }
+    add(cost_paragraph(run, result));
+  } else {
+    out.force = force_sentence(errors);
+    out.shape = shape_sentence(errors);
+    for (Reason& status : status_paragraphs(scene, run)) add(std::move(status));
+    add(cause_paragraph(scene, errors));
+    add(force_paragraph(errors));
+    add(friction_paragraph(errors));
+    add(shape_paragraph(scene, run, result, errors));
+    add({.about = "Reference", .detail = reference_sentence(result, errors)});
+    add(cost_paragraph(run, result));
+  }
+  out.next = next_steps(scene, run, result, errors, call);
+  return out;
+}
+
+std::string Verdict::text() const {
+  constexpr std::size_t columns = 80, most_steps = 2;
+  std::string out = wrapped(force, columns) + "\n";
+  if (!shape.empty()) out += wrapped(shape, columns) + "\n";
+  for (const Reason& reason : reasons) {
+    if (!reason.brief.empty()) out += wrapped(reason.about + ": " + reason.brief, columns) + "\n";
+  }
+  out += "\n";
+  for (std::size_t k = 0; k < std::min(most_steps, next.size()); ++k) {
+    out += wrapped("Next: " + next[k].why, columns) + "\n";
+    if (!next[k].command.empty()) out += "  " + next[k].command + "\n";
+  }
+  if (next.size() > most_steps) out += "More to do next is in the report.\n";
+  return next.empty() ? out : out + "\n";
+}
+
+}  // namespace touchstone::compare

@@ -1,0 +1,26 @@
+#include "scene/base/range.h"
+
+#include "scene/base/text.h"
+
+#include <cmath>
+
+namespace touchstone::scene {
+
+bool Range::contains(double value) const noexcept {
+  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+}
+
+std::string Range::text() const {
+  char out[80];
+  std::snprintf(out, sizeof out, "%c%g, %g%c", low_open ? '(' : '[', low, high, high_open ? ')' : ']');
+  return out;
+}
+
+std::optional<Eigen::Quaterniond> orientation_of(const Eigen::Quaterniond& q) {
+  if (!orientation_norm.contains(q.norm())) return std::nullopt;
+  // Dividing by a length that differs from one by rounding alone would change the last digits at every reading.
+  constexpr double rounding = 2e-15;
+  return std::abs(q.squaredNorm() - 1.0) < rounding ? q : q.normalized();
+}
+
+}  // namespace touchstone::scene
