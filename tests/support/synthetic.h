@@ -2,7 +2,7 @@
 // reference and a fast model with a cubic law and a cone for a dimple.
 #pragma once
 
-#include "compare/comparison/compare.h"
+#include "compare/report/report.h"
 
 namespace touchstone::compare::testing {
 

@@ -1,4 +1,5 @@
 // The page of a study whose cases are run by a verb that only leaves figures.
+include "compare/study/study_table.h"
 #include "compare/study/study_page.h"
 
 #include "compare/study/study_parameters.h"
