@@ -1,9 +1,9 @@
 // The page of a study whose cases are run by a verb that only leaves figures.
-include "compare/study/study_table.h"
 #include "compare/study/study_page.h"
 
 #include "compare/study/study_parameters.h"
 #include "compare/study/study_run.h"
+#include "compare/study/study_table.h"
 #include "fast/command/command_line.h"
 #include "scene/base/files.h"
 #include "scene/output/results.h"
