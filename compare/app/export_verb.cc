@@ -34,7 +34,7 @@ SideBySide side_by_side(const reference::Deck& deck, const CalculixRun& run, con
     const double force = theirs_n / ours_n - 1.0;
     const double surface =
         longest_m(run.steps[step].displacement_m - ours.displacement_m) / longest_m(ours.displacement_m);
-    const double uncertainty_n = result.force_uncertainty_n[instant];
+    const double uncertainty_n = result.instants[instant].force_uncertainty_n;
     const double row[] = {ours.time_s, ours.depth_m, ours_n, uncertainty_n, theirs_n, force, surface};
     for (std::size_t k = 0; k < both.columns.size(); ++k) both.columns[k].values.push_back(row[k]);
     const std::string band = std::isfinite(uncertainty_n) ? fmt::format("{:.2g}", uncertainty_n) : "unknown";

@@ -47,7 +47,7 @@ std::vector<scene::Column> curve_columns(const fast::Run& run, const reference::
 Comparison write_comparison(const std::filesystem::path& folder, const scene::Scene& scene, const fast::Run& run,
                             const reference::Result& result, const scene::Manifest& manifest, const Call& call,
                             bool plots, const scene::Scene* given) {
-  const Errors errors = compute_errors(scene, run, result);
+  const Errors errors = compute_errors(scene, run, result.instants);
   const Plans plans{fast::plan(scene), reference::plan(scene)};
   const Verdict told = verdict(scene, run, result, errors, call);
   const std::vector<JudgedModel> models = judge_models(given != nullptr ? *given : scene, scene, run, errors, result,

@@ -24,34 +24,28 @@ void keep_farther(double& farthest, double value) {
   if (std::isnan(value) || std::abs(value) > std::abs(farthest)) farthest = value;
 }
 
-void require_aligned(const fast::Run& run, const reference::Result& result) {
-  const std::size_t instants = run.instants.size();
+void require_aligned(const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference) {
+  const std::size_t instants = answer.instants.size();
   const auto require = [](bool good, const std::string& what) {
     if (!good) throw std::logic_error("the two sides cannot be compared: " + what);
   };
   require(instants > 0, "no instants");
-  require(result.instants.size() == instants, fmt::format("{} instants against {}", instants, result.instants.size()));
-  require(run.normals.size() == instants && result.force_uncertainty_n.size() == instants &&
-              result.displacement_uncertainty_m.size() == instants &&
-              result.residual_penetration_m.size() == instants &&
-              result.between_nodes_penetration_m.size() == instants && result.equilibrium_rel.size() == instants &&
-              result.volume_change_rel.size() == instants && result.region_middles_m.size() == instants,
-          "a series lacks an instant");
-  const Eigen::Index points = run.surface.points_m.cols();
+  require(reference.size() == instants, fmt::format("{} instants against {}", instants, reference.size()));
+  const Eigen::Index points = answer.surface.points_m.cols();
   for (std::size_t t = 0; t < instants; ++t) {
-    const scene::InstantRecord& f = run.instants[t];
-    const scene::InstantRecord& r = result.instants[t];
+    const scene::InstantRecord& f = answer.instants[t];
+    const scene::ReferenceInstant& r = reference[t];
     require(std::abs(f.time_s - r.time_s) <= same_time_s,
             fmt::format("instant {} is at {} s against {} s", t, f.time_s, r.time_s));
     require((f.tool.position_m - r.tool.position_m).norm() <= same_place_m,
             fmt::format("the tool is at two places at instant {}", t));
-    require(f.displacement_m.cols() == points && r.displacement_m.cols() == points && run.normals[t].cols() == points &&
-                result.displacement_uncertainty_m[t].size() == points,
+    require(f.displacement_m.cols() == points && r.displacement_m.cols() == points && answer.instants[t].normal.cols() == points &&
+                reference[t].displacement_uncertainty_m.size() == points,
             fmt::format("instant {} does not cover the {} rest points", t, points));
   }
 }
 
-void compare_forces(const fast::Run& run, const reference::Result& result, Errors& errors) {
+void compare_forces(const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference, Errors& errors) {
   MeanSquares squares;
   SquareSums deep;
   int deep_instants = 0;
@@ -59,11 +53,11 @@ void compare_forces(const fast::Run& run, const reference::Result& result, Error
   double band_at_peak_n = 0.0;
   for (std::size_t t = 0; t < errors.instants.size(); ++t) {
     InstantErrors& e = errors.instants[t];
-    const scene::Vec3 fast_n = run.instants[t].force_n();
-    const scene::Vec3 reference_n = result.instants[t].force_n();
+    const scene::Vec3 fast_n = answer.instants[t].force_n();
+    const scene::Vec3 reference_n = reference[t].force_n();
     e.force_fast_n = fast_n.norm();
     e.force_reference_n = reference_n.norm();
-    e.force_uncertainty_n = result.force_uncertainty_n[t];
+    e.force_uncertainty_n = reference[t].force_uncertainty_n;
     e.force_error_n = (fast_n - reference_n).norm();
     if (e.in_contact && e.force_reference_n > 0.0) e.force_error_rel = e.force_error_n / e.force_reference_n;
     squares.add(e.force_error_n, e.force_uncertainty_n);
@@ -86,9 +80,9 @@ void compare_forces(const fast::Run& run, const reference::Result& result, Error
 }
 
 /// Of the rest surface: below the middle of every region, or nearest to the tool's centre where there is none.
-std::vector<scene::Vec3> contact_points_m(const scene::Shape& body, const reference::Result& result, std::size_t t) {
-  std::vector<scene::Vec3> points_m = result.region_middles_m[t];
-  if (points_m.empty()) points_m.push_back(result.instants[t].tool.position_m);
+std::vector<scene::Vec3> contact_points_m(const scene::Shape& body, const std::vector<scene::ReferenceInstant>& reference, std::size_t t) {
+  std::vector<scene::Vec3> points_m = reference[t].region_middles_m;
+  if (points_m.empty()) points_m.push_back(reference[t].tool.position_m);
   for (scene::Vec3& p_m : points_m) p_m = body.query(p_m).point_m;
   return points_m;
 }
@@ -116,13 +110,13 @@ std::vector<int> faces_of_patches(const scene::Shape& body, const scene::Surface
 
 /// Rest points of the faces that are nowhere touched at any instant; empty where the body has one face only.
 std::vector<bool> on_side_faces(const scene::Shape& body, const scene::Surface& surface,
-                                const reference::Result& result, const Errors& errors) {
+                                const std::vector<scene::ReferenceInstant>& reference, const Errors& errors) {
   const std::vector<int> face = faces_of_patches(body, surface);
   if (face.empty()) return {};
   std::set<int> touched;
   for (std::size_t t = 0; t < errors.instants.size(); ++t) {
     if (!errors.instants[t].in_contact) continue;
-    for (const scene::Vec3& contact_m : contact_points_m(body, result, t)) {
+    for (const scene::Vec3& contact_m : contact_points_m(body, reference, t)) {
       touched.insert(face[static_cast<std::size_t>(body.query(contact_m).patch)]);
     }
   }
@@ -134,14 +128,14 @@ std::vector<bool> on_side_faces(const scene::Shape& body, const scene::Surface& 
   return on_side;
 }
 
-void compare_shapes(const scene::Scene& scene, const fast::Run& run, const reference::Result& result, Errors& errors) {
+void compare_shapes(const scene::Scene& scene, const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference, Errors& errors) {
   const auto body = scene::body_shape(scene.body);
   const auto tool = reference::tool_distance(scene.tool);
-  const scene::Surface& surface = run.surface;
+  const scene::Surface& surface = answer.surface;
   const Eigen::Index points = surface.points_m.cols();
   const double rest_m3 = enclosed_volume_m3(surface, Eigen::Matrix3Xd::Zero(3, points));
 
-  const std::vector<bool> on_side = on_side_faces(*body, surface, result, errors);
+  const std::vector<bool> on_side = on_side_faces(*body, surface, reference, errors);
   SquareSums all, inside, outside, side;
   double normals2 = 0.0, normals_area_m2 = 0.0;
   double uncertainty_max_m = 0.0, hausdorff_max_m = 0.0, max_over_depth = 0.0, uncertainty_over_depth = 0.0;
@@ -149,11 +143,11 @@ void compare_shapes(const scene::Scene& scene, const fast::Run& run, const refer
   double both_m2 = 0.0, either_m2 = 0.0;
   for (std::size_t t = 0; t < errors.instants.size(); ++t) {
     InstantErrors& e = errors.instants[t];
-    const Eigen::Matrix3Xd& fast_m = run.instants[t].displacement_m;
-    const Eigen::Matrix3Xd& reference_m = result.instants[t].displacement_m;
-    const Eigen::VectorXd& uncertainty_m = result.displacement_uncertainty_m[t];
-    const scene::Pose& pose = result.instants[t].tool;
-    const std::vector<scene::Vec3> contacts_m = contact_points_m(*body, result, t);
+    const Eigen::Matrix3Xd& fast_m = answer.instants[t].displacement_m;
+    const Eigen::Matrix3Xd& reference_m = reference[t].displacement_m;
+    const Eigen::VectorXd& uncertainty_m = reference[t].displacement_uncertainty_m;
+    const scene::Pose& pose = reference[t].tool;
+    const std::vector<scene::Vec3> contacts_m = contact_points_m(*body, reference, t);
     const double tolerance_m = contact_tolerance_share * e.depth_m;
 
     e.touched_fast.assign(static_cast<std::size_t>(points), false);
@@ -227,15 +221,15 @@ void compare_shapes(const scene::Scene& scene, const fast::Run& run, const refer
 
 }  // namespace
 
-Errors compute_errors(const scene::Scene& scene, const fast::Run& run, const reference::Result& result) {
-  require_aligned(run, result);
+Errors compute_errors(const scene::Scene& scene, const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference) {
+  require_aligned(answer, reference);
   Errors errors;
-  errors.instants.resize(run.instants.size());
-  const std::vector<bool> deep = deep_instants(result.instants);
+  errors.instants.resize(answer.instants.size());
+  const std::vector<bool> deep = deep_instants(reference);
   for (std::size_t t = 0; t < errors.instants.size(); ++t) {
     InstantErrors& e = errors.instants[t];
-    e.time_s = result.instants[t].time_s;
-    e.depth_m = result.instants[t].depth_m;
+    e.time_s = reference[t].time_s;
+    e.depth_m = reference[t].depth_m;
     e.in_contact = e.depth_m > grazing_depth_m;
     e.deep = deep[t];
     if (e.depth_m > errors.depth_max_m) {
@@ -243,10 +237,10 @@ Errors compute_errors(const scene::Scene& scene, const fast::Run& run, const ref
       errors.deepest = t;
     }
   }
-  errors.reference = reference_quality(result);
-  compare_forces(run, result, errors);
-  compare_contacts(scene, run, result, errors);
-  compare_shapes(scene, run, result, errors);
+  errors.reference = reference_quality(reference);
+  compare_forces(answer, reference, errors);
+  compare_contacts(scene, answer, reference, errors);
+  compare_shapes(scene, answer, reference, errors);
   return errors;
 }
 

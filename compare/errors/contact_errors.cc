@@ -31,9 +31,9 @@ Vec3 torque_nm(const InstantRecord& record) {
 
 /// How the tool's point at the middle of the reference's regions moves up to the next instant; the tool's centre where
 /// there is no region.
-Vec3 step_to_next_m(const reference::Result& result, std::size_t t) {
-  const scene::Pose &here = result.instants[t].tool, &next = result.instants[t + 1].tool;
-  const std::vector<Vec3>& middles_m = result.region_middles_m[t];
+Vec3 step_to_next_m(const std::vector<scene::ReferenceInstant>& reference, std::size_t t) {
+  const scene::Pose &here = reference[t].tool, &next = reference[t + 1].tool;
+  const std::vector<Vec3>& middles_m = reference[t].region_middles_m;
   Vec3 at_m = middles_m.empty() ? here.position_m : Vec3::Zero();
   for (const Vec3& middle_m : middles_m) at_m += middle_m / static_cast<double>(middles_m.size());
   const Vec3 at_T_m = here.orientation.conjugate() * (at_m - here.position_m);
@@ -41,7 +41,7 @@ Vec3 step_to_next_m(const reference::Result& result, std::size_t t) {
 }
 
 /// Instant at which the side first slides, among those deep enough that a graze is no slip.
-std::optional<std::size_t> slip_onset(const std::vector<InstantRecord>& records, const Errors& errors) {
+std::optional<std::size_t> slip_onset(const scene::Instants& records, const Errors& errors) {
   for (std::size_t t = 0; t < records.size(); ++t) {
     const auto slides = [](const RegionRecord& region) { return region.sliding; };
     if (errors.instants[t].deep && std::any_of(records[t].regions.begin(), records[t].regions.end(), slides)) return t;
@@ -49,13 +49,13 @@ std::optional<std::size_t> slip_onset(const std::vector<InstantRecord>& records,
   return std::nullopt;
 }
 
-void compare_friction(const fast::Run& run, const reference::Result& result, Errors& errors) {
+void compare_friction(const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference, Errors& errors) {
   MeanSquares squares;
   double peak_n = 0.0, work_fast_j = 0.0, work_reference_j = 0.0, work_band_j = 0.0;
   const std::size_t count = errors.instants.size();
   for (std::size_t t = 0; t < count; ++t) {
     InstantErrors& e = errors.instants[t];
-    const Vec3 fast_n = friction_n(run.instants[t]), reference_n = friction_n(result.instants[t]);
+    const Vec3 fast_n = friction_n(answer.instants[t]), reference_n = friction_n(reference[t]);
     e.friction_fast_n = fast_n.norm();
     e.friction_reference_n = reference_n.norm();
     squares.add((fast_n - reference_n).norm(), e.force_uncertainty_n);
@@ -63,9 +63,9 @@ void compare_friction(const fast::Run& run, const reference::Result& result, Err
     if (t + 1 == count) break;
     const Vec3 step_m = step_to_next_m(result, t);
     errors.instants[t + 1].way_m = e.way_m + step_m.norm();
-    work_fast_j -= 0.5 * (fast_n + friction_n(run.instants[t + 1])).dot(step_m);
-    work_reference_j -= 0.5 * (reference_n + friction_n(result.instants[t + 1])).dot(step_m);
-    work_band_j += 0.5 * (e.force_uncertainty_n + result.force_uncertainty_n[t + 1]) * step_m.norm();
+    work_fast_j -= 0.5 * (fast_n + friction_n(answer.instants[t + 1])).dot(step_m);
+    work_reference_j -= 0.5 * (reference_n + friction_n(reference[t + 1])).dot(step_m);
+    work_band_j += 0.5 * (e.force_uncertainty_n + reference[t + 1].force_uncertainty_n) * step_m.norm();
   }
   if (peak_n > least_friction_share * errors.force_peak_reference_n) {
     errors.force_friction_nrmse = squares.over(peak_n);
@@ -75,8 +75,8 @@ void compare_friction(const fast::Run& run, const reference::Result& result, Err
     }
   }
 
-  const std::optional<std::size_t> fast_at = slip_onset(run.instants, errors);
-  const std::optional<std::size_t> reference_at = slip_onset(result.instants, errors);
+  const std::optional<std::size_t> fast_at = slip_onset(answer.instants, errors);
+  const std::optional<std::size_t> reference_at = slip_onset(reference, errors);
   if (fast_at) errors.slip_onset_fast_m = errors.instants[*fast_at].way_m;
   if (reference_at) errors.slip_onset_reference_m = errors.instants[*reference_at].way_m;
   if (!fast_at || !reference_at) return;
@@ -88,16 +88,16 @@ void compare_friction(const fast::Run& run, const reference::Result& result, Err
                                std::max(since_before_m(*fast_at), since_before_m(*reference_at))};
 }
 
-void compare_torques(const fast::Run& run, const reference::Result& result, Errors& errors) {
+void compare_torques(const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference, Errors& errors) {
   MeanSquares squares;
   double scale_nm = 0.0;
   for (std::size_t t = 0; t < errors.instants.size(); ++t) {
     const InstantErrors& e = errors.instants[t];
     double lever_m = 0.0;
-    for (const Vec3& middle_m : result.region_middles_m[t]) {
-      lever_m = std::max(lever_m, (middle_m - result.instants[t].tool.position_m).norm());
+    for (const Vec3& middle_m : reference[t].region_middles_m) {
+      lever_m = std::max(lever_m, (middle_m - reference[t].tool.position_m).norm());
     }
-    squares.add((torque_nm(run.instants[t]) - torque_nm(result.instants[t])).norm(), e.force_uncertainty_n * lever_m);
+    squares.add((torque_nm(answer.instants[t]) - torque_nm(reference[t])).norm(), e.force_uncertainty_n * lever_m);
     scale_nm = std::max(scale_nm, e.force_reference_n * lever_m);
   }
   if (scale_nm > 0.0) errors.force_torque_nrmse = squares.over(scale_nm);
@@ -131,10 +131,10 @@ std::vector<const RegionRecord*> partners(const InstantRecord& fast, const Insta
   return partner;
 }
 
-void compare_regions(const fast::Run& run, const reference::Result& result, Errors& errors) {
+void compare_regions(const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference, Errors& errors) {
   const auto several = [](const InstantRecord& record) { return record.regions.size() > 1; };
-  if (std::none_of(run.instants.begin(), run.instants.end(), several) &&
-      std::none_of(result.instants.begin(), result.instants.end(), several)) {
+  if (std::none_of(answer.instants.begin(), answer.instants.end(), several) &&
+      std::none_of(reference.begin(), reference.end(), several)) {
     return;
   }
   struct Sums {
@@ -142,13 +142,13 @@ void compare_regions(const fast::Run& run, const reference::Result& result, Erro
   };
   std::map<int, Sums> of_id;
   for (std::size_t t = 0; t < errors.instants.size(); ++t) {
-    const InstantRecord& reference = result.instants[t];
+    const InstantRecord& reference = reference[t];
     // A tool that dips in between the nodes has a region without a middle, and no force.
-    const std::size_t regions = std::min(reference.regions.size(), result.region_middles_m[t].size());
+    const std::size_t regions = std::min(reference.regions.size(), reference[t].region_middles_m.size());
     const std::vector<const RegionRecord*> partner =
-        partners(run.instants[t], reference,
-                 {result.region_middles_m[t].begin(),
-                  result.region_middles_m[t].begin() + static_cast<std::ptrdiff_t>(regions)});
+        partners(answer.instants[t], reference,
+                 {reference[t].region_middles_m.begin(),
+                  reference[t].region_middles_m.begin() + static_cast<std::ptrdiff_t>(regions)});
     for (std::size_t r = 0; r < regions; ++r) {
       const RegionRecord& region = reference.regions[r];
       const Vec3 fast_n = partner[r] != nullptr ? partner[r]->force_n : Vec3::Zero();
@@ -169,12 +169,12 @@ void compare_regions(const fast::Run& run, const reference::Result& result, Erro
 
 }  // namespace
 
-void compare_contacts(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
+void compare_contacts(const scene::Scene& scene, const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference,
                       Errors& errors) {
   errors.friction = scene.contact.friction.has_value();
-  if (errors.friction) compare_friction(run, result, errors);
-  compare_torques(run, result, errors);
-  compare_regions(run, result, errors);
+  if (errors.friction) compare_friction(answer, reference, errors);
+  compare_torques(answer, reference, errors);
+  compare_regions(answer, reference, errors);
 }
 
 }  // namespace touchstone::compare

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "compare/errors/errors.h"
-#include "fast/run/run.h"
-#include "reference/solver.h"
+#include "scene/model/answer.h"
+#include "scene/model/scene.h"
 
 namespace touchstone::compare {
 
 /// Fills the friction, slip, torque and region figures of errors whose forces are compared already.
-void compare_contacts(const scene::Scene& scene, const fast::Run& run, const reference::Result& result, Errors& errors);
+void compare_contacts(const scene::Scene& scene, const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference, Errors& errors);
 
 }  // namespace touchstone::compare

@@ -21,20 +21,20 @@ scene::Figure uncertainty_or_why(const std::string& key, const std::optional<dou
 
 }  // namespace
 
-ReferenceQuality reference_quality(const reference::Result& result) {
+ReferenceQuality reference_quality(const std::vector<scene::ReferenceInstant>& instants) {
   ReferenceQuality quality;
-  const std::vector<bool> deep = deep_instants(result.instants);
-  quality.force_uncertainty_rel = reference::force_uncertainty_rel(result.instants, result.force_uncertainty_n);
-  for (std::size_t t = 0; t < result.instants.size(); ++t) {
-    const double volume_change_rel = result.volume_change_rel[t];
-    if (std::isnan(volume_change_rel) || std::abs(volume_change_rel) > std::abs(quality.volume_change_rel)) {
-      quality.volume_change_rel = volume_change_rel;
+  const std::vector<bool> deep = deep_instants(instants);
+  quality.force_uncertainty_rel = reference::force_uncertainty_rel(instants);
+  for (std::size_t t = 0; t < instants.size(); ++t) {
+    const scene::ReferenceInstant& instant = instants[t];
+    if (std::isnan(instant.volume_change_rel) ||
+        std::abs(instant.volume_change_rel) > std::abs(quality.volume_change_rel)) {
+      quality.volume_change_rel = instant.volume_change_rel;
     }
     if (!deep[t]) continue;
-    const double depth_m = result.instants[t].depth_m;
-    keep_larger(quality.residual_penetration_rel, result.residual_penetration_m[t] / depth_m);
-    keep_larger(quality.between_nodes_rel, result.between_nodes_penetration_m[t] / depth_m);
-    keep_larger(quality.equilibrium_rel, result.equilibrium_rel[t]);
+    keep_larger(quality.residual_penetration_rel, instant.residual_penetration_m / instant.depth_m);
+    keep_larger(quality.between_nodes_rel, instant.between_nodes_penetration_m / instant.depth_m);
+    keep_larger(quality.equilibrium_rel, instant.equilibrium_rel);
   }
   return quality;
 }
@@ -73,13 +73,17 @@ scene::Figures reference_figures(const reference::Result& result, const Referenc
 }
 
 std::vector<scene::Column> reference_quality_columns(const reference::Result& result, const std::string& prefix) {
-  std::vector<scene::Column> columns{
-      {prefix + "force_uncertainty_n", result.force_uncertainty_n},
-      {prefix + "residual_penetration_m", result.residual_penetration_m},
-      {prefix + "between_nodes_penetration_m", result.between_nodes_penetration_m},
-      {prefix + "equilibrium_rel", result.equilibrium_rel},
-      {prefix + "volume_change_rel", result.volume_change_rel},
+  using Instant = scene::ReferenceInstant;
+  std::vector<scene::Column> columns;
+  const auto add = [&](const char* name, double Instant::*member) {
+    std::vector<double>& values = columns.emplace_back(scene::Column{prefix + name, {}}).values;
+    for (const Instant& instant : result.instants) values.push_back(instant.*member);
   };
+  add("force_uncertainty_n", &Instant::force_uncertainty_n);
+  add("residual_penetration_m", &Instant::residual_penetration_m);
+  add("between_nodes_penetration_m", &Instant::between_nodes_penetration_m);
+  add("equilibrium_rel", &Instant::equilibrium_rel);
+  add("volume_change_rel", &Instant::volume_change_rel);
   for (std::size_t level = 0; level < result.levels.size(); ++level) {
     columns.push_back({prefix + "force_level" + std::to_string(level + 1) + "_n", result.levels[level].force_n});
   }

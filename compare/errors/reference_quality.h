@@ -23,7 +23,7 @@ struct ReferenceQuality {
   std::optional<double> equilibrium_rel;           ///< |contact + support| / |contact|
   double volume_change_rel = 0.0;                  ///< of the body, of the largest magnitude over all instants, signed
 };
-[[nodiscard]] ReferenceQuality reference_quality(const reference::Result& result);
+[[nodiscard]] ReferenceQuality reference_quality(const std::vector<scene::ReferenceInstant>& instants);
 
 /// The reference.* keys of summary.json that need no other side.
 [[nodiscard]] scene::Figures reference_figures(const reference::Result& result, const ReferenceQuality& quality);

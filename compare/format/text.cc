@@ -80,6 +80,10 @@ std::string number_text(double value, int digits) {
   return value < 0.0 ? minus + text.substr(1) : text;
 }
 
+std::string thousands_text(int count) {
+  return count < 1000 ? std::to_string(count) : fmt::format("{:.0f}k", 1e-3 * count);
+}
+
 std::string percent_text(double ratio) {
   if (!std::isfinite(ratio)) return "not finite";
   if (ratio != 0.0 && std::abs(ratio) < least_ratio)

@@ -20,6 +20,9 @@ inline constexpr double least_ratio = 1e-6;
 /// A ratio as a percentage, "99.6 %"; "below 0.0001 %" where it is smaller than anything here is known to.
 [[nodiscard]] std::string percent_text(double ratio);
 
+/// A count in thousands from a thousand on: "400", "4k".
+[[nodiscard]] std::string thousands_text(int count);
+
 /// A value in its unit, scaled to what is read easily: (0.005, "m") gives "5 mm". Known to scale: m, m2, s, us,
 /// byte; a ratio has the unit "" and is given as a percentage. With a unit, less than 1e-15 is rounding and given as 0.
 [[nodiscard]] std::string quantity_text(double value, std::string_view unit);

@@ -62,7 +62,7 @@ std::optional<double> half_space_force_n(const scene::Scene& scene, double depth
   return verification::hertz(E_star_pa, scene.tool.radius_m, depth_m).force_n;
 }
 
-std::size_t deepest(const std::vector<scene::InstantRecord>& instants) {
+std::size_t deepest(const scene::Instants& instants) {
   const auto at = std::ranges::max_element(instants, {}, &scene::InstantRecord::depth_m);
   return static_cast<std::size_t>(at - instants.begin());
 }
@@ -76,7 +76,7 @@ scene::Figures fast_figures(const GateFile& file, const scene::Scene& own, const
   }
   const reference::Result stored = stored_reference(file.reference, own, rest_surface(own));
   const fast::Run run = fast::run(changed);
-  return make_figures(compute_errors(changed, run, stored), run, stored);
+  return make_figures(compute_errors(changed, run, stored.instants), run, stored);
 }
 
 /// Distance of a fresh answer from the stored one.
@@ -114,7 +114,7 @@ scene::Figures reference_side_figures(const GateFile& file, const scene::Scene& 
   if (const auto hertz_n = half_space_force_n(own, result.instants[at].depth_m)) {
     const std::string key = "hertz.force_rel";
     figures.push_back({key, result.instants[at].force_n().norm() / *hertz_n - 1.0, "", ""});
-    figures.push_back({key + std::string(uncertainty_suffix), result.force_uncertainty_n[at] / *hertz_n, "", ""});
+    figures.push_back({key + std::string(uncertainty_suffix), result.instants[at].force_uncertainty_n / *hertz_n, "", ""});
   }
   if (stored) add_resolved(result, *stored, surface.vertex_area_m2, figures);
   return figures;
@@ -144,9 +144,9 @@ scene::Figures second_code_figures(const scene::Scene& own, const scene::Scene& 
   const std::string force = "second_code.force_rel", shape = "second_code.surface_rel";
   const std::string uncertainty(uncertainty_suffix);
   return {{force, ours.force_n().norm() / force_n - 1.0, "", ""},
-          {force + uncertainty, result.force_uncertainty_n[at] / force_n, "", ""},
+          {force + uncertainty, result.instants[at].force_uncertainty_n / force_n, "", ""},
           {shape, longest_m(ours.displacement_m - theirs.displacement_m) / largest_m, "", ""},
-          {shape + uncertainty, result.displacement_uncertainty_m[at].maxCoeff() / largest_m, "", ""}};
+          {shape + uncertainty, result.instants[at].displacement_uncertainty_m.maxCoeff() / largest_m, "", ""}};
 }
 
 }  // namespace
@@ -155,7 +155,7 @@ scene::Surface rest_surface(const scene::Scene& scene) {
   return scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
 }
 
-double peak_n(const std::vector<scene::InstantRecord>& instants) {
+double peak_n(const scene::Instants& instants) {
   double peak = 0.0;
   for (const scene::InstantRecord& record : instants) {
     const double force_n = record.force_n().norm();

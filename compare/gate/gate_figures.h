@@ -41,6 +41,6 @@ namespace touchstone::compare {
 [[nodiscard]] scene::Surface rest_surface(const scene::Scene& scene);
 
 /// Largest force of a track, NaN when one is NaN [N].
-[[nodiscard]] double peak_n(const std::vector<scene::InstantRecord>& instants);
+[[nodiscard]] double peak_n(const scene::Instants& instants);
 
 }  // namespace touchstone::compare

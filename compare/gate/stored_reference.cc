@@ -78,12 +78,12 @@ std::vector<scene::Column> answer_columns(const reference::Result& result) {
   }
   // A region that only grazes has no middle.
   std::size_t middles = 0;
-  for (const auto& middles_m : result.region_middles_m) middles = std::max(middles, middles_m.size());
-  add("middles", [&](std::size_t t) { return static_cast<double>(result.region_middles_m[t].size()); });
+  for (const auto& instant : result.instants) middles = std::max(middles, instant.region_middles_m.size());
+  add("middles", [&](std::size_t t) { return static_cast<double>(result.instants[t].region_middles_m.size()); });
   for (std::size_t k = 0; k < middles; ++k) {
     for (int axis = 0; axis < 3; ++axis) {
       add(middle_column(k) + axes[axis] + "_m", [&](std::size_t t) {
-        return k < result.region_middles_m[t].size() ? result.region_middles_m[t][k][axis] : 0.0;
+        return k < result.instants[t].region_middles_m.size() ? result.instants[t].region_middles_m[k][axis] : 0.0;
       });
     }
   }
@@ -91,11 +91,11 @@ std::vector<scene::Column> answer_columns(const reference::Result& result) {
     add(std::string("support_force_") + axes[axis] + "_n",
         [&, axis](std::size_t t) { return result.instants[t].support_force_n[axis]; });
   }
-  add("force_uncertainty_n", [&](std::size_t t) { return result.force_uncertainty_n[t]; });
-  add("residual_penetration_m", [&](std::size_t t) { return result.residual_penetration_m[t]; });
-  add("between_nodes_penetration_m", [&](std::size_t t) { return result.between_nodes_penetration_m[t]; });
-  add("equilibrium_rel", [&](std::size_t t) { return result.equilibrium_rel[t]; });
-  add("volume_change_rel", [&](std::size_t t) { return result.volume_change_rel[t]; });
+  add("force_uncertainty_n", [&](std::size_t t) { return result.instants[t].force_uncertainty_n; });
+  add("residual_penetration_m", [&](std::size_t t) { return result.instants[t].residual_penetration_m; });
+  add("between_nodes_penetration_m", [&](std::size_t t) { return result.instants[t].between_nodes_penetration_m; });
+  add("equilibrium_rel", [&](std::size_t t) { return result.instants[t].equilibrium_rel; });
+  add("volume_change_rel", [&](std::size_t t) { return result.instants[t].volume_change_rel; });
   return columns;
 }
 
@@ -191,7 +191,7 @@ std::string surface_bytes(const reference::Result& result) {
     for (int axis = 0; axis < 3; ++axis) {
       for (const double u_m : result.instants[t].displacement_m.row(axis)) numbers.push_back(static_cast<float>(u_m));
     }
-    for (const double band_m : result.displacement_uncertainty_m[t]) numbers.push_back(static_cast<float>(band_m));
+    for (const double band_m : result.instants[t].displacement_uncertainty_m) numbers.push_back(static_cast<float>(band_m));
   }
   return compressed(shuffled(numbers));
 }
@@ -205,7 +205,7 @@ void take_surface(const std::string& bytes, Eigen::Index points, reference::Resu
     if (!all.leftCols<3>().allFinite())
       throw UnusableReference(std::string(surface_name) + " holds a displacement that is not finite");
     result.instants[t].displacement_m = all.leftCols<3>().transpose().cast<double>();
-    result.displacement_uncertainty_m.emplace_back(all.col(3).cast<double>());
+    result.instants[t].displacement_uncertainty_m = all.col(3).cast<double>();
   }
 }
 
@@ -216,14 +216,13 @@ void take_curve(const Table& table, std::size_t instants, reference::Result& res
   }
   result.instants.resize(instants);
   for (std::size_t t = 0; t < result.instants.size(); ++t) {
-    scene::InstantRecord& record = result.instants[t];
+    scene::ReferenceInstant& record = result.instants[t];
     record.time_s = table.at("time_s", t);
     record.tool.position_m = table.vector_at("tool_", "_m", t);
     record.tool.orientation = Eigen::Quaterniond(table.at("tool_qw", t), table.at("tool_qx", t), table.at("tool_qy", t),
                                                  table.at("tool_qz", t));
     record.depth_m = table.at("depth_m", t);
     record.support_force_n = table.vector_at("support_force_", "_n", t);
-    std::vector<scene::Vec3>& middles_m = result.region_middles_m.emplace_back();
     const std::size_t regions = table.count_at("regions", t);
     for (std::size_t k = 0; k < regions; ++k) {
       const auto of = [&](const std::string& quantity) { return table.at(region_column(k, quantity), t); };
@@ -235,12 +234,12 @@ void take_curve(const Table& table, std::size_t instants, reference::Result& res
                                 vector_of("friction_", "_n"), of("sliding") != 0.0});
     }
     const std::size_t middles = table.count_at("middles", t);
-    for (std::size_t k = 0; k < middles; ++k) middles_m.push_back(table.vector_at(middle_column(k), "_m", t));
-    result.force_uncertainty_n.push_back(table.band_at("force_uncertainty_n", t));
-    result.residual_penetration_m.push_back(table.band_at("residual_penetration_m", t));
-    result.between_nodes_penetration_m.push_back(table.band_at("between_nodes_penetration_m", t));
-    result.equilibrium_rel.push_back(table.band_at("equilibrium_rel", t));
-    result.volume_change_rel.push_back(table.band_at("volume_change_rel", t));
+    for (std::size_t k = 0; k < middles; ++k) record.region_middles_m.push_back(table.vector_at(middle_column(k), "_m", t));
+    record.force_uncertainty_n = table.band_at("force_uncertainty_n", t);
+    record.residual_penetration_m = table.band_at("residual_penetration_m", t);
+    record.between_nodes_penetration_m = table.band_at("between_nodes_penetration_m", t);
+    record.equilibrium_rel = table.band_at("equilibrium_rel", t);
+    record.volume_change_rel = table.band_at("volume_change_rel", t);
   }
 }
 
@@ -344,13 +343,12 @@ reference::Result stored_reference(const path& folder, const scene::Scene& scene
   take_curve(Table(checked(curve, curve_checksum), curve), scene::instants_s(scene).size(), result);
   take_surface(checked(folder / surface_name, surface_checksum), surface.points_m.cols(), result);
   // Written as null, as where there is nothing to be uncertain about; the bands tell which.
-  const auto& bands_n = result.force_uncertainty_n;
-  if (std::any_of(bands_n.begin(), bands_n.end(), [](double band_n) { return std::isnan(band_n); })) {
-    result.force_uncertainty_rel = reference::force_uncertainty_rel(result.instants, bands_n);
+  const auto& all = result.instants;
+  if (std::any_of(all.begin(), all.end(), [](const auto& one) { return std::isnan(one.force_uncertainty_n); })) {
+    result.force_uncertainty_rel = reference::force_uncertainty_rel(all);
   }
-  const auto& bands_m = result.displacement_uncertainty_m;
-  if (std::any_of(bands_m.begin(), bands_m.end(), [](const auto& band_m) { return band_m.hasNaN(); })) {
-    result.shape_uncertainty_rel = reference::shape_uncertainty_rel(result.instants, bands_m, surface.vertex_area_m2);
+  if (std::any_of(all.begin(), all.end(), [](const auto& one) { return one.displacement_uncertainty_m.hasNaN(); })) {
+    result.shape_uncertainty_rel = reference::shape_uncertainty_rel(all, surface.vertex_area_m2);
   }
   result.from_store = true;
   return result;

@@ -1,7 +1,7 @@
 // The figures that a table over many results shows, each with the reference's own uncertainty under it.
 #pragma once
 
-#include "scene/model/record.h"
+#include "scene/output/figures.h"
 
 #include <string>
 

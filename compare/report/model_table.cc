@@ -3,7 +3,7 @@
 #include "compare/format/page.h"
 #include "compare/format/text.h"
 #include "fast/step/state.h"
-#include "scene/model/area_law.h"
+#include "compare/model/skeleton_model.h"
 #include "compare/errors/compute_errors.h"
 
 #include <fmt/format.h>
@@ -59,25 +59,6 @@ std::string padded(std::string_view text, std::size_t width, bool right) {
 
 }  // namespace
 
-scene::Scene as_printed(scene::Scene scene) {
-  scene.fast.formulation = scene::Formulation::published;
-  return scene;
-}
-
-scene::Scene corrected(scene::Scene scene) {
-  scene.fast.formulation = scene::Formulation::corrected;
-  return scene;
-}
-
-scene::Scene with_untuned_area_law(scene::Scene scene) {
-  scene.contact.law = scene::ContactLaw::area_aware;
-  scene.contact.k1_per_radius_n_per_m2 =
-      scene::area_law_constant_n_per_m2(scene.body.material, scene.tool, scene.fast.formulation);
-  scene.contact.k1_n_per_m = scene.contact.k3_n_per_m3 = 0.0;
-  scene.fast.s_c_m2 = scene::stiff_beam_area_m2(scene.body);
-  return scene;
-}
-
 std::vector<JudgedModel> judge_models(const scene::Scene& given, const scene::Scene& judged, const fast::Run& run,
                                       const Errors& errors, const reference::Result& result, const std::string& tuned) {
   const bool duffing = given.contact.law == scene::ContactLaw::duffing;
@@ -102,7 +83,7 @@ std::vector<JudgedModel> judge_models(const scene::Scene& given, const scene::Sc
       continue;
     }
     const fast::Run other = fast::run(one->scene);
-    models.push_back(judged_model(one->key, one->name, one->scene, other, compute_errors(one->scene, other, result)));
+    models.push_back(judged_model(one->key, one->name, one->scene, other, compute_errors(one->scene, other, result.instants)));
   }
   return models;
 }

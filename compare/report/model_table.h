@@ -11,13 +11,6 @@
 
 namespace touchstone::compare {
 
-/// The published skeleton with Duffing's law and the scene's constants. For a scene with that law.
-[[nodiscard]] scene::Scene as_printed(scene::Scene scene);
-
-/// The area-aware law and its constants that follow from the material and the body's size. The formulation stays the
-/// scene's.
-[[nodiscard]] scene::Scene with_untuned_area_law(scene::Scene scene);
-
 /// One model's row. Errors are those of Errors, with the reference's uncertainty.
 struct JudgedModel {
   std::string key;     ///< in summary.json: model.<key>.force.nrmse and so on

@@ -8,6 +8,7 @@
 #include "fast/step/state.h"
 #include "scene/base/error.h"
 #include "compare/input/tuning_study.h"
+#include "compare/model/skeleton_model.h"
 
 #include <fmt/format.h>
 

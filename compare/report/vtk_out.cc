@@ -62,7 +62,7 @@ vtkSmartPointer<vtkPolyData> polydata_of(const scene::Surface& surface) {
 /// Writes <name>_0000.vtp ..., one file per instant, and the collection <name>.pvd.
 /// @param at  the surface at an instant
 void write_series(const std::filesystem::path& folder, const std::string& name,
-                  const std::vector<scene::InstantRecord>& instants,
+                  const scene::Instants& instants,
                   const std::function<vtkSmartPointer<vtkPolyData>(std::size_t)>& at) {
   const auto file_name = [&](std::size_t instant) { return fmt::format("{}_{:04}.vtp", name, instant); };
   std::string collection =
@@ -88,7 +88,7 @@ void write_series(const std::filesystem::path& folder, const std::string& name,
 
 /// The body's rest surface with `add_arrays(instant, data)` for its point arrays.
 void write_body(const std::filesystem::path& folder, const scene::Surface& surface,
-                const std::vector<scene::InstantRecord>& instants,
+                const scene::Instants& instants,
                 const std::function<void(std::size_t, vtkPolyData*)>& add_arrays) {
   const vtkSmartPointer<vtkPolyData> rest = polydata_of(surface);
   write_series(folder, "surface", instants, [&](std::size_t t) {
@@ -111,15 +111,15 @@ void write_surfaces(const std::filesystem::path& folder, const fast::Run& run, c
     add_vectors(data, "displacement_reference_m", reference_m);
     add_vectors(data, "displacement_error_m", error_m);
     add_numbers(data, "displacement_error_magnitude_m", error_m.colwise().norm().transpose());
-    add_numbers(data, "displacement_reference_uncertainty_m", result.displacement_uncertainty_m[t]);
-    add_vectors(data, "normal_fast", run.normals[t]);
+    add_numbers(data, "displacement_reference_uncertainty_m", result.instants[t].displacement_uncertainty_m);
+    add_vectors(data, "normal_fast", run.instants[t].normal);
     add_region(data, "region_id_fast", errors.instants[t].touched_fast);
     add_region(data, "region_id_reference", errors.instants[t].touched_reference);
   });
 }
 
 void write_tool(const std::filesystem::path& folder, const scene::Tool& tool,
-                const std::vector<scene::InstantRecord>& instants) {
+                const scene::Instants& instants) {
   const scene::Surface own = scene::tool_surface(tool, tool_triangles);
   write_series(folder, "tool", instants, [&](std::size_t t) {
     const scene::Pose& pose = instants[t].tool;
@@ -132,7 +132,7 @@ void write_tool(const std::filesystem::path& folder, const scene::Tool& tool,
 void write_fast_surfaces(const std::filesystem::path& folder, const fast::Run& run) {
   write_body(folder, run.surface, run.instants, [&](std::size_t t, vtkPolyData* data) {
     add_vectors(data, "displacement_m", run.instants[t].displacement_m);
-    add_vectors(data, "normal", run.normals[t]);
+    add_vectors(data, "normal", run.instants[t].normal);
   });
 }
 
@@ -140,7 +140,7 @@ void write_reference_surfaces(const std::filesystem::path& folder, const scene::
                               const reference::Result& result) {
   write_body(folder, surface, result.instants, [&](std::size_t t, vtkPolyData* data) {
     add_vectors(data, "displacement_m", result.instants[t].displacement_m);
-    add_numbers(data, "displacement_uncertainty_m", result.displacement_uncertainty_m[t]);
+    add_numbers(data, "displacement_uncertainty_m", result.instants[t].displacement_uncertainty_m);
   });
 }
 

@@ -105,7 +105,7 @@ std::string reference_text(const reference::Result& result) {
   const auto deepest = std::max_element(result.instants.begin(), result.instants.end(),
                                         [](const auto& a, const auto& b) { return a.depth_m < b.depth_m; });
   const auto at = static_cast<std::size_t>(deepest - result.instants.begin());
-  const double uncertainty_n = result.force_uncertainty_n[at];
+  const double uncertainty_n = result.instants[at].force_uncertainty_n;
   std::string text =
       fmt::format("Force at the deepest instant ({:.3g} mm): {:.4g} N, {}\nModel: {}, {} unknowns on the finest mesh\n",
                   1e3 * deepest->depth_m, deepest->force_n().norm(),

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "compare/study/study.h"
-#include "scene/model/record.h"
+#include "scene/output/figures.h"
 
 #include <functional>
 #include <string>

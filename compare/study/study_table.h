@@ -2,7 +2,7 @@
 #pragma once
 
 #include "compare/study/study_run.h"
-#include "scene/model/record.h"
+#include "scene/model/answer.h"
 
 #include <string>
 

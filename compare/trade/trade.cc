@@ -59,7 +59,7 @@ std::string late_text(const Trade& trade, const TradeRow& row) {
 
 /// Whether the paper's model wins or loses in one error, in words.
 std::string paper_sentence(const Trade& trade, TradeError error, const std::string& what) {
-  const auto of_paper = [](const TradeRow& row) { return row.family == TradeFamily::paper; };
+  const auto of_paper = [](const TradeRow& row) { return row.family == ModelFamily::paper; };
   const TradeRow* paper = most_accurate(trade, error, of_paper);
   if (paper == nullptr) {
     return std::any_of(trade.rows.begin(), trade.rows.end(), of_paper)
@@ -81,7 +81,7 @@ std::string paper_sentence(const Trade& trade, TradeError error, const std::stri
     return text;
   }
   const TradeRow* rival = most_accurate(trade, error, [&](const TradeRow& row) {
-    return !of_paper(row) && row.family != TradeFamily::reference && row.step_p50_us <= trade.tick_us;
+    return !of_paper(row) && row.family != ModelFamily::reference && row.step_p50_us <= trade.tick_us;
   });
   if (rival == nullptr || *judged_error(rival->*error) >= *judged_error(paper->*error)) {
     const bool worse_than_none = error == &TradeRow::shape_rel_l2 && *judged_error(paper->*error) >= 1.0;

@@ -7,6 +7,7 @@
 #include "scene/output/results.h"
 #include "compare/input/tuning_study.h"
 #include "reference/solver.h"
+#include "compare/model/registry.h"
 
 #include <filesystem>
 #include <functional>
@@ -17,21 +18,12 @@
 
 namespace touchstone::compare {
 
-/// Who made the model of a row.
-enum class TradeFamily {
-  paper,       ///< the paper's skeleton with its own law
-  area_aware,  ///< the same skeleton with the area-aware law
-  compliance,  ///< precomputed linear compliance with a contact solve
-  peer,        ///< Bullet's deformable body
-  reference,   ///< the reference's levels
-};
-
 /// One model at one size. NaN: not known.
 struct TradeRow {
   std::string name;   ///< "corrected, 4k triangles"
   std::string key;    ///< of summary.json: "corrected-4k"
   std::string label;  ///< short, for the plot
-  TradeFamily family = TradeFamily::paper;
+  ModelFamily family = ModelFamily::paper;
   std::string absent{};  ///< why there is nothing to measure; empty where there is
   std::string note{};    ///< what a reader must know to compare it
   int size = 0;          ///< surface triangles, or unknowns
@@ -76,11 +68,13 @@ struct TradeOptions {
 /// Builds, measures and judges every row.
 /// @param solve  the reference, by number of levels; nothing: as many as the scene and the command line ask for
 /// @param say    one line about what begins; may be empty
+/// @param models which are traded
 /// @throws scene::InputError, and what `solve` throws
 [[nodiscard]] Trade trade(
     const scene::Scene& scene, const TradeOptions& options,
     const std::function<reference::Result(const scene::Scene&, const scene::Surface&, std::optional<int>)>& solve,
-    const std::function<void(const std::string&)>& say = {});
+    const std::function<void(const std::string&)>& say = {},
+    const std::vector<ModelList>& models = registered_models());
 
 /// Who wins, a sentence each; able to say that the paper's model loses.
 [[nodiscard]] std::vector<std::string> trade_verdict(const Trade& trade);

@@ -29,15 +29,16 @@ constexpr Judged judged[] = {
     {&TradeRow::shape_rel_l2, "shape", "shape.rel_l2", "shape error, of the displacement [%]"}};
 
 struct FamilyStyle {
-  TradeFamily family;
+  ModelFamily family;
   const char* name;
   const char* colour;
 };
-constexpr FamilyStyle families[] = {{TradeFamily::paper, "the paper's model", "#e4600a"},
-                                    {TradeFamily::area_aware, "area-aware law", "#a03070"},
-                                    {TradeFamily::compliance, "linear compliance", "#2e8b57"},
-                                    {TradeFamily::peer, "Bullet", "#6a51a3"},
-                                    {TradeFamily::reference, "reference", "#1f77b4"}};
+constexpr FamilyStyle families[] = {{ModelFamily::paper, "the paper's model", "#e4600a"},
+                                    {ModelFamily::area_aware, "area-aware law", "#a03070"},
+                                    {ModelFamily::compliance, "linear compliance", "#2e8b57"},
+                                    {ModelFamily::peer, "Bullet", "#6a51a3"},
+                                    {ModelFamily::reference, "reference", "#1f77b4"},
+                                    {ModelFamily::other, "other models", "#555555"}};
 
 std::string number(double value, std::string_view unit) {
   return std::isfinite(value) ? quantity_text(value, unit) : std::string(nothing);
@@ -133,7 +134,7 @@ std::string notes(const Trade& trade) {
     }
     if (row.absent.empty() && row.steps > 0) {
       text += fmt::format("{}{} {}", text.empty() ? "" : "; ", row.steps,
-                          row.family == TradeFamily::reference ? "instants" : "steps measured");
+                          row.family == ModelFamily::reference ? "instants" : "steps measured");
     }
     if (!text.empty()) out += tag("dt", row.name) + tag("dd", text) + "\n";
   }

@@ -30,13 +30,6 @@ void keep(std::vector<T>& list, const std::vector<std::size_t>& at) {
 
 void keep_in_result(reference::Result& result, const std::vector<std::size_t>& at) {
   keep(result.instants, at);
-  keep(result.region_middles_m, at);
-  keep(result.force_uncertainty_n, at);
-  keep(result.displacement_uncertainty_m, at);
-  keep(result.residual_penetration_m, at);
-  keep(result.between_nodes_penetration_m, at);
-  keep(result.equilibrium_rel, at);
-  keep(result.volume_change_rel, at);
   for (reference::LevelRecord& level : result.levels) keep(level.force_n, at);
 }
 
@@ -116,7 +109,7 @@ class Training {
       if (!scene::broken_constants(scene, deepest_m_).empty()) return std::nullopt;
       const std::vector<Vec3> force_n = one.replay->forces_n(scene);
       for (const std::size_t t : one.touching) {
-        const double band_n = at_least(one.data->result.force_uncertainty_n[t], one.force_floor_n);
+        const double band_n = at_least(one.data->result.instants[t].force_uncertainty_n, one.force_floor_n);
         out.segment<3>(row) = (force_n[one.data->instants[t]] - one.data->result.instants[t].force_n()) / band_n;
         row += 3;
       }
@@ -254,7 +247,7 @@ StageFit fit_stage(const Tuning& tuning, const TunedModel& model, TuningStage st
 /// Points of the rest surface under the reference's regions.
 std::vector<Vec3> contact_points_m(const TuningData& data, std::size_t t) {
   const auto body = scene::body_shape(data.contact.scene.body);
-  std::vector<Vec3> points_m = data.result.region_middles_m[t];
+  std::vector<Vec3> points_m = data.result.instants[t].region_middles_m;
   if (points_m.empty()) points_m.push_back(data.result.instants[t].tool.position_m);
   for (Vec3& p_m : points_m) p_m = body->query(p_m).point_m;
   return points_m;
@@ -300,7 +293,7 @@ TuningOutcome outcome_of(const Tuning& tuning, const TunedModel& model, std::siz
   const scene::Scene scene = tuned_scene(data.contact.scene, model);
   TuningOutcome out{at, fast::run(scene), {}, {}};
   keep_instants(out.run, data.instants);
-  out.errors = compute_errors(scene, out.run, data.result);
+  out.errors = compute_errors(scene, out.run, data.result.instants);
   out.regime = regime_of(tuning, data, out.errors);
   return out;
 }
@@ -438,10 +431,7 @@ TuningData tuning_data(const TuningContact& contact, const SolveReference& solve
   return data;
 }
 
-void keep_instants(fast::Run& run, const std::vector<std::size_t>& instants) {
-  keep(run.instants, instants);
-  keep(run.normals, instants);
-}
+void keep_instants(scene::Answer& answer, const std::vector<std::size_t>& instants) { keep(answer.instants, instants); }
 
 std::string TunedModel::name() const {
   return std::string(formulation == scene::Formulation::published ? "published" : "corrected") +

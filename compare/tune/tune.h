@@ -88,8 +88,8 @@ struct Tuning {
 /// Solves a contact. @throws InputError when the reference is never in contact at an instant that counts
 [[nodiscard]] TuningData tuning_data(const TuningContact& contact, const SolveReference& solve);
 
-/// Keeps of a run over a contact's whole track the instants that count. @param instants  of TuningData
-void keep_instants(fast::Run& run, const std::vector<std::size_t>& instants);
+/// Keeps of an answer over a contact's whole track the instants that count. @param instants  of TuningData
+void keep_instants(scene::Answer& answer, const std::vector<std::size_t>& instants);
 
 /// A contact's scene with the model's formulation, law and values so far.
 [[nodiscard]] scene::Scene tuned_scene(const scene::Scene& scene, const TunedModel& model);

@@ -3,7 +3,7 @@
 
 #include "fast/bench/measure.h"
 #include "fast/bench/peer.h"
-#include "scene/model/record.h"
+#include "scene/output/figures.h"
 
 #include <string>
 #include <vector>

@@ -131,7 +131,7 @@ Run run(const scene::Scene& scene, const std::function<void(double)>& progress) 
       if (run.instants.back().depth_m > missed_depth_m && !state.in_contact())
         run.status |= static_cast<std::uint32_t>(StepStatus::contact_missed);
       if (!state.in_contact()) run.instants.back().separation_m = separation.distance_m(pose);
-      run.normals.push_back(matrix_of(state.field.normal));
+      run.instants.back().normal = matrix_of(state.field.normal);
       add_beams(model, state, tick->time_s, run.beams);
     }
     if (progress && run.ticks % report_every == 0) {

@@ -4,7 +4,7 @@
 #include "fast/skeleton/beam_stress.h"
 #include "fast/run/percentiles.h"
 #include "scene/model/plan.h"
-#include "scene/model/record.h"
+#include "scene/model/answer.h"
 #include "scene/model/scene.h"
 #include "scene/shape/surface.h"
 
@@ -27,11 +27,8 @@ struct BeamRecord {
   BeamStress end;              ///< all zero where the region only keeps its place
 };
 
-/// One side's answer over the whole track.
-struct Run {
-  scene::Surface surface;                      ///< rest surface; its points are the rest points of the records
-  std::vector<scene::InstantRecord> instants;  ///< at scene::instants_s
-  std::vector<Eigen::Matrix3Xd> normals;       ///< per instant, current unit normals at the rest points
+/// The answer over the whole track, with what only this model can tell.
+struct Run : scene::Answer {
   std::vector<BeamRecord> beams;               ///< per instant, pressing region and anchor point
   Percentiles step;                            ///< whole step, wall clock, over all ticks of the track; to 1 %
   Percentiles force;                           ///< detection to published force, ticks in contact only; to 1 %

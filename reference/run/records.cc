@@ -75,30 +75,24 @@ void add_regions(const Scene& scene, const scene::Shape& body, const std::vector
 void fill_records(const Scene& scene, const std::vector<double>& times_s, const std::vector<Step>& steps,
                   const std::vector<Eigen::Matrix3Xd>& shapes, Result& result) {
   result.instants.clear();
-  result.region_middles_m.clear();
-  for (auto* column : {&result.residual_penetration_m, &result.between_nodes_penetration_m, &result.equilibrium_rel,
-                       &result.volume_change_rel}) {
-    column->clear();
-  }
   const std::unique_ptr<const scene::Shape> body = scene::body_shape(scene.body);
   int indefinite = 0;
   RegionIds ids;
   for (std::size_t instant = 0; instant < times_s.size(); ++instant) {
     const Observation& seen = steps[instant].seen;
-    scene::InstantRecord record;
+    scene::ReferenceInstant record;
     record.time_s = times_s[instant];
     record.tool = scene::pose_at(scene.track, record.time_s);
     record.depth_m = scene::rest_depth_m(*body, scene.tool, record.tool);
     record.support_force_n = seen.support_force_n;
     record.displacement_m = shapes[instant];
     add_regions(scene, *body, seen.regions, instant > 0 ? &result.instants.back().tool : nullptr, ids, record);
+    for (const ContactRegion& region : seen.regions) record.region_middles_m.push_back(region.center_m);
+    record.residual_penetration_m = seen.node_penetration_m;
+    record.between_nodes_penetration_m = seen.between_nodes_penetration_m;
+    record.equilibrium_rel = seen.equilibrium_rel;
+    record.volume_change_rel = seen.volume_change_rel;
     result.instants.push_back(std::move(record));
-    std::vector<scene::Vec3>& middles_m = result.region_middles_m.emplace_back();
-    for (const ContactRegion& region : seen.regions) middles_m.push_back(region.center_m);
-    result.residual_penetration_m.push_back(seen.node_penetration_m);
-    result.between_nodes_penetration_m.push_back(seen.between_nodes_penetration_m);
-    result.equilibrium_rel.push_back(seen.equilibrium_rel);
-    result.volume_change_rel.push_back(seen.volume_change_rel);
     indefinite += steps[instant].indefinite;
   }
   if (indefinite > 0) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "reference/mesh/boundary_surface.h"
-#include "scene/model/record.h"
+#include "scene/model/answer.h"
 
 #include <optional>
 #include <string>
@@ -55,17 +55,10 @@ struct Result {
   std::string model;          ///< "quarter 3D u-p finite strain"
   std::string key;            ///< content address in the store
   std::string linear_solver;  ///< with the BLAS it ran on
-  std::vector<scene::InstantRecord> instants;
-  std::vector<std::vector<scene::Vec3>> region_middles_m;   ///< per instant, one for every region
-  std::vector<double> force_uncertainty_n;                  ///< per instant, conservative half width
-  std::vector<Eigen::VectorXd> displacement_uncertainty_m;  ///< per instant, per rest point
+  std::vector<scene::ReferenceInstant> instants;
   std::optional<double> force_uncertainty_rel;      ///< largest band / |F| over the instants with a deep contact
   std::optional<double> shape_uncertainty_rel;      ///< band over displacement, both root mean square by area over all
                                                     ///< points and instants
-  std::vector<double> residual_penetration_m;       ///< per instant, largest over contact nodes
-  std::vector<double> between_nodes_penetration_m;  ///< per instant, largest over face quadrature points
-  std::vector<double> equilibrium_rel;              ///< per instant, |contact + support| / |contact|
-  std::vector<double> volume_change_rel;            ///< per instant, of the body
   std::vector<LevelRecord> levels;
   std::vector<Sensitivity> sensitivities;  ///< all, or empty: with fewer than three levels, or for want of time
   Refinement refinement;

@@ -369,12 +369,11 @@ class Run {
 
   void unknown_uncertainty() {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    result_.force_uncertainty_n.assign(times_s_.size(), unknown);
-    result_.displacement_uncertainty_m.assign(times_s_.size(),
-                                              Eigen::VectorXd::Constant(rest_points_m_.cols(), unknown));
-    result_.force_uncertainty_rel = force_uncertainty_rel(result_.instants, result_.force_uncertainty_n);
-    result_.shape_uncertainty_rel =
-        shape_uncertainty_rel(result_.instants, result_.displacement_uncertainty_m, options_.rest_area_m2);
+    for (scene::ReferenceInstant& instant : result_.instants) {
+      instant.force_uncertainty_n = unknown;
+      instant.displacement_uncertainty_m.setConstant(rest_points_m_.cols(), unknown);
+    }
+    sum_up_uncertainty();
   }
 
   void estimate_uncertainty() {
@@ -384,12 +383,19 @@ class Run {
       finer.push_back(refinement(level));
       forces_n.push_back(result_.levels[level].force_n);
     }
-    result_.force_uncertainty_n = force_band(forces_n, finer);
-    result_.displacement_uncertainty_m = displacement_band(shapes_, finer);
+    const std::vector<double> bands_n = force_band(forces_n, finer);
+    std::vector<Eigen::VectorXd> bands_m = displacement_band(shapes_, finer);
+    for (std::size_t i = 0; i < result_.instants.size(); ++i) {
+      result_.instants[i].force_uncertainty_n = bands_n[i];
+      result_.instants[i].displacement_uncertainty_m = std::move(bands_m[i]);
+    }
     add_sensitivities(solved_levels() - 1);
-    result_.force_uncertainty_rel = force_uncertainty_rel(result_.instants, result_.force_uncertainty_n);
-    result_.shape_uncertainty_rel =
-        shape_uncertainty_rel(result_.instants, result_.displacement_uncertainty_m, options_.rest_area_m2);
+    sum_up_uncertainty();
+  }
+
+  void sum_up_uncertainty() {
+    result_.force_uncertainty_rel = force_uncertainty_rel(result_.instants);
+    result_.shape_uncertainty_rel = shape_uncertainty_rel(result_.instants, options_.rest_area_m2);
   }
 
   /// Reads what the store has and solves the rest, in track order. @throws TimeIsUp with the answer up to there
@@ -618,8 +624,8 @@ class Run {
       const double share = share_at(one, finest);
       if (share == 0.0) continue;
       for (std::size_t i = 0; i < result_.instants.size(); ++i) {
-        result_.force_uncertainty_n[i] += share * one.force_rel * result_.instants[i].force_n().norm();
-        result_.displacement_uncertainty_m[i] +=
+        result_.instants[i].force_uncertainty_n += share * one.force_rel * result_.instants[i].force_n().norm();
+        result_.instants[i].displacement_uncertainty_m +=
             share * result_.instants[i].depth_m / deepest_m * one.displacement_change_m;
       }
     }

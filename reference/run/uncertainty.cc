@@ -72,7 +72,7 @@ std::vector<Eigen::VectorXd> displacement_band(const std::vector<std::vector<Eig
   return band;
 }
 
-std::vector<bool> deep_instants(const std::vector<scene::InstantRecord>& instants) {
+std::vector<bool> deep_instants(const scene::Instants& instants) {
   double deepest_m = 0.0;
   for (const scene::InstantRecord& instant : instants) deepest_m = std::max(deepest_m, instant.depth_m);
   std::vector<bool> deep;
@@ -82,27 +82,25 @@ std::vector<bool> deep_instants(const std::vector<scene::InstantRecord>& instant
   return deep;
 }
 
-std::optional<double> force_uncertainty_rel(const std::vector<scene::InstantRecord>& instants,
-                                            const std::vector<double>& band_n) {
+std::optional<double> force_uncertainty_rel(const std::vector<scene::ReferenceInstant>& instants) {
   std::optional<double> largest;
   const std::vector<bool> deep = deep_instants(instants);
   for (std::size_t i = 0; i < instants.size(); ++i) {
     const double force_n = instants[i].force_n().norm();
     if (!deep[i] || force_n == 0.0) continue;
-    const double here = band_n[i] / force_n;
+    const double here = instants[i].force_uncertainty_n / force_n;
     // Once NaN, stays NaN.
     if (!largest || std::isnan(here) || here > *largest) largest = here;
   }
   return largest;
 }
 
-std::optional<double> shape_uncertainty_rel(const std::vector<scene::InstantRecord>& instants,
-                                            const std::vector<Eigen::VectorXd>& band_m,
+std::optional<double> shape_uncertainty_rel(const std::vector<scene::ReferenceInstant>& instants,
                                             const std::vector<double>& area_m2) {
   double uncertain = 0.0, moved = 0.0;
   for (std::size_t i = 0; i < instants.size(); ++i) {
     const Eigen::VectorXd area = areas_or_ones(area_m2, instants[i].displacement_m.cols());
-    uncertain += band_m[i].cwiseAbs2().dot(area);
+    uncertain += instants[i].displacement_uncertainty_m.cwiseAbs2().dot(area);
     moved += instants[i].displacement_m.colwise().squaredNorm().transpose().dot(area);
   }
   if (moved == 0.0) return std::nullopt;

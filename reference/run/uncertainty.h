@@ -1,7 +1,8 @@
 // How far the finest level may be from the exact answer of the model, from what refinement changed.
 #pragma once
 
-#include "scene/model/record.h"
+#include "scene/model/answer.h"
+#include "scene/output/figures.h"
 
 #include <Eigen/Core>
 
@@ -40,16 +41,14 @@ inline constexpr double deep_share = 0.1;
 inline constexpr double grazing_depth_m = 1e-9;
 
 /// Per instant: in contact, and deeper than deep_share of the deepest.
-[[nodiscard]] std::vector<bool> deep_instants(const std::vector<scene::InstantRecord>& instants);
+[[nodiscard]] std::vector<bool> deep_instants(const scene::Instants& instants);
 
 /// Largest band / |F| over the deep instants; absent where nothing pushes.
-[[nodiscard]] std::optional<double> force_uncertainty_rel(const std::vector<scene::InstantRecord>& instants,
-                                                          const std::vector<double>& band_n);
+[[nodiscard]] std::optional<double> force_uncertainty_rel(const std::vector<scene::ReferenceInstant>& instants);
 
 /// sqrt(sum over instants and rest points of A b^2 / the same of A |u|^2); absent where nothing moves.
 /// @param area_m2  A of each rest point; empty: equal
-[[nodiscard]] std::optional<double> shape_uncertainty_rel(const std::vector<scene::InstantRecord>& instants,
-                                                          const std::vector<Eigen::VectorXd>& band_m,
+[[nodiscard]] std::optional<double> shape_uncertainty_rel(const std::vector<scene::ReferenceInstant>& instants,
                                                           const std::vector<double>& area_m2);
 
 /// The areas as a vector, ones where there are none.

@@ -462,7 +462,7 @@ Findings scene_problem(const Effort& effort) {
                 force_n,
                 limit_of_closed_form,
                 0.0,
-                result.force_uncertainty_n[i] / force_n,
+                result.instants[i].force_uncertainty_n / force_n,
                 {}};
     findings.checks.push_back(check);
   }

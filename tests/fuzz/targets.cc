@@ -203,21 +203,17 @@ const GateScene& gate_scene() {
 reference::Result pressed(Eigen::Index points) {
   reference::Result result;
   for (int t = 0; t < 2; ++t) {
-    scene::InstantRecord& record = result.instants.emplace_back();
+    scene::ReferenceInstant& record = result.instants.emplace_back();
     record.time_s = t;
     record.displacement_m = Eigen::Matrix3Xd::Constant(3, points, 1e-3 * t);
-    std::vector<scene::Vec3>& middles_m = result.region_middles_m.emplace_back();
     if (t == 1) {
       record.depth_m = 1e-3;
       record.regions.push_back({1e-3, scene::Vec3(0, 0, 1), scene::Vec3::Zero(), 1e-5, 0, scene::Vec3::Zero(), false});
-      middles_m.emplace_back(0.0, 0.0, 0.06);
+      record.region_middles_m.emplace_back(0.0, 0.0, 0.06);
     }
-    result.displacement_uncertainty_m.emplace_back(Eigen::VectorXd::Constant(points, 1e-6));
-    for (std::vector<double>* numbers :
-         {&result.force_uncertainty_n, &result.residual_penetration_m, &result.between_nodes_penetration_m,
-          &result.equilibrium_rel, &result.volume_change_rel}) {
-      numbers->push_back(1e-6);
-    }
+    record.displacement_uncertainty_m.setConstant(points, 1e-6);
+    record.force_uncertainty_n = record.residual_penetration_m = record.between_nodes_penetration_m = 1e-6;
+    record.equilibrium_rel = record.volume_change_rel = 1e-6;
   }
   result.model = "axisymmetric";
   result.levels.emplace_back();

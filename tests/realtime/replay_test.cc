@@ -33,7 +33,7 @@ TEST(Replay, GivesEqualBits) {
       EXPECT_EQ(first.instants[i].force_n(), second.instants[i].force_n());
       EXPECT_EQ(first.instants[i].support_force_n, second.instants[i].support_force_n);
       EXPECT_EQ(first.instants[i].displacement_m, second.instants[i].displacement_m);
-      EXPECT_EQ(first.normals[i], second.normals[i]);
+      EXPECT_EQ(first.instants[i].normal, second.instants[i].normal);
     }
   }
 }

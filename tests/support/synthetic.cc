@@ -9,22 +9,8 @@
 #include <cmath>
 
 namespace touchstone::compare::testing {
-namespace {
 
 using scene::Vec3;
-
-/// Series of one value per instant, so that a result is complete.
-void complete(reference::Result& result, std::size_t instants, Eigen::Index points) {
-  result.force_uncertainty_n.assign(instants, 0.0);
-  result.displacement_uncertainty_m.assign(instants, Eigen::VectorXd::Zero(points));
-  result.residual_penetration_m.assign(instants, 0.0);
-  result.between_nodes_penetration_m.assign(instants, 0.0);
-  result.equilibrium_rel.assign(instants, 0.0);
-  result.volume_change_rel.assign(instants, 0.0);
-  result.region_middles_m.assign(instants, {});
-}
-
-}  // namespace
 
 scene::Scene ball_on_cube(int instants, int triangles) {
   scene::Scene scene;
@@ -73,7 +59,6 @@ Sides pressed(int instants, int triangles) {
     return Vec3(0.05 * d * p.x() / 0.03 * height * (1 - height) * 4,
                 0.05 * d * p.y() / 0.03 * height * (1 - height) * 4, -under_m * std::min(1.0, 1.4 * height));
   };
-  complete(sides.result, static_cast<std::size_t>(instants), points);
   const std::vector<double> level_factor = {0.982, 1.006, 1.0};
   for (std::size_t level = 0; level < 3; ++level) {
     sides.result.levels.push_back({2.0e-3 / static_cast<double>(1 << level),
@@ -86,12 +71,14 @@ Sides pressed(int instants, int triangles) {
   }
   for (const double time_s : scene::instants_s(sides.scene)) {
     const std::size_t t = sides.run.instants.size();
-    scene::InstantRecord fast, reference;
+    scene::InstantRecord fast;
+    scene::ReferenceInstant reference;
     fast.time_s = time_s;
     fast.tool = scene::pose_at(sides.scene.track, time_s);
     fast.depth_m = scene::rest_depth_m(*body, sides.scene.tool, fast.tool);
     fast.displacement_m = Eigen::Matrix3Xd::Zero(3, points);
-    reference = fast;
+    static_cast<scene::InstantRecord&>(reference) = fast;
+    reference.displacement_uncertainty_m.setZero(points);
     const double d = fast.depth_m;
     if (d > 0.0) {
       const double fast_n = 40.0 * d + 3.0e8 * d * d * d;
@@ -106,20 +93,20 @@ Sides pressed(int instants, int triangles) {
         fast.displacement_m.col(i) =
             Vec3(0.0, 0.0, -(p.z() > 0.0599 ? d * std::max(0.0, 1.0 - r / 0.015) : 0.0) - 0.02 * d * height);
       }
-      sides.result.force_uncertainty_n[t] = 0.02 * reference_n;
+      reference.force_uncertainty_n = 0.02 * reference_n;
       for (Eigen::Index i = 0; i < points; ++i) {
-        sides.result.displacement_uncertainty_m[t][i] = 0.01 * reference.displacement_m.col(i).norm() + 1e-7;
+        reference.displacement_uncertainty_m[i] = 0.01 * reference.displacement_m.col(i).norm() + 1e-7;
       }
-      sides.result.residual_penetration_m[t] = 2e-5 * d;
-      sides.result.between_nodes_penetration_m[t] = 4e-3 * d;
-      sides.result.equilibrium_rel[t] = 3e-11;
-      sides.result.volume_change_rel[t] = -1.4e-6 * d / 0.005;
+      reference.residual_penetration_m = 2e-5 * d;
+      reference.between_nodes_penetration_m = 4e-3 * d;
+      reference.equilibrium_rel = 3e-11;
+      reference.volume_change_rel = -1.4e-6 * d / 0.005;
     }
     for (std::size_t level = 0; level < 3; ++level) {
       sides.result.levels[level].force_n.push_back(level_factor[level] * reference.force_n().norm());
     }
+    fast.normal = surface.normals;
     sides.run.instants.push_back(std::move(fast));
-    sides.run.normals.push_back(surface.normals);
     sides.result.instants.push_back(std::move(reference));
   }
   reference::BoundarySurface& own = sides.result.deepest_surface;
@@ -135,8 +122,8 @@ Sides pressed(int instants, int triangles) {
   sides.run.memory_bytes = 3'400'000;
   sides.run.ticks = 1100;
   sides.run.regions_max = 1;
-  sides.result.shape_uncertainty_rel = reference::shape_uncertainty_rel(
-      sides.result.instants, sides.result.displacement_uncertainty_m, surface.vertex_area_m2);
+  sides.result.shape_uncertainty_rel =
+      reference::shape_uncertainty_rel(sides.result.instants, surface.vertex_area_m2);
   sides.result.model = "quarter 3D u-p finite strain";
   sides.result.linear_solver = "CHOLMOD with OpenBLAS";
   sides.plans.fast = {{"contact law", true, "contact.law = \"duffing\"", "under 1 us"},
@@ -172,16 +159,15 @@ Sides pressed_by_mallet(const std::filesystem::path& folder, int instants) {
   constexpr double higher_m = 0.013566;
   for (scene::Waypoint& waypoint : sides.scene.track) waypoint.pose.position_m.z() += higher_m;
   for (std::size_t t = 0; t < sides.run.instants.size(); ++t) {
-    for (scene::InstantRecord* record : {&sides.run.instants[t], &sides.result.instants[t]}) {
-      record->tool.position_m.z() += higher_m;
-    }
+    sides.run.instants[t].tool.position_m.z() += higher_m;
+    sides.result.instants[t].tool.position_m.z() += higher_m;
   }
   sides.manifest = scene::make_manifest(sides.scene, "touchstone compare");
   return sides;
 }
 
 std::string report_of(const Sides& sides) {
-  const Errors errors = compute_errors(sides.scene, sides.run, sides.result);
+  const Errors errors = compute_errors(sides.scene, sides.run, sides.result.instants);
   const scene::Figures figures = make_figures(errors, sides.run, sides.result);
   const Verdict told = verdict(sides.scene, sides.run, sides.result, errors, sides.call);
   const ComparisonDrawings drawings = comparison_drawings(sides.scene, sides.run, sides.result, errors);
@@ -202,16 +188,16 @@ Sides small() {
   sides.run.surface.patch_begin = {0, 4};
   sides.run.surface.vertex_area_m2 = {1.0, 2.0, 3.0, 4.0};
   for (std::size_t t = 0; t < 2; ++t) {
-    scene::InstantRecord record;
+    scene::ReferenceInstant record;
     record.time_s = static_cast<double>(t);
     record.depth_m = t == 0 ? 0.001 : 0.010;
     record.tool.position_m = Vec3(0.0, 0.0, 0.07 - record.depth_m);
     record.displacement_m = Eigen::Matrix3Xd::Zero(3, 4);
-    sides.run.instants.push_back(record);
-    sides.run.normals.push_back(sides.run.surface.normals);
+    record.displacement_uncertainty_m.setZero(4);
     sides.result.instants.push_back(record);
+    sides.run.instants.push_back(record);
+    sides.run.instants.back().normal = sides.run.surface.normals;
   }
-  complete(sides.result, 2, 4);
   return sides;
 }
 

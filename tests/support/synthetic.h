@@ -4,6 +4,10 @@
 
 #include "compare/report/report.h"
 
+#include <array>
+#include <type_traits>
+#include <vector>
+
 namespace touchstone::compare::testing {
 
 /// The ball on the cube of the paper, `instants` instants to a depth of 5 mm.
@@ -32,5 +36,20 @@ struct Sides {
 
 /// One region with this force on the tool, at this instant.
 void set_force(scene::InstantRecord& record, const scene::Vec3& force_n);
+
+/// Both sides' records of an instant.
+[[nodiscard]] inline std::array<scene::InstantRecord*, 2> both(Sides& sides, std::size_t t) {
+  return {&sides.run.instants[t], &sides.result.instants[t]};
+}
+
+/// Gives a member the same value at all instants, or to each its own.
+template <class T>
+void set_all(reference::Result& result, T scene::ReferenceInstant::*member, const std::type_identity_t<T>& value) {
+  for (scene::ReferenceInstant& instant : result.instants) instant.*member = value;
+}
+template <class T>
+void set_each(reference::Result& result, T scene::ReferenceInstant::*member, const std::vector<std::type_identity_t<T>>& values) {
+  for (std::size_t t = 0; t < values.size(); ++t) result.instants[t].*member = values[t];
+}
 
 }  // namespace touchstone::compare::testing

@@ -25,10 +25,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// One column per value of `get`, over all records.
-template <class Record, class Get>
-Column column(std::string name, const std::vector<Record>& records, Get get) {
+template <class Records, class Get>
+Column column(std::string name, const Records& records, Get get) {
   Column out{std::move(name), {}};
-  for (const Record& record : records) out.values.push_back(get(record));
+  for (const auto& record : records) out.values.push_back(get(record));
   return out;
 }
 
@@ -53,7 +53,7 @@ std::string processor_name() {
 
 }  // namespace
 
-std::vector<Column> track_columns(const std::vector<InstantRecord>& records) {
+std::vector<Column> track_columns(const Instants& records) {
   std::vector<Column> columns;
   columns.push_back(column("time_s", records, [](const InstantRecord& r) { return r.time_s; }));
   for (int axis = 0; axis < 3; ++axis) {
@@ -73,7 +73,7 @@ std::vector<Column> track_columns(const std::vector<InstantRecord>& records) {
   return columns;
 }
 
-std::vector<Column> record_columns(const std::vector<InstantRecord>& records, const std::string& prefix) {
+std::vector<Column> record_columns(const Instants& records, const std::string& prefix) {
   int regions = 0;
   bool friction = false;
   for (const InstantRecord& record : records) {

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "scene/base/files.h"
-#include "scene/model/record.h"
+#include "scene/model/answer.h"
 #include "scene/model/scene.h"
+#include "scene/output/figures.h"
 
 #include <chrono>
 #include <ctime>
@@ -23,10 +24,10 @@ struct Column {
 /// Columns of one side: depth, force, torque, area per region by its id (region0_..., as many as occur), with friction
 /// and sliding (0 or 1) where there is friction.
 /// @param prefix put before every name, such as "fast_"; may be empty
-[[nodiscard]] std::vector<Column> record_columns(const std::vector<InstantRecord>& records, const std::string& prefix);
+[[nodiscard]] std::vector<Column> record_columns(const Instants& records, const std::string& prefix);
 
 /// time_s and the tool's pose, which both sides share.
-[[nodiscard]] std::vector<Column> track_columns(const std::vector<InstantRecord>& records);
+[[nodiscard]] std::vector<Column> track_columns(const Instants& records);
 
 /// Comma-separated, one header line, numbers as short as they read back exactly; unknown is nan.
 void write_csv(const std::filesystem::path& path, const std::vector<Column>& columns);

@@ -67,7 +67,7 @@ inline Result solved(const scene::Scene& scene) {
       EXPECT_GE(instant.force_n().z(), 0.0) << i << ": the body pulls";
     }
     if (instant.force_n().norm() > 0.0) {
-      EXPECT_LT(result.equilibrium_rel[i], 1e-6) << i << ": out of balance";
+      EXPECT_LT(result.instants[i].equilibrium_rel, 1e-6) << i << ": out of balance";
     }
   }
   return result;

@@ -19,7 +19,7 @@ using scene::Vec3;
 using testing::set_force;
 using testing::Sides;
 
-Errors errors_of(const Sides& sides) { return compute_errors(sides.scene, sides.run, sides.result); }
+Errors errors_of(const Sides& sides) { return compute_errors(sides.scene, sides.run, sides.result.instants); }
 
 /// Forces of 1 and (3, 0, 10) N against 2 and 10 N, with bands of 0.2 and 0.5 N.
 Sides with_forces() {
@@ -28,7 +28,7 @@ Sides with_forces() {
   set_force(sides.result.instants[0], Vec3(0.0, 0.0, 2.0));
   set_force(sides.run.instants[1], Vec3(3.0, 0.0, 10.0));
   set_force(sides.result.instants[1], Vec3(0.0, 0.0, 10.0));
-  sides.result.force_uncertainty_n = {0.2, 0.5};
+  testing::set_each(sides.result, &scene::ReferenceInstant::force_uncertainty_n, {0.2, 0.5});
   return sides;
 }
 
@@ -41,8 +41,8 @@ Sides with_shapes() {
   sides.run.instants[1].displacement_m.col(0) = Vec3(0.0, 0.0, -8e-3);
   sides.run.instants[1].displacement_m.col(1) = Vec3(2e-3, 0.0, 0.0);
   sides.run.instants[1].displacement_m.col(2) = Vec3(0.0, 0.0, 1e-3);
-  sides.result.displacement_uncertainty_m[0][0] = 1e-4;
-  sides.result.displacement_uncertainty_m[1][1] = 3e-4;
+  sides.result.instants[0].displacement_uncertainty_m[0] = 1e-4;
+  sides.result.instants[1].displacement_uncertainty_m[1] = 3e-4;
   return sides;
 }
 
@@ -93,7 +93,7 @@ TEST(Errors, EveryRegionHasALocalRadiusOfItsOwn) {
   Sides sides = with_shapes();
   // Below point 0 and below point 2, which lie far apart.
   const Vec3 under_m(0.0, 0.0, -1e-3);
-  sides.result.region_middles_m[1] = {sides.run.surface.points_m.col(0) + under_m,
+  sides.result.instants[1].region_middles_m = {sides.run.surface.points_m.col(0) + under_m,
                                       sides.run.surface.points_m.col(2) + under_m};
   const Errors e = errors_of(sides);
   EXPECT_NEAR(*e.shape_inside_r_rel_l2.value, std::sqrt(8.0 / 101.0), 1e-13);
@@ -169,7 +169,7 @@ TEST(Errors, AreDistinguishableOnlyAboveTheUncertainty) {
   EXPECT_TRUE((Measure{std::numeric_limits<double>::quiet_NaN(), 0.01}.distinguishable()));
 
   Sides sides = with_forces();
-  sides.result.force_uncertainty_n = {20.0, 20.0};
+  testing::set_each(sides.result, &scene::ReferenceInstant::force_uncertainty_n, {20.0, 20.0});
   EXPECT_FALSE(errors_of(sides).force_nrmse.distinguishable());
 }
 
@@ -212,7 +212,7 @@ TEST(Errors, KeepANumberThatIsNotFiniteVisible) {
 
 TEST(Errors, AnUnknownBandIsNotAZeroBand) {
   Sides sides = with_forces();
-  sides.result.force_uncertainty_n = {0.1, std::numeric_limits<double>::quiet_NaN()};
+  testing::set_each(sides.result, &scene::ReferenceInstant::force_uncertainty_n, {0.1, std::numeric_limits<double>::quiet_NaN()});
   const Errors e = errors_of(sides);
   EXPECT_FALSE(e.force_nrmse.uncertainty || e.force_peak_rel.uncertainty || e.force_rel_deep.uncertainty);
   EXPECT_TRUE(e.force_nrmse.distinguishable());
@@ -260,10 +260,10 @@ TEST(Errors, SeeHowFarTheFastSurfaceIsLeftInsideTheTool) {
 
 TEST(Errors, QualityOfTheReferenceIsItsWorstWhereDeep) {
   Sides sides = with_forces();
-  sides.result.residual_penetration_m = {1e-4, 2e-4};
-  sides.result.between_nodes_penetration_m = {1e-3, 5e-4};
-  sides.result.equilibrium_rel = {1.0, 1e-9};
-  sides.result.volume_change_rel = {-2e-6, 1e-6};
+  testing::set_each(sides.result, &scene::ReferenceInstant::residual_penetration_m, {1e-4, 2e-4});
+  testing::set_each(sides.result, &scene::ReferenceInstant::between_nodes_penetration_m, {1e-3, 5e-4});
+  testing::set_each(sides.result, &scene::ReferenceInstant::equilibrium_rel, {1.0, 1e-9});
+  testing::set_each(sides.result, &scene::ReferenceInstant::volume_change_rel, {-2e-6, 1e-6});
   const Errors e = errors_of(sides);
   EXPECT_NEAR(*e.reference.force_uncertainty_rel, 0.05, 1e-14);
   EXPECT_NEAR(*e.reference.residual_penetration_rel, 0.02, 1e-14);
@@ -278,22 +278,14 @@ Sides with_friction() {
   sides.scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
   const auto repeat = [](auto& list) { list.assign(5, list.back()); };
   repeat(sides.run.instants);
-  repeat(sides.run.normals);
   repeat(sides.result.instants);
-  repeat(sides.result.region_middles_m);
-  repeat(sides.result.force_uncertainty_n);
-  repeat(sides.result.displacement_uncertainty_m);
-  for (auto* list : {&sides.result.residual_penetration_m, &sides.result.between_nodes_penetration_m,
-                     &sides.result.equilibrium_rel, &sides.result.volume_change_rel}) {
-    repeat(*list);
-  }
   for (std::size_t t = 0; t < 5; ++t) {
-    for (scene::InstantRecord* record : {&sides.run.instants[t], &sides.result.instants[t]}) {
+    for (scene::InstantRecord* record : testing::both(sides, t)) {
       record->time_s = static_cast<double>(t);
       record->tool.position_m.x() = 4e-3 * static_cast<double>(t);
       set_force(*record, Vec3(0.0, 0.0, 10.0));
     }
-    sides.result.region_middles_m[t] = {sides.result.instants[t].tool.position_m - Vec3(0.0, 0.0, 0.01)};
+    sides.result.instants[t].region_middles_m = {sides.result.instants[t].tool.position_m - Vec3(0.0, 0.0, 0.01)};
   }
   return sides;
 }
@@ -308,7 +300,7 @@ TEST(Errors, FrictionIsRelativeToItsOwnPeakWithTheForcesBand) {
   Sides sides = with_friction();
   set_friction(sides.result.instants[2], -4.0, false);
   set_friction(sides.run.instants[2], -1.0, false);
-  sides.result.force_uncertainty_n[3] = 0.5;
+  sides.result.instants[3].force_uncertainty_n = 0.5;
   const Errors e = errors_of(sides);
   EXPECT_NEAR(*e.force_friction_nrmse.value, std::sqrt(9.0 / 5.0) / 4.0, 1e-14);
   EXPECT_NEAR(*e.force_friction_nrmse.uncertainty, std::sqrt(0.25 / 5.0) / 4.0, 1e-14);
@@ -351,11 +343,11 @@ TEST(Errors, FrictionWorksWhereTheToolsSurfaceMoves) {
   // Turning about y over the contact 10 mm below its centre, which stands still.
   for (std::size_t t = 0; t < 5; ++t) {
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.1 * static_cast<double>(t), Vec3::UnitY()));
-    for (scene::InstantRecord* record : {&sides.run.instants[t], &sides.result.instants[t]}) {
+    for (scene::InstantRecord* record : testing::both(sides, t)) {
       record->tool.position_m = Vec3(0.0, 0.0, 0.06);
       record->tool.orientation = turn;
     }
-    sides.result.region_middles_m[t] = {Vec3(0.0, 0.0, 0.05)};
+    sides.result.instants[t].region_middles_m = {Vec3(0.0, 0.0, 0.05)};
     set_friction(sides.result.instants[t], -2.0, true);
   }
   EXPECT_NEAR(errors_of(sides).instants[4].way_m, 4 * 2 * 0.01 * std::sin(0.05), 1e-12);
@@ -379,7 +371,7 @@ TEST(Errors, SlipBeginsAtAWayKnownToTheInstants) {
 
 TEST(Errors, TorqueIsRelativeToForceTimesDistance) {
   Sides sides = with_forces();
-  sides.result.region_middles_m[1] = {sides.result.instants[1].tool.position_m + Vec3(0.02, 0.0, 0.0)};
+  sides.result.instants[1].region_middles_m = {sides.result.instants[1].tool.position_m + Vec3(0.02, 0.0, 0.0)};
   sides.result.instants[1].regions[0].torque_nm = Vec3(0.0, -0.2, 0.0);
   sides.run.instants[1].regions[0].torque_nm = Vec3(0.0, -0.2, 0.1);
   const Errors e = errors_of(sides);
@@ -401,7 +393,7 @@ Sides with_regions(bool swapped) {
       return out;
     };
     sides.result.instants[t].regions = {region(0.01, 4.0, 0), region(-0.01, 6.0, 1)};
-    sides.result.region_middles_m[t] = {tool_m + Vec3(0.01, 0.0, -0.01), tool_m + Vec3(-0.01, 0.0, -0.01)};
+    sides.result.instants[t].region_middles_m = {tool_m + Vec3(0.01, 0.0, -0.01), tool_m + Vec3(-0.01, 0.0, -0.01)};
     sides.run.instants[t].regions = {region(0.01, 5.0, swapped ? 1 : 0), region(-0.01, 6.0, swapped ? 0 : 1)};
     if (swapped) std::swap(sides.run.instants[t].regions[0], sides.run.instants[t].regions[1]);
   }
@@ -444,7 +436,7 @@ TEST(Errors, SideFacesAreThoseNoContactLiesOn) {
     sides.run.instants[t].displacement_m = 1.25 * sides.result.instants[t].displacement_m;
   EXPECT_NEAR(*errors_of(sides).shape_side_faces_rel_l2.value, 0.25, 1e-12);
   // A contact on +x: then the top is a side face.
-  for (auto& middles_m : sides.result.region_middles_m) middles_m = {Vec3(0.03, 0.0, 0.03)};
+  testing::set_all(sides.result, &scene::ReferenceInstant::region_middles_m, {Vec3(0.03, 0.0, 0.03)});
   for (std::size_t t = 0; t < 3; ++t) {
     sides.run.instants[t].displacement_m = sides.result.instants[t].displacement_m;
     for (Eigen::Index i = 0; i < surface.points_m.cols(); ++i) {
@@ -494,7 +486,7 @@ TEST(Errors, RefuseSidesThatDoNotBelongTogether) {
   fewer.result.instants[1].displacement_m.conservativeResize(3, 3);
   EXPECT_THROW(errors_of(fewer), std::logic_error);
   Sides unbanded = good;
-  unbanded.result.force_uncertainty_n.pop_back();
+  unbanded.result.instants[1].displacement_uncertainty_m.conservativeResize(3);
   EXPECT_THROW(errors_of(unbanded), std::logic_error);
 }
 

@@ -13,7 +13,7 @@ namespace touchstone::compare {
 namespace {
 
 scene::Figures figures_of(const testing::Sides& sides) {
-  return make_figures(compute_errors(sides.scene, sides.run, sides.result), sides.run, sides.result);
+  return make_figures(compute_errors(sides.scene, sides.run, sides.result.instants), sides.run, sides.result);
 }
 
 const scene::Figure& find(const scene::Figures& figures, const std::string& key) {
@@ -78,7 +78,7 @@ TEST(Figures, NameEveryRegionAndItsMeaning) {
     record.regions.back().id = 12;
     record.regions.back().torque_nm = scene::Vec3(0.0, 1.0, 0.0);
   }
-  sides.result.region_middles_m[4] = {scene::Vec3(0.0, 0.0, 0.06), scene::Vec3(0.01, 0.0, 0.06)};
+  sides.result.instants[4].region_middles_m = {scene::Vec3(0.0, 0.0, 0.06), scene::Vec3(0.01, 0.0, 0.06)};
   const scene::Figures figures = figures_of(sides);
   EXPECT_TRUE(find(figures, "force.region12.nrmse").text.empty());
   EXPECT_EQ(find(figures, "force.region12.nrmse_uncertainty").text, "unknown");
@@ -99,7 +99,7 @@ TEST(Figures, SayWhyThereIsNoSlipOnset) {
 
 TEST(Figures, CarryTheErrorsTheirUncertaintyAndUnits) {
   testing::Sides sides = testing::pressed(5, 200);
-  const Errors errors = compute_errors(sides.scene, sides.run, sides.result);
+  const Errors errors = compute_errors(sides.scene, sides.run, sides.result.instants);
   const scene::Figures figures = figures_of(sides);
   EXPECT_EQ(find(figures, "force.nrmse").number, *errors.force_nrmse.value);
   EXPECT_EQ(find(figures, "force.nrmse_uncertainty").number, *errors.force_nrmse.uncertainty);
@@ -135,7 +135,7 @@ TEST(Figures, AreReadableByPeople) {
 
 TEST(Figures, SayWhenTheBandIsUnknown) {
   testing::Sides sides = testing::pressed(5, 200);
-  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(find(figures_of(sides), "force.nrmse_uncertainty").text, "unknown");
   EXPECT_TRUE(std::isnan(find(figures_of(sides), "force.nrmse_uncertainty").number)) << "a text among numbers";
   EXPECT_TRUE(std::isnan(find(figures_of(sides), "reference.force_uncertainty_rel").number));

@@ -51,20 +51,20 @@ TEST_F(StoredReferenceTest, ComesBackAsItWas) {
     EXPECT_EQ(is.force_n(), was.force_n());
     EXPECT_EQ(is.support_force_n, was.support_force_n);
     EXPECT_EQ(is.regions.size(), was.regions.size());
-    EXPECT_EQ(back.region_middles_m[t], sides_.result.region_middles_m[t]);
+    EXPECT_EQ(back.instants[t].region_middles_m, sides_.result.instants[t].region_middles_m);
+    EXPECT_EQ(back.instants[t].force_uncertainty_n, sides_.result.instants[t].force_uncertainty_n);
+    EXPECT_EQ(back.instants[t].equilibrium_rel, sides_.result.instants[t].equilibrium_rel);
     const double largest_m = was.displacement_m.cwiseAbs().maxCoeff();
     EXPECT_LE((is.displacement_m - was.displacement_m).cwiseAbs().maxCoeff(), 6e-8 * largest_m);
   }
-  EXPECT_EQ(back.force_uncertainty_n, sides_.result.force_uncertainty_n);
-  EXPECT_EQ(back.equilibrium_rel, sides_.result.equilibrium_rel);
   EXPECT_EQ(back.model, sides_.result.model);
   EXPECT_EQ(back.levels.size(), sides_.result.levels.size());
 }
 
 TEST_F(StoredReferenceTest, GivesTheSameErrors) {
   const reference::Result back = stored_reference(folder(), sides_.scene, sides_.run.surface);
-  const Errors was = compute_errors(sides_.scene, sides_.run, sides_.result);
-  const Errors is = compute_errors(sides_.scene, sides_.run, back);
+  const Errors was = compute_errors(sides_.scene, sides_.run, sides_.result.instants);
+  const Errors is = compute_errors(sides_.scene, sides_.run, back.instants);
   EXPECT_EQ(is.force_nrmse.value, was.force_nrmse.value);
   EXPECT_EQ(is.force_nrmse.uncertainty, was.force_nrmse.uncertainty);
   EXPECT_NEAR(*is.shape_rel_l2.value, *was.shape_rel_l2.value, 1e-6);
@@ -76,11 +76,11 @@ TEST_F(StoredReferenceTest, SeveralRegionsAndFrictionComeBackInTheirOrder) {
   const scene::Vec3 none = scene::Vec3::Zero();
   record.regions = {{1e-3, {1, 2, 3}, {4, 5, 6}, 7e-6, 2, {0.1, 0.2, 0.3}, true},
                     {2e-3, {-1, 0, 9}, none, 1e-6, 0, none, false}};
-  sides_.result.region_middles_m[3] = {{0.01, 0, 0.06}, {-0.01, 0, 0.06}};
-  sides_.result.region_middles_m[4].clear();
+  sides_.result.instants[3].region_middles_m = {{0.01, 0, 0.06}, {-0.01, 0, 0.06}};
+  sides_.result.instants[4].region_middles_m.clear();
   SetUp();
   const reference::Result back = stored_reference(folder(), sides_.scene, sides_.run.surface);
-  EXPECT_TRUE(back.region_middles_m[4].empty());
+  EXPECT_TRUE(back.instants[4].region_middles_m.empty());
   EXPECT_FALSE(back.instants[4].regions.empty());
   const auto& regions = back.instants[3].regions;
   ASSERT_EQ(regions.size(), 2u);
@@ -89,7 +89,7 @@ TEST_F(StoredReferenceTest, SeveralRegionsAndFrictionComeBackInTheirOrder) {
   EXPECT_EQ(regions[0].torque_nm, scene::Vec3(4, 5, 6));
   EXPECT_EQ(regions[0].friction_n, scene::Vec3(0.1, 0.2, 0.3));
   EXPECT_EQ(regions[1].id, 0);
-  EXPECT_EQ(back.region_middles_m[3], sides_.result.region_middles_m[3]);
+  EXPECT_EQ(back.instants[3].region_middles_m, sides_.result.instants[3].region_middles_m);
 }
 
 TEST_F(StoredReferenceTest, IsStaleForAnotherSceneButNotForAnotherFastModel) {
@@ -158,13 +158,13 @@ TEST_F(StoredReferenceTest, WhatNoSolverGivesIsRefusedInPlainText) {
 
 TEST_F(StoredReferenceTest, AnUnknownUncertaintyIsReadBackAsUnknown) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  for (double& band_n : sides_.result.force_uncertainty_n) band_n = unknown;
-  for (Eigen::VectorXd& band_m : sides_.result.displacement_uncertainty_m) band_m.setConstant(unknown);
+  testing::set_all(sides_.result, &scene::ReferenceInstant::force_uncertainty_n, unknown);
+  for (scene::ReferenceInstant& instant : sides_.result.instants) instant.displacement_uncertainty_m.setConstant(unknown);
   sides_.result.force_uncertainty_rel = sides_.result.shape_uncertainty_rel = unknown;
   store_reference(folder(), sides_.scene, sides_.run.surface, sides_.result, "test");
   const reference::Result back = stored_reference(folder(), sides_.scene, sides_.run.surface);
-  EXPECT_TRUE(std::isnan(back.force_uncertainty_n[2]));
-  EXPECT_TRUE(std::isnan(back.displacement_uncertainty_m[2][0]));
+  EXPECT_TRUE(std::isnan(back.instants[2].force_uncertainty_n));
+  EXPECT_TRUE(std::isnan(back.instants[2].displacement_uncertainty_m[0]));
   ASSERT_TRUE(back.force_uncertainty_rel && back.shape_uncertainty_rel)
       << "as if there were nothing to be uncertain of";
   EXPECT_TRUE(std::isnan(*back.force_uncertainty_rel));

@@ -5,6 +5,7 @@
 #include "compare/input/tuning_study.h"
 #include "support/synthetic.h"
 #include "compare/errors/compute_errors.h"
+#include "compare/model/skeleton_model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,10 +22,10 @@ class ModelTable : public ::testing::Test {
 
   [[nodiscard]] std::vector<JudgedModel> judge(const scene::Scene& judged, const std::string& tuned = "") const {
     const fast::Run run = fast::run(judged);
-    return judge_models(sides_.scene, judged, run, compute_errors(judged, run, sides_.result), sides_.result, tuned);
+    return judge_models(sides_.scene, judged, run, compute_errors(judged, run, sides_.result.instants), sides_.result, tuned);
   }
   [[nodiscard]] Errors errors_of(const scene::Scene& scene) const {
-    return compute_errors(scene, fast::run(scene), sides_.result);
+    return compute_errors(scene, fast::run(scene), sides_.result.instants);
   }
   static std::vector<std::string> keys(const std::vector<JudgedModel>& models) {
     std::vector<std::string> out;
@@ -112,7 +113,7 @@ TEST(ShippedParameters, AreTunedToTheBallOnTheCube) {
                              source / "meshes/parameters/ball-on-cube.toml");
   const fast::Run run = fast::run(scene);
   const Errors errors = compute_errors(
-      scene, run, stored_reference(source / "tests/gates/reference/ball-on-cube-press", scene, run.surface));
+      scene, run, stored_reference(source / "tests/gates/reference/ball-on-cube-press", scene, run.surface).instants);
   EXPECT_LT(*errors.force_nrmse.value, 0.02);
   EXPECT_LT(*errors.shape_rel_l2.value, 0.67);
 }

@@ -20,7 +20,7 @@ namespace {
 using ::testing::HasSubstr;
 
 std::vector<NextStep> steps_of(const testing::Sides& sides) {
-  return next_steps(sides.scene, sides.run, sides.result, compute_errors(sides.scene, sides.run, sides.result),
+  return next_steps(sides.scene, sides.run, sides.result, compute_errors(sides.scene, sides.run, sides.result.instants),
                     sides.call);
 }
 
@@ -60,7 +60,7 @@ TEST(NextSteps, OfferTheAreaAwareLawWhereItIsNearerAndSayByHowMuch) {
   const scene::Scene changed = with_parameters(sides.scene, folder.path() / step.file_name);
   EXPECT_EQ(changed.contact.law, scene::ContactLaw::area_aware);
   EXPECT_NEAR(changed.fast.s_c_m2, 0.036, 1e-9);
-  const Errors after = compute_errors(changed, fast::run(changed), sides.result);
+  const Errors after = compute_errors(changed, fast::run(changed), sides.result.instants);
   EXPECT_THAT(step.why, HasSubstr("to " + percent_text(*after.force_nrmse.value) + ", shape error from "));
   EXPECT_THAT(step.why, HasSubstr("to " + percent_text(*after.shape_rel_l2.value) + "."));
 }
@@ -92,7 +92,7 @@ TEST(NextSteps, AskForThreeMeshesWhereTheUncertaintyIsUnknown) {
   sides.scene.reference.levels = 1;
   sides.call.reference.levels = 1;
   sides.result.levels.resize(1);
-  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(find(steps_of(sides), "three meshes").command, "touchstone compare meshes/scenes/ball-on-cube-press.toml");
 }
 
@@ -101,7 +101,7 @@ TEST(NextSteps, AskForMoreOfWhatWasShort) {
   sides.scene.reference.levels.reset();
   sides.call.reference = {};
   sides.result.levels.resize(2);
-  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
   sides.result.refinement.ended_by = reference::EndedBy::time;
   EXPECT_THAT(find(steps_of(sides), "more time").command, HasSubstr(" --minutes 240"));
   sides.call.reference.minutes = 300.0;

@@ -73,8 +73,8 @@ class Readers : public ::testing::TestWithParam<bool> {
   Readers() {
     if (GetParam()) return;
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    for (double& band_n : sides_.result.force_uncertainty_n) band_n = unknown;
-    for (Eigen::VectorXd& band_m : sides_.result.displacement_uncertainty_m) band_m.setConstant(unknown);
+    testing::set_all(sides_.result, &scene::ReferenceInstant::force_uncertainty_n, unknown);
+    for (scene::ReferenceInstant& instant : sides_.result.instants) instant.displacement_uncertainty_m.setConstant(unknown);
     sides_.result.force_uncertainty_rel = sides_.result.shape_uncertainty_rel = unknown;
   }
   /// Is it as the parameter says: a number where it is known, else NaN?

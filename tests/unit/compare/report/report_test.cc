@@ -50,7 +50,7 @@ TEST(Report, TablesEveryFigureThatAppliesWithItsMeaning) {
   const testing::Sides sides = testing::pressed(5, 600);
   const std::string html = report_of(sides);
   for (const scene::Figure& figure :
-       make_figures(compute_errors(sides.scene, sides.run, sides.result), sides.run, sides.result)) {
+       make_figures(compute_errors(sides.scene, sides.run, sides.result.instants), sides.run, sides.result)) {
     if (figure.text.starts_with("undefined")) {
       EXPECT_FALSE(has(html, ">" + figure.key + "<")) << figure.key;
       continue;
@@ -92,8 +92,9 @@ TEST(Report, MarksWhatCannotBeDistinguished) {
 
 TEST(Report, OfAReferenceWithoutABandIsStillWhole) {
   testing::Sides sides = testing::pressed(5, 600);
-  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
-  for (Eigen::VectorXd& u : sides.result.displacement_uncertainty_m) {
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
+  for (scene::ReferenceInstant& instant : sides.result.instants) {
+    Eigen::VectorXd& u = instant.displacement_uncertainty_m;
     u.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   const std::string html = report_of(sides);
@@ -111,7 +112,7 @@ TEST(Report, OfAReferenceWithoutABandIsStillWhole) {
 TEST(Report, OfOneMeshSaysThatAnUncertaintyNeedsThree) {
   testing::Sides sides = testing::pressed(5, 600);
   sides.result.levels.resize(1);
-  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
   EXPECT_TRUE(has(report_of(sides), "It was solved on one mesh, and an uncertainty needs three."));
 }
 
@@ -124,7 +125,7 @@ std::string caption_of(const std::string& html, const std::string& title) {
 TEST(Report, CaptionOfTheForceSaysWhyAnUncertaintyIsUnknown) {
   testing::Sides sides = testing::pressed(5, 600);
   sides.result.levels.resize(2);
-  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
   sides.result.refinement.why_ended = "there is no mesh 3: it would take about 31 GiB of memory";
   EXPECT_EQ(caption_of(report_of(sides), "Force over depth"),
             "<figcaption>The reference's uncertainty is unknown, so no band is drawn. It was solved on two meshes, and "
@@ -144,9 +145,9 @@ TEST(Report, CaptionOfTheForceSaysWhyTheErrorAskedForWasNotReached) {
 
 TEST(Report, CaptionOfTheForceFollowsTheBand) {
   testing::Sides sides = testing::pressed(5, 600);
-  sides.result.force_uncertainty_n.assign(5, 20.0);
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, 20.0);
   EXPECT_TRUE(has(report_of(sides), "The blue band is the reference's uncertainty."));
-  sides.result.force_uncertainty_n.assign(5, 0.01);
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, 0.01);
   EXPECT_TRUE(has(report_of(sides), "is narrower than its line."));
 }
 
@@ -219,8 +220,8 @@ TEST(Report, OfATrackWithoutContactIsStillWhole) {
     r.depth_m = 0.0;
     r.regions.clear();
     r.displacement_m.setZero();
-    sides.result.force_uncertainty_n[t] = 0.0;
-    sides.result.displacement_uncertainty_m[t].setZero();
+    sides.result.instants[t].force_uncertainty_n = 0.0;
+    sides.result.instants[t].displacement_uncertainty_m.setZero();
     for (reference::LevelRecord& level : sides.result.levels) level.force_n[t] = 0.0;
     sides.run.instants[t] = r;
   }

@@ -53,7 +53,7 @@ TEST_F(ResultFolderTest, IsReadBackAsItWasWritten) {
       EXPECT_EQ(figure->number, written.number);
     }
   }
-  const Errors errors = compute_errors(sides_.scene, sides_.run, sides_.result);
+  const Errors errors = compute_errors(sides_.scene, sides_.run, sides_.result.instants);
   const auto columns = curve_columns(sides_.run, sides_.result, errors);
   ASSERT_EQ(read.curve.size(), columns.size());
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -88,7 +88,7 @@ TEST_F(ResultFolderTest, NamesTheLineOfADamage) {
 }
 
 TEST_F(ResultFolderTest, ReadsBackWhyANumberIsNotKnown) {
-  sides_.result.force_uncertainty_n.assign(4, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides_.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
   (void)write_comparison(folder_.path(), sides_.scene, sides_.run, sides_.result, sides_.manifest);
   const ResultFolder read = read_result_folder(folder_.path());
   const scene::Figure* figure = read.figure("force.nrmse_uncertainty");

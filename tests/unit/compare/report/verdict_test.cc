@@ -17,7 +17,7 @@ using testing::set_force;
 
 /// All paragraphs in one line, ordinary spaces.
 std::string told(const testing::Sides& sides) {
-  const Errors errors = compute_errors(sides.scene, sides.run, sides.result);
+  const Errors errors = compute_errors(sides.scene, sides.run, sides.result.instants);
   const Verdict all = verdict(sides.scene, sides.run, sides.result, errors, {});
   std::string text = all.force + "\n" + all.shape + "\n";
   for (const Reason& reason : all.reasons) text += reason.about + ": " + reason.text() + "\n";
@@ -123,8 +123,9 @@ TEST(Verdict, CallsAnErrorWithinTheBandNotDistinguishable) {
 
 TEST(Verdict, DoesNotTakeAnUnknownBandForAnExcuse) {
   testing::Sides sides = testing::pressed(5, 200);
-  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
-  for (Eigen::VectorXd& u : sides.result.displacement_uncertainty_m) {
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
+  for (scene::ReferenceInstant& instant : sides.result.instants) {
+    Eigen::VectorXd& u = instant.displacement_uncertainty_m;
     u.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   const std::string text = told(sides);
@@ -220,7 +221,7 @@ TEST(Verdict, SaysWhyRefinementEnded) {
 TEST(Verdict, SaysOnceThatAnUncertaintyNeedsThreeMeshes) {
   testing::Sides sides = testing::pressed(5, 200);
   sides.result.levels.resize(1);
-  sides.result.force_uncertainty_n.assign(5, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
   sides.result.refinement.why_ended = "1 mesh was asked for; an uncertainty needs 3";
   EXPECT_TRUE(says(told(sides),
                    "Reference: The reference's uncertainty is unknown. Refinement ended: 1 mesh was asked for; an "
@@ -230,9 +231,9 @@ TEST(Verdict, SaysOnceThatAnUncertaintyNeedsThreeMeshes) {
 
 TEST(Verdict, GivesABandOneDigitAndTheForceFourAtMost) {
   testing::Sides sides = testing::pressed(5, 200);
-  sides.result.force_uncertainty_n[4] = 3.21e-5;
+  sides.result.instants[4].force_uncertainty_n = 3.21e-5;
   EXPECT_TRUE(says(told(sides), "against the reference's 170.0 N ± 3 × 10⁻⁵ N")) << told(sides);
-  sides.result.force_uncertainty_n[4] = 0.21;
+  sides.result.instants[4].force_uncertainty_n = 0.21;
   EXPECT_TRUE(says(told(sides), "against the reference's 170.0 N ± 0.2 N")) << told(sides);
 }
 
@@ -250,14 +251,14 @@ TEST(Verdict, IsWrappedForATerminalWithCommandsOnLinesOfTheirOwn) {
 TEST(Verdict, IsShortOnATerminal) {
   testing::Sides sides = testing::pressed(23, 200);
   sides.run.status = static_cast<std::uint32_t>(fast::StepStatus::anchors_limited);
-  sides.result.force_uncertainty_n.assign(23, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
   sides.scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
   for (std::size_t t = 1; t < 23; ++t) {
     if (!sides.result.instants[t].regions.empty())
       sides.result.instants[t].regions[0].friction_n = scene::Vec3(-10.0, 0.0, 0.0);
   }
   const Verdict all =
-      verdict(sides.scene, sides.run, sides.result, compute_errors(sides.scene, sides.run, sides.result), sides.call);
+      verdict(sides.scene, sides.run, sides.result, compute_errors(sides.scene, sides.run, sides.result.instants), sides.call);
   const std::string text = all.text();
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 20) << text;
   for (const char* part : {"Status: ", "Likely cause: ", "Friction: ", "Next: "}) EXPECT_TRUE(says(text, part)) << part;

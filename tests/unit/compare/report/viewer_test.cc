@@ -20,7 +20,7 @@ using ::testing::Contains;
 using Json = nlohmann::json;
 
 std::string section_of(const testing::Sides& sides) {
-  return viewer_section(sides.scene, sides.run, sides.result, compute_errors(sides.scene, sides.run, sides.result));
+  return viewer_section(sides.scene, sides.run, sides.result, compute_errors(sides.scene, sides.run, sides.result.instants));
 }
 
 std::string data_text(const std::string& section) {

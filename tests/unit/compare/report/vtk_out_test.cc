@@ -29,7 +29,7 @@ std::string read(const std::filesystem::path& path) {
 class VtkOut : public ::testing::Test {
  protected:
   VtkOut() {
-    errors_ = compute_errors(sides_.scene, sides_.run, sides_.result);
+    errors_ = compute_errors(sides_.scene, sides_.run, sides_.result.instants);
     write_surfaces(folder_.path(), sides_.run, sides_.result, errors_);
   }
   vtkPolyData* load(const std::string& name) {
@@ -76,8 +76,8 @@ TEST_F(VtkOut, ReadsBackToTheSameValues) {
       ASSERT_EQ(vector("displacement_reference_m", i), scene::Vec3(reference_m.col(i)));
       ASSERT_EQ(vector("displacement_error_m", i), scene::Vec3(fast_m.col(i) - reference_m.col(i)));
       ASSERT_EQ(number("displacement_error_magnitude_m", i), (fast_m.col(i) - reference_m.col(i)).norm());
-      ASSERT_EQ(number("displacement_reference_uncertainty_m", i), sides_.result.displacement_uncertainty_m[t][i]);
-      ASSERT_EQ(vector("normal_fast", i), scene::Vec3(sides_.run.normals[t].col(i)));
+      ASSERT_EQ(number("displacement_reference_uncertainty_m", i), sides_.result.instants[t].displacement_uncertainty_m[i]);
+      ASSERT_EQ(vector("normal_fast", i), scene::Vec3(sides_.run.instants[t].normal.col(i)));
       ASSERT_EQ(number("region_id_fast", i), errors_.instants[t].touched_fast[at] ? 0 : -1);
       ASSERT_EQ(number("region_id_reference", i), errors_.instants[t].touched_reference[at] ? 0 : -1);
     }
@@ -101,7 +101,7 @@ TEST_F(VtkOut, CollectionGivesEachFileItsTime) {
 TEST_F(VtkOut, LeavesNoSurfaceOfAnEarlierLongerRun) {
   testing::Sides shorter = testing::pressed(2, 200);
   write_surfaces(folder_.path(), shorter.run, shorter.result,
-                 compute_errors(shorter.scene, shorter.run, shorter.result));
+                 compute_errors(shorter.scene, shorter.run, shorter.result.instants));
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "surface_0001.vtp"));
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "surface_0002.vtp"));
 }
@@ -146,11 +146,11 @@ TEST_F(VtkOut, OneSideAloneHasItsOwnArrays) {
   };
   const Eigen::Index i = sides_.run.surface.vertex_count() / 2;
   EXPECT_EQ(last(fast)->GetArray("displacement_m")->GetComponent(i, 2), sides_.run.instants[2].displacement_m(2, i));
-  EXPECT_EQ(last(fast)->GetArray("normal")->GetComponent(i, 1), sides_.run.normals[2](1, i));
+  EXPECT_EQ(last(fast)->GetArray("normal")->GetComponent(i, 1), sides_.run.instants[2].normal(1, i));
   EXPECT_EQ(last(reference)->GetArray("displacement_m")->GetComponent(i, 2),
             sides_.result.instants[2].displacement_m(2, i));
   EXPECT_EQ(last(reference)->GetArray("displacement_uncertainty_m")->GetComponent(i, 0),
-            sides_.result.displacement_uncertainty_m[2][i]);
+            sides_.result.instants[2].displacement_uncertainty_m[i]);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ using ::testing::Not;
 constexpr TradeError force = &TradeRow::force_nrmse;
 
 TradeRow row(const std::string& name, double step_us, std::optional<double> error, double uncertainty = 0.001,
-             TradeFamily family = TradeFamily::paper) {
+             ModelFamily family = ModelFamily::paper) {
   TradeRow out{.name = name, .key = name, .label = name, .family = family};
   out.step_p50_us = out.step_p999_us = step_us;
   out.force_nrmse = out.shape_rel_l2 = {error, uncertainty};
@@ -89,21 +89,21 @@ std::string said(std::vector<TradeRow> rows) {
 
 TEST(TradeVerdict, SaysWhoWins) {
   const TradeRow paper = row("paper", 10.0, 0.3);
-  EXPECT_THAT(said({paper, row("columns", 5.0, 0.02, 0.001, TradeFamily::compliance)}), HasSubstr("It loses: columns"));
-  const std::string for_speed = said({paper, row("columns", 200.0, 0.02, 0.001, TradeFamily::compliance)});
+  EXPECT_THAT(said({paper, row("columns", 5.0, 0.02, 0.001, ModelFamily::compliance)}), HasSubstr("It loses: columns"));
+  const std::string for_speed = said({paper, row("columns", 200.0, 0.02, 0.001, ModelFamily::compliance)});
   EXPECT_THAT(for_speed, HasSubstr("for its speed alone"));
   EXPECT_THAT(for_speed, HasSubstr("at 20 times the time of a step and one part in 15"));
-  TradeRow late = row("columns", 200.0, 0.02, 0.001, TradeFamily::compliance);
+  TradeRow late = row("columns", 200.0, 0.02, 0.001, ModelFamily::compliance);
   late.step_p999_us = 1200.0;
   EXPECT_THAT(said({paper, late}), HasSubstr("(but for its slowest"));
   // Nobody wins by what a device cannot wait for.
-  EXPECT_THAT(said({paper, row("columns", 5000.0, 0.02, 0.001, TradeFamily::compliance)}), HasSubstr("It wins"));
-  EXPECT_THAT(said({paper, row("columns", 200.0, 0.4, 0.001, TradeFamily::compliance)}), HasSubstr("It wins"));
-  EXPECT_THAT(said({paper, row("levels", 500.0, 0.001, 0.001, TradeFamily::reference)}), HasSubstr("It wins"));
+  EXPECT_THAT(said({paper, row("columns", 5000.0, 0.02, 0.001, ModelFamily::compliance)}), HasSubstr("It wins"));
+  EXPECT_THAT(said({paper, row("columns", 200.0, 0.4, 0.001, ModelFamily::compliance)}), HasSubstr("It wins"));
+  EXPECT_THAT(said({paper, row("levels", 500.0, 0.001, 0.001, ModelFamily::reference)}), HasSubstr("It wins"));
   EXPECT_THAT(said({row("paper", 10.0, 0.01, 0.02)}), HasSubstr("not distinguishable"));
   EXPECT_THAT(said({row("paper", 5000.0, 0.1)}), HasSubstr("Nothing keeps up"));
   EXPECT_THAT(said({row("paper", 10.0, NAN)}), HasSubstr("The paper's model has no force that could be judged"));
-  EXPECT_THAT(said({row("columns", 10.0, 0.1, 0.001, TradeFamily::compliance)}),
+  EXPECT_THAT(said({row("columns", 10.0, 0.1, 0.001, ModelFamily::compliance)}),
               HasSubstr("No row of the force is the paper's model; the absent rows say why."));
   EXPECT_THAT(said({row("paper", 10.0, 1.2)}), HasSubstr("is as accurate."));
   TradeRow shape = row("paper", 10.0, 0.3);
@@ -136,7 +136,8 @@ scene::Scene ball_on_ball(int levels) {
 
 class TradeTest : public ::testing::Test {
  protected:
-  Trade run(const scene::Scene& scene, TradeOptions options = {}) {
+  Trade run(const scene::Scene& scene, TradeOptions options = {},
+            const std::vector<ModelList>& models = registered_models()) {
     options.quick = true;
     return trade(scene, options,
                  [&](const scene::Scene& one, const scene::Surface& surface, std::optional<int> levels) {
@@ -148,7 +149,8 @@ class TradeTest : public ::testing::Test {
                    solve.store = folder_.path() / "store";
                    solve.rest_area_m2 = surface.vertex_area_m2;
                    return reference::solve(asked, surface.points_m, solve);
-                 });
+                 },
+                 {}, models);
   }
   static const TradeRow& find(const Trade& trade, const std::string& key) {
     const auto found =
@@ -194,7 +196,7 @@ TEST_F(TradeTest, MeasuresAndJudgesEveryRung) {
     EXPECT_TRUE(judged_error(one.force_nrmse)) << one.key;
     EXPECT_TRUE(one.force_nrmse.uncertainty) << one.key;
     EXPECT_GT(one.memory_bytes, 0.0) << one.key;
-    if (one.family == TradeFamily::reference) continue;
+    if (one.family == ModelFamily::reference) continue;
     EXPECT_GT(one.setup_s, 0.0) << one.key;
     EXPECT_LE(one.step_p50_us, one.step_p999_us) << one.key;
   }
@@ -231,6 +233,45 @@ TEST_F(TradeTest, MeasuresAndJudgesEveryRung) {
   const std::string csv = *scene::read_file(folder_.path() / "trade.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), static_cast<long>(found.rows.size()) + 1);
   EXPECT_THAT(trade_text(found), HasSubstr("absent: anchor sets"));
+}
+
+/// A spring with the stiffness of the reference's deepest instant, on a body that never moves.
+class Spring final : public ContactModel {
+ public:
+  void step(const scene::Pose&) override { ++steps_; }
+  void answer(scene::Answer& asked) override {
+    for (scene::InstantRecord& instant : asked.instants) {
+      if (instant.depth_m <= 0.0) continue;
+      instant.regions.push_back({.depth_m = instant.depth_m, .force_n = {0.0, 0.0, 1.0e4 * instant.depth_m}});
+    }
+  }
+  [[nodiscard]] int size() const override { return 1; }
+  [[nodiscard]] std::string note() const override { return "one spring"; }
+
+ private:
+  int steps_ = 0;
+};
+
+std::vector<ModelEntry> springs(const ModelRequest&) {
+  return {{.name = "spring",
+           .key = "spring",
+           .label = "spring",
+           .set_up = [](const scene::Scene&) { return std::make_unique<Spring>(); }},
+          {.name = "broken spring",
+           .key = "broken",
+           .set_up = [](const scene::Scene&) -> std::unique_ptr<ContactModel> { throw Unavailable("it broke"); }}};
+}
+
+TEST_F(TradeTest, TradesAModelThatNobodyHereKnows) {
+  const Trade found = run(ball_on_ball(1), {}, {springs});
+  ASSERT_EQ(found.rows.size(), 2u);
+  const TradeRow& spring = find(found, "spring");
+  EXPECT_EQ(spring.note, "one spring");
+  EXPECT_GT(spring.steps, 0);
+  EXPECT_DOUBLE_EQ(*spring.shape_rel_l2.value, 1.0);  // a body that never moves
+  EXPECT_GT(*spring.force_nrmse.value, 0.0);
+  EXPECT_LT(*spring.force_nrmse.value, 1.0);
+  EXPECT_EQ(find(found, "broken").absent, "it broke");
 }
 
 TEST_F(TradeTest, JudgesTheWorstHeldOutContactWithTunedValues) {

@@ -40,20 +40,14 @@ SolveReference made_with(const std::map<std::string, double>& constants) {
     for (const auto& [key, value] : constants) set_parameter(scene, key, value);
     reference::Result result;
     const fast::Run run = fast::run(scene);
-    result.instants = run.instants;
-    const std::size_t count = run.instants.size();
     result.levels.push_back({});
     for (const scene::InstantRecord& record : run.instants) {
       result.levels[0].force_n.push_back(record.force_n().norm());
-      result.region_middles_m.push_back(record.regions.empty() ? std::vector<Vec3>{}
-                                                               : std::vector<Vec3>{Vec3(0.0, 0.0, 0.06)});
-      result.displacement_uncertainty_m.push_back(Eigen::VectorXd::Constant(run.surface.points_m.cols(), 1e-6));
+      scene::ReferenceInstant& instant = result.instants.emplace_back(scene::ReferenceInstant{record});
+      if (!record.regions.empty()) instant.region_middles_m = {Vec3(0.0, 0.0, 0.06)};
+      instant.displacement_uncertainty_m.setConstant(run.surface.points_m.cols(), 1e-6);
+      instant.force_uncertainty_n = 0.01;
     }
-    result.force_uncertainty_n.assign(count, 0.01);
-    result.residual_penetration_m.assign(count, 0.0);
-    result.between_nodes_penetration_m.assign(count, 0.0);
-    result.equilibrium_rel.assign(count, 0.0);
-    result.volume_change_rel.assign(count, 0.0);
     result.shape_uncertainty_rel = 1e-4;
     result.model = "made by the fast model";
     return result;

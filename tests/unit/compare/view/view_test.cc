@@ -161,7 +161,8 @@ TEST_F(ViewTest, ShowsAMeshToolFromAFolderThatWasMoved) {
 
 TEST_F(ViewTest, SaysThatAnUncertaintyIsUnknownAndLeavesTheBodyGrey) {
   testing::Sides sides = testing::pressed(4, 600);
-  for (Eigen::VectorXd& u_m : sides.result.displacement_uncertainty_m) {
+  for (scene::ReferenceInstant& instant : sides.result.instants) {
+    Eigen::VectorXd& u_m = instant.displacement_uncertainty_m;
     u_m.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   sides.manifest.resolved_scene = read_result_folder(folder_.path()).resolved_scene;

@@ -22,7 +22,6 @@ TEST(Run, RecordsEveryInstantAtItsExactPose) {
     const auto result = run(scene);
     const std::vector<double> times_s = scene::instants_s(scene);
     ASSERT_EQ(result.instants.size(), times_s.size());
-    ASSERT_EQ(result.normals.size(), times_s.size());
     const auto body = scene::body_shape(scene.body);
     for (std::size_t i = 0; i < times_s.size(); ++i) {
       const scene::InstantRecord& record = result.instants[i];
@@ -31,7 +30,7 @@ TEST(Run, RecordsEveryInstantAtItsExactPose) {
       EXPECT_EQ(record.tool.position_m, pose.position_m);
       EXPECT_EQ(record.depth_m, scene::rest_depth_m(*body, scene.tool, pose));
       EXPECT_EQ(record.displacement_m.cols(), result.surface.points_m.cols());
-      EXPECT_EQ(result.normals[i].cols(), result.surface.points_m.cols());
+      EXPECT_EQ(result.instants[i].normal.cols(), result.surface.points_m.cols());
       // A touch may be either.
       if (record.depth_m == 0.0 || record.depth_m > 1e-12) {
         EXPECT_EQ(record.regions.empty(), record.depth_m == 0.0) << record.depth_m;
@@ -112,7 +111,7 @@ TEST(Run, RecordsWhatAStepAnswers) {
   for (int v = 0; v < result.surface.vertex_count(); ++v) {
     const auto k = static_cast<std::size_t>(v);
     EXPECT_NEAR(last.displacement_m(2, v), state.field.displacement_m[2][k], 1e-9);
-    EXPECT_NEAR(result.normals.back()(0, v), state.field.normal[0][k], 1e-5);
+    EXPECT_NEAR(result.instants.back().normal(0, v), state.field.normal[0][k], 1e-5);
   }
 }
 

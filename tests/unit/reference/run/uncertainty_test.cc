@@ -72,28 +72,28 @@ TEST(Uncertainty, ShapeHoldsAnErrorOfFirstOrder) {
 }
 
 /// Three instants: apart, shallow, deep.
-std::vector<scene::InstantRecord> instants() {
-  std::vector<scene::InstantRecord> list(3);
+std::vector<scene::ReferenceInstant> instants(const std::vector<double>& bands_n = {0.0, 0.0, 0.0}) {
+  std::vector<scene::ReferenceInstant> list(3);
   for (int i = 0; i < 3; ++i) {
     list[i].depth_m = std::vector{0.0, 0.0009, 0.01}[i];
     list[i].displacement_m = i * Eigen::Matrix3Xd::Ones(3, 2);
+    list[i].displacement_uncertainty_m = Eigen::Vector2d(0.0, std::vector{0.0, 0.3, 0.4}[i]);
+    list[i].force_uncertainty_n = bands_n[i];
     if (i > 0) list[i].regions.push_back({.depth_m = list[i].depth_m, .force_n = {0.0, 0.0, 2.0 * i}});
   }
   return list;
 }
 
 TEST(Uncertainty, RelativeForceOfTheDeepInstants) {
-  EXPECT_NEAR(*force_uncertainty_rel(instants(), {9.0, 9.0, 0.2}), 0.05, 1e-12);
-  EXPECT_TRUE(std::isnan(*force_uncertainty_rel(instants(), {9.0, 9.0, std::nan("")})));
-  EXPECT_FALSE(force_uncertainty_rel({scene::InstantRecord{}}, {1.0}));
+  EXPECT_NEAR(*force_uncertainty_rel(instants({9.0, 9.0, 0.2})), 0.05, 1e-12);
+  EXPECT_TRUE(std::isnan(*force_uncertainty_rel(instants({9.0, 9.0, std::nan("")}))));
+  EXPECT_FALSE(force_uncertainty_rel(std::vector<scene::ReferenceInstant>(1)));
 }
 
 TEST(Uncertainty, RelativeShapeByArea) {
-  const std::vector<Eigen::VectorXd> band_m{Eigen::Vector2d::Zero(), Eigen::Vector2d(0.0, 0.3),
-                                            Eigen::Vector2d(0.0, 0.4)};
   // All points move by sqrt(3) and 2 sqrt(3); three quarters of the area are uncertain.
-  EXPECT_NEAR(*shape_uncertainty_rel(instants(), band_m, {1.0, 3.0}), std::sqrt(0.25 * 3.0 / (15.0 * 4.0)), 1e-12);
-  EXPECT_NEAR(*shape_uncertainty_rel(instants(), band_m, {}), std::sqrt(0.25 / (15.0 * 2.0)), 1e-12);
+  EXPECT_NEAR(*shape_uncertainty_rel(instants(), {1.0, 3.0}), std::sqrt(0.25 * 3.0 / (15.0 * 4.0)), 1e-12);
+  EXPECT_NEAR(*shape_uncertainty_rel(instants(), {}), std::sqrt(0.25 / (15.0 * 2.0)), 1e-12);
 }
 
 }  // namespace

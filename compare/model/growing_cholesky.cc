@@ -1,4 +1,4 @@
-#include "compare/trade/growing_cholesky.h"
+#include "compare/model/growing_cholesky.h"
 
 #include <Eigen/Cholesky>
 

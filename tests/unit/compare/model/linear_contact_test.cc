@@ -1,7 +1,7 @@
 // The precomputed compliance against the reference's own small-strain solution of the same discrete problem.
-#include "compare/trade/linear_contact.h"
+#include "compare/model/linear_contact.h"
 
-#include "compare/trade/growing_cholesky.h"
+#include "compare/model/growing_cholesky.h"
 #include "reference/solver.h"
 #include "scene/input/scene_io.h"
 #include "scene/shape/surface.h"

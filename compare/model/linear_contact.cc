@@ -1,4 +1,4 @@
-#include "compare/trade/linear_contact.h"
+#include "compare/model/linear_contact.h"
 
 #include "reference/tool/tool_distance.h"
 

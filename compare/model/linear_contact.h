@@ -8,7 +8,7 @@
 // factor of C's touching part following what joins and leaves.
 #pragma once
 
-#include "compare/trade/growing_cholesky.h"
+#include "compare/model/growing_cholesky.h"
 #include "reference/linear_response.h"
 #include "reference/tool/tool_gap.h"
 #include "scene/model/scene.h"

@@ -1,0 +1,10 @@
+// The body as a precomputed linear compliance.
+#pragma once
+
+#include "compare/model/registry.h"
+
+namespace touchstone::compare {
+
+[[nodiscard]] std::vector<ModelEntry> compliance_models(const ModelRequest& request);
+
+}  // namespace touchstone::compare

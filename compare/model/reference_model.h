@@ -1,0 +1,10 @@
+// The levels of the reference.
+#pragma once
+
+#include "compare/model/registry.h"
+
+namespace touchstone::compare {
+
+[[nodiscard]] std::vector<ModelEntry> reference_models(const ModelRequest& request);
+
+}  // namespace touchstone::compare

@@ -1,0 +1,157 @@
+#include "compare/model/skeleton_model.h"
+
+#include "compare/format/text.h"
+#include "compare/input/tuning_study.h"
+#include "fast/run/run.h"
+#include "fast/step/step.h"
+#include "scene/model/area_law.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace touchstone::compare {
+namespace {
+
+using scene::Scene;
+using Change = std::function<Scene(Scene)>;
+
+class SkeletonModel final : public ContactModel {
+ public:
+  explicit SkeletonModel(Scene scene) : scene_(std::move(scene)), model_(scene_), state_(model_) {}
+
+  void step(const scene::Pose& pose) override { fast::step(model_, pose, state_); }
+
+  void answer(scene::Answer& asked) override {
+    fast::Run run = fast::run(scene_);
+    status_ = run.status;
+    auto of_run = run.instants.begin();
+    for (scene::InstantRecord& instant : asked.instants) {
+      while (of_run != run.instants.end() && of_run->time_s != instant.time_s) ++of_run;
+      if (of_run == run.instants.end()) throw std::logic_error("the scene has no such instant");
+      instant = std::move(*of_run);
+    }
+    asked.surface = std::move(run.surface);
+  }
+
+  [[nodiscard]] int size() const override { return model_.surface.triangle_count(); }
+  [[nodiscard]] std::optional<double> memory_bytes() const override {
+    return static_cast<double>(model_.memory_bytes() + state_.memory_bytes());
+  }
+  [[nodiscard]] std::string trouble() const override {
+    return status_ == 0 ? "" : "status of its steps: " + fast::status_text(status_);
+  }
+
+ private:
+  Scene scene_;
+  fast::FastModel model_;
+  fast::FastState state_;
+  std::uint32_t status_ = 0;
+};
+
+ModelEntry skeleton(ModelEntry entry, const Change& change) {
+  entry.set_up = [change](const Scene& scene) { return std::make_unique<SkeletonModel>(change(scene)); };
+  return entry;
+}
+
+ModelFamily family_of(const Scene& scene) {
+  return scene.contact.law == scene::ContactLaw::area_aware ? ModelFamily::area_aware : ModelFamily::paper;
+}
+
+std::string name_of(scene::Formulation formulation) {
+  return formulation == scene::Formulation::published ? "published" : "corrected";
+}
+
+}  // namespace
+
+Scene as_printed(Scene scene) {
+  scene.fast.formulation = scene::Formulation::published;
+  return scene;
+}
+
+Scene corrected(Scene scene) {
+  scene.fast.formulation = scene::Formulation::corrected;
+  return scene;
+}
+
+Scene with_untuned_area_law(Scene scene) {
+  scene.contact.law = scene::ContactLaw::area_aware;
+  scene.contact.k1_per_radius_n_per_m2 =
+      scene::area_law_constant_n_per_m2(scene.body.material, scene.tool, scene.fast.formulation);
+  scene.contact.k1_n_per_m = scene.contact.k3_n_per_m3 = 0.0;
+  scene.fast.s_c_m2 = scene::stiff_beam_area_m2(scene.body);
+  return scene;
+}
+
+std::vector<ModelEntry> skeleton_models(const ModelRequest& request) {
+  std::vector<ModelEntry> models;
+  const bool duffing = request.scene.contact.law == scene::ContactLaw::duffing;
+  for (const auto& [name, change] : {std::pair{"published", as_printed}, std::pair{"corrected", corrected}}) {
+    const std::string form = name;
+    if (duffing) {
+      models.push_back(skeleton({.name = form + " skeleton, Duffing law of the scene",
+                                 .key = form + "-duffing",
+                                 .label = form,
+                                 .family = ModelFamily::paper},
+                                change));
+    } else {
+      models.push_back({.name = form + " skeleton, Duffing law",
+                        .key = form + "-duffing",
+                        .family = ModelFamily::paper,
+                        .absent = "the scene's law is the area-aware one"});
+    }
+    const std::string from = duffing ? "k1 and s_c of material and size" : "of the scene";
+    models.push_back(skeleton({.name = form + " skeleton, area-aware law, " + from,
+                               .key = form + "-area-aware",
+                               .label = form + ", area-aware",
+                               .family = ModelFamily::area_aware},
+                              [change = change, duffing](Scene scene) {
+                                scene = change(std::move(scene));
+                                return duffing ? with_untuned_area_law(std::move(scene)) : scene;
+                              }));
+  }
+  for (const std::filesystem::path& file : request.parameters) {
+    const Scene tuned = with_parameters(request.scene, file);
+    const bool area_aware = tuned.contact.law == scene::ContactLaw::area_aware;
+    const std::string form = name_of(tuned.fast.formulation);
+    models.push_back(skeleton({.name = fmt::format("{} skeleton, {} law, tuned ({})", form,
+                                                   area_aware ? "area-aware" : "Duffing", file.filename().string()),
+                               .key = "tuned-" + file.stem().string(),
+                               .label = form + (area_aware ? ", area-aware" : "") + ", tuned",
+                               .family = family_of(tuned)},
+                              [file](Scene scene) { return with_parameters(std::move(scene), file); }));
+  }
+  return models;
+}
+
+std::vector<ModelEntry> skeleton_meshes(const ModelRequest& request) {
+  std::vector<ModelEntry> models;
+  const std::vector<int> sizes = request.quick ? std::vector{400, 1000} : std::vector{1000, 3952, 16000, 100000};
+  const bool tuned = !request.parameters.empty();
+  for (const int triangles : sizes) {
+    if (triangles == request.scene.fast.triangles) continue;  // is there already
+    const Change change = [triangles, tuned, file = tuned ? request.parameters.front() : ""](Scene scene) {
+      if (tuned) scene = with_parameters(std::move(scene), file);
+      scene.fast.triangles = triangles;
+      return corrected(std::move(scene));
+    };
+    models.push_back(skeleton({.name = fmt::format("corrected skeleton{}, {} triangles", tuned ? ", tuned" : "",
+                                                   thousands_text(triangles)),
+                               .key = "corrected-" + thousands_text(triangles),
+                               .label = thousands_text(triangles),
+                               .family = family_of(change(request.scene)),
+                               .triangles = triangles},
+                              change));
+  }
+  return models;
+}
+
+std::vector<ModelEntry> skeleton_anchor_sets(const ModelRequest&) {
+  return {{.name = "anchor sets",
+           .key = "anchors",
+           .family = ModelFamily::paper,
+           .absent = "the anchor points follow from the body's shape by the paper's rule: no scene has a setting for "
+                     "them"}};
+}
+
+}  // namespace touchstone::compare
