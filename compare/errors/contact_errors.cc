@@ -61,7 +61,7 @@ void compare_friction(const scene::Answer& answer, const std::vector<scene::Refe
     squares.add((fast_n - reference_n).norm(), e.force_uncertainty_n);
     keep_larger(peak_n, e.friction_reference_n);
     if (t + 1 == count) break;
-    const Vec3 step_m = step_to_next_m(result, t);
+    const Vec3 step_m = step_to_next_m(reference, t);
     errors.instants[t + 1].way_m = e.way_m + step_m.norm();
     work_fast_j -= 0.5 * (fast_n + friction_n(answer.instants[t + 1])).dot(step_m);
     work_reference_j -= 0.5 * (reference_n + friction_n(reference[t + 1])).dot(step_m);
@@ -142,15 +142,15 @@ void compare_regions(const scene::Answer& answer, const std::vector<scene::Refer
   };
   std::map<int, Sums> of_id;
   for (std::size_t t = 0; t < errors.instants.size(); ++t) {
-    const InstantRecord& reference = reference[t];
+    const scene::ReferenceInstant& instant = reference[t];
     // A tool that dips in between the nodes has a region without a middle, and no force.
-    const std::size_t regions = std::min(reference.regions.size(), reference[t].region_middles_m.size());
+    const std::size_t regions = std::min(instant.regions.size(), instant.region_middles_m.size());
     const std::vector<const RegionRecord*> partner =
-        partners(answer.instants[t], reference,
-                 {reference[t].region_middles_m.begin(),
-                  reference[t].region_middles_m.begin() + static_cast<std::ptrdiff_t>(regions)});
+        partners(answer.instants[t], instant,
+                 {instant.region_middles_m.begin(),
+                  instant.region_middles_m.begin() + static_cast<std::ptrdiff_t>(regions)});
     for (std::size_t r = 0; r < regions; ++r) {
-      const RegionRecord& region = reference.regions[r];
+      const RegionRecord& region = instant.regions[r];
       const Vec3 fast_n = partner[r] != nullptr ? partner[r]->force_n : Vec3::Zero();
       Sums& sums = of_id[region.id];
       sums.error2 += (fast_n - region.force_n).squaredNorm();

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <iterator>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -64,7 +65,7 @@ std::optional<double> half_space_force_n(const scene::Scene& scene, double depth
 
 std::size_t deepest(const scene::Instants& instants) {
   const auto at = std::ranges::max_element(instants, {}, &scene::InstantRecord::depth_m);
-  return static_cast<std::size_t>(at - instants.begin());
+  return static_cast<std::size_t>(std::distance(instants.begin(), at));
 }
 
 scene::Figures fast_figures(const GateFile& file, const scene::Scene& own, const scene::Scene& changed) {
@@ -108,7 +109,7 @@ scene::Figures reference_side_figures(const GateFile& file, const scene::Scene& 
   ReferenceOptions options;
   options.store = work.folder();
   const reference::Result result = solve_with_progress(changed, surface, options, true);
-  scene::Figures figures = reference_figures(result, reference_quality(result));
+  scene::Figures figures = reference_figures(result, reference_quality(result.instants));
   figures.push_back({"reference.force_peak_n", peak_n(result.instants), "", "N"});
   const std::size_t at = deepest(result.instants);
   if (const auto hertz_n = half_space_force_n(own, result.instants[at].depth_m)) {

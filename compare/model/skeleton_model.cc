@@ -86,7 +86,8 @@ Scene with_untuned_area_law(Scene scene) {
 std::vector<ModelEntry> skeleton_models(const ModelRequest& request) {
   std::vector<ModelEntry> models;
   const bool duffing = request.scene.contact.law == scene::ContactLaw::duffing;
-  for (const auto& [name, change] : {std::pair{"published", as_printed}, std::pair{"corrected", corrected}}) {
+  using Form = std::pair<const char*, Scene (*)(Scene)>;
+  for (const auto& [name, change] : {Form{"published", as_printed}, Form{"corrected", corrected}}) {
     const std::string form = name;
     if (duffing) {
       models.push_back(skeleton({.name = form + " skeleton, Duffing law of the scene",

@@ -116,7 +116,7 @@ class Finder {
   }
 
   /// Only the fast model may know it.
-  [[nodiscard]] double separation_m(const scene::InstantRecord& record) const {
+  [[nodiscard]] double separation_m(const scene::ReferenceInstant& record) const {
     const auto index = static_cast<std::size_t>(&record - result_.instants.data());
     return std::max(record.separation_m, run_.instants[index].separation_m);
   }

@@ -112,7 +112,7 @@ void write_surfaces(const std::filesystem::path& folder, const fast::Run& run, c
     add_vectors(data, "displacement_error_m", error_m);
     add_numbers(data, "displacement_error_magnitude_m", error_m.colwise().norm().transpose());
     add_numbers(data, "displacement_reference_uncertainty_m", result.instants[t].displacement_uncertainty_m);
-    add_vectors(data, "normal_fast", run.instants[t].normal);
+    if (run.instants[t].normal.size() > 0) add_vectors(data, "normal_fast", run.instants[t].normal);
     add_region(data, "region_id_fast", errors.instants[t].touched_fast);
     add_region(data, "region_id_reference", errors.instants[t].touched_reference);
   });
@@ -132,7 +132,7 @@ void write_tool(const std::filesystem::path& folder, const scene::Tool& tool,
 void write_fast_surfaces(const std::filesystem::path& folder, const fast::Run& run) {
   write_body(folder, run.surface, run.instants, [&](std::size_t t, vtkPolyData* data) {
     add_vectors(data, "displacement_m", run.instants[t].displacement_m);
-    add_vectors(data, "normal", run.instants[t].normal);
+    if (run.instants[t].normal.size() > 0) add_vectors(data, "normal", run.instants[t].normal);
   });
 }
 

@@ -97,7 +97,7 @@ void write_reference(const std::filesystem::path& folder, const reference::Resul
   for (scene::Column& c : scene::record_columns(result.instants, "")) columns.push_back(std::move(c));
   for (scene::Column& c : reference_quality_columns(result, "")) columns.push_back(std::move(c));
   scene::write_csv(folder / "curve.csv", columns);
-  scene::write_summary(folder / "summary.json", reference_figures(result, reference_quality(result)));
+  scene::write_summary(folder / "summary.json", reference_figures(result, reference_quality(result.instants)));
   scene::write_manifest(folder / "manifest.json", manifest);
 }
 

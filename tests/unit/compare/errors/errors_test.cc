@@ -128,7 +128,7 @@ TEST(Errors, HausdorffIsNoLargerThanThePointErrorAndKnownToTheUncertainty) {
 
 TEST(Errors, EqualSidesHaveNone) {
   Sides sides = testing::pressed(5, 200);
-  sides.run.instants = sides.result.instants;
+  sides.run.instants.assign(sides.result.instants.begin(), sides.result.instants.end());
   const Errors e = errors_of(sides);
   for (const Measure* m :
        {&e.force_nrmse, &e.force_peak_rel, &e.force_rel_deep, &e.shape_rel_l2, &e.shape_max_over_depth,
@@ -423,7 +423,7 @@ TEST(Errors, ARegionTheFastModelLacksHasNoForceThere) {
 
 TEST(Errors, SideFacesAreThoseNoContactLiesOn) {
   Sides sides = testing::pressed(3, 2000);
-  sides.run.instants = sides.result.instants;
+  sides.run.instants.assign(sides.result.instants.begin(), sides.result.instants.end());
   EXPECT_EQ(*errors_of(sides).shape_side_faces_rel_l2.value, 0.0);
   const scene::Surface& surface = sides.run.surface;
   // The top's error is none of the sides'; an error in proportion on one side is that share of it.
@@ -455,7 +455,7 @@ TEST(Errors, ABodyWithoutEdgesHasNoSideFaces) {
 
 TEST(Errors, NormalsTellTurningFromMoving) {
   Sides sides = testing::pressed(3, 2000);
-  sides.run.instants = sides.result.instants;
+  sides.run.instants.assign(sides.result.instants.begin(), sides.result.instants.end());
   EXPECT_EQ(*errors_of(sides).shape_normals_rms_rad.value, 0.0);
   // Moved as a whole: no turn. Turned as a whole about x by 0.1 rad: that everywhere.
   sides.run.instants[2].displacement_m.colwise() += Vec3(1e-3, 2e-3, 3e-3);

@@ -67,7 +67,9 @@ TEST(NextSteps, OfferTheAreaAwareLawWhereItIsNearerAndSayByHowMuch) {
 
 TEST(NextSteps, DoNotOfferWhatIsNoBetter) {
   testing::Sides sides = really_run();
-  sides.result.instants = sides.run.instants;
+  for (std::size_t t = 0; t < sides.run.instants.size(); ++t) {
+    static_cast<scene::InstantRecord&>(sides.result.instants[t]) = sides.run.instants[t];
+  }
   EXPECT_EQ(find(steps_of(sides), "area-aware").command, "");
   EXPECT_EQ(find(steps_of(sides), "s_c_m2").command, "");
   EXPECT_EQ(find(steps_of(sides), "touchstone tune").command, "");
@@ -115,7 +117,7 @@ TEST(NextSteps, DoNotRefineWhereNoMeshHelps) {
   testing::Sides sides = testing::pressed(5, 200);
   sides.scene.reference.levels.reset();
   sides.call.reference = {};
-  sides.run.instants = sides.result.instants;  // no error is larger than the uncertainty
+  sides.run.instants.assign(sides.result.instants.begin(), sides.result.instants.end());  // no error is larger than the uncertainty
   EXPECT_THAT(find(steps_of(sides), "Refine the reference").command, HasSubstr(" --error "));
   sides.result.refinement.ended_by = reference::EndedBy::sensitivity;
   EXPECT_EQ(find(steps_of(sides), "Refine the reference").command, "");
@@ -139,7 +141,7 @@ TEST(NextSteps, SayHowFarTheTrackPassesTheBody) {
     record.depth_m = 0.0;
     record.separation_m = 0.004 - 0.001 * static_cast<double>(t);
     record.regions.clear();
-    sides.result.instants[t] = record;
+    static_cast<scene::InstantRecord&>(sides.result.instants[t]) = record;
     sides.result.instants[t].displacement_m.setZero();
   }
   const std::vector<NextStep> steps = steps_of(sides);
