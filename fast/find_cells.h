@@ -23,9 +23,21 @@ inline constexpr int max_cells = 1024;
 /// A cell at its place.
 struct PlacedCell {
   const SurfaceCell* cell;
-  scene::Vec3 p_W;    ///< its centre
-  RestDistance rest;  ///< of that
-  double lowest_m;    ///< signed distance of its lowest corner from the tangent plane of the rest surface
+  scene::Vec3 p_W;             ///< its centre
+  RestDistance rest;           ///< of that
+  scene::Vec3 normal_T;        ///< of that, tool frame
+  double lowest_m, highest_m;  ///< signed distance of its corners from the tangent plane of the rest surface
+
+  [[nodiscard]] bool wholly_inside() const noexcept { return rest.signed_distance_m <= -cell->radius_m; }
+};
+
+/// What of a placed cell becomes a point.
+struct CellPart {
+  enum class Kind : std::int8_t { inside, rim, outside };
+  const PlacedCell* at;
+  Kind kind;
+  double share;       ///< of its area that is inside
+  scene::Vec3 off_m;  ///< from its centre to the middle of that share, tool frame
 };
 
 /// What find_cells() writes on its way. Halves are kept, since a contact mostly asks for those of the last tick; the
@@ -46,6 +58,7 @@ class CellScratch {
 
   std::vector<std::int32_t> now, near;  ///< cells of a round, and those of them that are near the body
   std::vector<PlacedCell> placed;       ///< those and what else is looked for
+  std::vector<CellPart> parts;          ///< what is inside of those, or nearly
 
  private:
   [[nodiscard]] std::int32_t halves_of(const ToolSamples& tool, const SurfaceCell& cell, std::int32_t& first) noexcept;
