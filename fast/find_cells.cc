@@ -84,13 +84,10 @@ Vec3 mean_normal(const Body&, const Mat3&, const Vec3&, const RestDistance& rest
   return rest.normal;
 }
 
-/// Of pieces that are nearer to one face in one part and to another in the rest.
-Vec3 mean_normal(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
-                 const Spread& spread_T_m) noexcept {
+/// Of a piece that is nearer to one face in one part and to another in the rest.
+Vec3 mean_normal_at_edge(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
+                         const Spread& spread_T_m) noexcept {
   const Vec3 local = p_W - box.center_m(), above_m = local.cwiseAbs() - box.half_m();
-  const Vec3 under_m = (Vec3::Constant(above_m.maxCoeff()) - above_m).cwiseMax(0.0);
-  const double second_m = under_m.sum() - under_m.maxCoeff();
-  if (second_m * second_m > 6.0 * (spread_T_m[0].squaredNorm() + spread_T_m[1].squaredNorm())) return rest.normal;
   Mat3 normal = Mat3::Zero();
   for (int axis = 0; axis < 3; ++axis) normal(axis, axis) = std::copysign(1.0, local[axis]);
   const Vec3 e1_m = normal * (R_WT * spread_T_m[0]), e2_m = normal * (R_WT * spread_T_m[1]);
@@ -106,13 +103,30 @@ Vec3 mean_normal(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const
   return sum > 0.0 ? Vec3(normal * share / sum) : rest.normal;
 }
 
+Vec3 mean_normal(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
+                 const Spread& spread_T_m) noexcept {
+  const auto above_m = [&](int axis) { return std::abs(p_W[axis] - box.center_m()[axis]) - box.half_m()[axis]; };
+  const double ax_m = above_m(0), ay_m = above_m(1), az_m = above_m(2), most_m = std::max(std::max(ax_m, ay_m), az_m);
+  const double x_m = most_m - ax_m, y_m = most_m - ay_m, z_m = most_m - az_m;
+  // One of them is 0.
+  const double second_m = (x_m + y_m) + z_m - std::max(std::max(x_m, y_m), z_m);
+  if (second_m * second_m > 6.0 * (spread_T_m[0].squaredNorm() + spread_T_m[1].squaredNorm())) return rest.normal;
+  return mean_normal_at_edge(box, R_WT, p_W, rest, spread_T_m);
+}
+
 /// Cells of the tool, a batch at a time, and what is inside of them.
 template <class Body>
 class CellFinder {
  public:
   CellFinder(const Body& body, const Placement& at, const CellRule& rule, double margin_m, RegionPoints& points,
              CellScratch& scratch) noexcept
-      : body_(body), at_(at), rule_(rule), margin_m_(margin_m), points_(points), scratch_(scratch) {}
+      : body_(body),
+        at_(at),
+        rule_(rule),
+        margin_m_(margin_m),
+        points_(points),
+        scratch_(scratch),
+        batch_(scratch.batch) {}
 
   /// Begins with a new round of cells.
   void begin_round() noexcept {
@@ -222,10 +236,13 @@ class CellFinder {
           (*column)[kept] = (*column)[i];
       }
       const SurfaceCell& cell = *cell_[kept];
-      for (std::size_t k = 0; k < 4; ++k) {
-        const Vec3& corner_m = cell.corner_m[k < static_cast<std::size_t>(cell.corners) ? k : 0];
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          batch_.corner_m[k][axis][kept] = corner_m[static_cast<Eigen::Index>(axis)];
+      // Nobody asks for the corners of a cell that is wholly inside.
+      if (!(batch_.distance_m[kept] <= -cell.radius_m)) {
+        for (std::size_t k = 0; k < 4; ++k) {
+          const Vec3& corner_m = cell.corner_m[k < static_cast<std::size_t>(cell.corners) ? k : 0];
+          for (std::size_t axis = 0; axis < 3; ++axis)
+            batch_.corner_m[k][axis][kept] = corner_m[static_cast<Eigen::Index>(axis)];
+        }
       }
       ++kept;
     }
@@ -349,13 +366,13 @@ class CellFinder {
   double margin_m_;
   RegionPoints& points_;
   CellScratch& scratch_;
+  CellBatch& batch_;
   InsideSummary summary_;
   int inside_ = 0;
   double inside_m2_ = 0.0, rim_m2_ = 0.0;
   std::array<const SurfaceCell*, CellBatch::size> cell_;  ///< asked for, not yet placed
   std::array<std::int32_t, CellBatch::size> index_;
   std::size_t asked_ = 0;
-  CellBatch batch_;
 };
 
 }  // namespace

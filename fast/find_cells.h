@@ -2,6 +2,7 @@
 // below it, and where few are inside they are halved.
 #pragma once
 
+#include "fast/cell_batch.h"
 #include "fast/contact_detection.h"
 #include "fast/rest_distance.h"
 
@@ -58,7 +59,8 @@ class CellScratch {
 
   std::vector<std::int32_t> now, near;  ///< cells of a round, and those of them that are near the body
   std::vector<PlacedCell> placed;       ///< those and what else is looked for
-  std::vector<CellPart> parts;          ///< what is inside of those, or nearly
+  CellBatch batch;
+  std::vector<CellPart> parts;  ///< what is inside of those, or nearly
 
  private:
   [[nodiscard]] std::int32_t halves_of(const ToolSamples& tool, const SurfaceCell& cell, std::int32_t& first) noexcept;

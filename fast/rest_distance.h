@@ -130,6 +130,10 @@ class BoxExit {
     outward[axis] = sign_[axis];
     return outward;
   }
+  [[nodiscard]] const scene::Vec3& center_m() const noexcept { return center_m_; }
+  [[nodiscard]] const scene::Vec3& half_m() const noexcept { return half_m_; }
+  [[nodiscard]] const scene::Vec3& sign() const noexcept { return sign_; }            ///< of the direction
+  [[nodiscard]] const scene::Vec3& per_speed() const noexcept { return per_speed_; }  ///< 1 / abs(direction)
 
  private:
   scene::Vec3 center_m_, half_m_, sign_, per_speed_;
@@ -147,6 +151,9 @@ class SphereExit {
     if (!(inside_m2 > 0.0)) return 0.0;
     return std::sqrt(along_m * along_m + inside_m2) - along_m;
   }
+  [[nodiscard]] const scene::Vec3& center_m() const noexcept { return center_m_; }
+  [[nodiscard]] const scene::Vec3& direction() const noexcept { return direction_; }
+  [[nodiscard]] double radius2_m2() const noexcept { return radius2_m2_; }
 
  private:
   scene::Vec3 center_m_, direction_;
@@ -170,6 +177,10 @@ class EllipsoidExit {
     const double root = std::sqrt(along * along + a_ * inside);
     return along > 0.0 ? inside / (root + along) : (root - along) / a_;
   }
+  [[nodiscard]] const scene::Vec3& center_m() const noexcept { return center_m_; }
+  [[nodiscard]] const scene::Vec3& per_axis() const noexcept { return per_axis_; }    ///< 1 / semi-axes
+  [[nodiscard]] const scene::Vec3& direction() const noexcept { return direction_; }  ///< times that
+  [[nodiscard]] double a() const noexcept { return a_; }                              ///< its length squared
 
  private:
   scene::Vec3 center_m_, per_axis_, direction_;
