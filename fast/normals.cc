@@ -29,6 +29,8 @@ constexpr float crushed_rel = 1e-9f;
 
 /// Fewer vertices than this are worked off singly.
 constexpr std::int32_t shortest_run = 4;
+/// Vertices that a loop works off at once: a run is rounded up to that.
+constexpr std::int32_t wide = 8;
 /// A run goes on over as many vertices with other neighbours.
 constexpr std::int32_t longest_gap = 2;
 
@@ -82,7 +84,7 @@ TOUCHSTONE_INLINE void update_run(const NormalStencils::Run& run, const NormalSt
   float* nx = field.normal[0].data() + run.begin;
   float* ny = field.normal[1].data() + run.begin;
   float* nz = field.normal[2].data() + run.begin;
-  const std::int32_t count = run.end - run.begin;
+  const std::int32_t count = run.lanes;
   // Columns never overlap.
 #pragma GCC ivdep
   for (std::int32_t v = 0; v < count; ++v) {
@@ -158,7 +160,7 @@ void find_runs(const scene::Surface& surface, const std::vector<std::array<std::
   for (std::size_t patch = 0; patch + 1 < surface.patch_begin.size(); ++patch) {
     const std::int32_t end = surface.patch_begin[patch + 1];
     for (std::int32_t v = surface.patch_begin[patch]; v < end;) {
-      NormalStencils::Run run{v, v + 1, offset(v), true};
+      NormalStencils::Run run{v, v + 1, 0, offset(v), true};
       const auto [lowest, highest] = std::minmax_element(run.offset.begin(), run.offset.end());
       std::vector<std::int32_t> passed_over;
       std::int32_t members = spans(v) ? 1 : 0;
@@ -176,6 +178,10 @@ void find_runs(const scene::Surface& surface, const std::vector<std::array<std::
         continue;
       }
       for (const std::int32_t single : passed_over) add_single(single);
+      // What is written behind its end is written over by the runs that follow, or by the singles.
+      const std::int32_t lanes = (run.end - run.begin + wide - 1) / wide * wide;
+      const bool in_memory = run.begin + lanes + std::max(*highest, 0) <= surface.vertex_count();
+      run.lanes = in_memory ? lanes : run.end - run.begin;
       stencils.runs.push_back(run);
       v = run.end;
     }

@@ -18,11 +18,12 @@ namespace touchstone::fast {
 ///
 /// Most vertices have their neighbours at the same offsets as the vertex before and are worked off in runs. A run goes
 /// on over a vertex or two with other neighbours, as from one row of a mesh to the next; what it leaves there is
-/// written over by the pass over the single vertices.
+/// written over by the pass over the single vertices. So is what it leaves behind its end, or by the runs that follow.
 struct NormalStencils {
   /// Consecutive vertices whose neighbours lie at the same offsets in the vertex order.
   struct Run {
     std::int32_t begin, end;
+    std::int32_t lanes;                  ///< vertices worked off: some behind the end, too
     std::array<std::int32_t, 4> offset;  ///< of a, b, c, d
     bool flat;                           ///< the chords are those of the first vertex all along
   };

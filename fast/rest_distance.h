@@ -71,7 +71,7 @@ struct RestDistance {
   return {closest.signed_distance_m, closest.normal};
 }
 
-/// False only if the whole ball about p_m is outside.
+/// False only if the whole ball about p_m is outside; of an ellipsoid, true for some of those, too.
 template <class Body>
 [[nodiscard]] bool may_touch(const Body& body, const scene::Vec3& p_m, double radius_m) noexcept {
   // Not "!(>)": a centre at NaN distance is outside.
@@ -89,19 +89,23 @@ template <class Body>
   return false;
 }
 
-/// The ellipsoid times this ratio passes through the point; everywhere it stands off by (ratio - 1) of the shortest
-/// axis at least.
-[[nodiscard]] inline double size_ratio(const scene::Ellipsoid& ellipsoid, const scene::Vec3& p_m) noexcept {
-  return (p_m - ellipsoid.center_m()).cwiseQuotient(ellipsoid.semi_axes_m()).norm();
+/// Above 0 only if the whole ball about p_m is outside: the half-space that touches the ellipsoid and whose normal is
+/// (x_i / a_i^2), which is nearly the nearest one. Without unit.
+[[nodiscard]] inline double beyond_half_space(const scene::Ellipsoid& ellipsoid, const scene::Vec3& p_m,
+                                              double radius_m) noexcept {
+  const scene::Vec3 per_m = ellipsoid.semi_axes_m().cwiseInverse();
+  const scene::Vec3 scaled = (p_m - ellipsoid.center_m()).cwiseProduct(per_m);
+  const double ratio2 = scaled.squaredNorm();
+  return ratio2 - std::sqrt(ratio2) - radius_m * scaled.cwiseProduct(per_m).norm();
 }
 [[nodiscard]] inline bool surely_beyond(const scene::Ellipsoid& ellipsoid, const scene::Vec3& p_m,
                                         double margin_m) noexcept {
-  return (size_ratio(ellipsoid, p_m) - 1.0) * ellipsoid.semi_axes_m().minCoeff() > margin_m;
+  return beyond_half_space(ellipsoid, p_m, margin_m) > 0.0;
 }
 [[nodiscard]] inline bool may_touch(const scene::Ellipsoid& ellipsoid, const scene::Vec3& p_m,
                                     double radius_m) noexcept {
-  const double off_m = (size_ratio(ellipsoid, p_m) - 1.0) * ellipsoid.semi_axes_m().minCoeff();
-  return off_m <= 0.0 || (off_m <= radius_m && rest_distance(ellipsoid, p_m).signed_distance_m <= radius_m);
+  // Not "!(>)": a centre at NaN distance is outside.
+  return beyond_half_space(ellipsoid, p_m, radius_m) <= 0.0;
 }
 
 /// Way from inside points along one direction to the rest surface [m]; zero for a point on it or outside.
