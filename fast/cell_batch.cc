@@ -160,4 +160,63 @@ void level_batch(const scene::Mat3& R_WT, CellBatch& batch) noexcept {
   }
 }
 
+namespace {
+
+/// A corner of the part below the plane, or none.
+struct Corner {
+  double x, y, z;
+  bool there;
+};
+TOUCHSTONE_INLINE Corner chosen(bool first, const Corner& a, const Corner& b) noexcept {
+  return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z, true};
+}
+
+}  // namespace
+
+TOUCHSTONE_WIDE_LOOPS
+void cut_batch(CellBatch& batch) noexcept {
+  const std::size_t lanes = batch.lanes();
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const auto& c = batch.corner_m;
+    const double nx = batch.nx_T[i], ny = batch.ny_T[i], nz = batch.nz_T[i], level = batch.distance_m[i];
+    double at[4];
+#pragma GCC unroll 4
+    for (std::size_t k = 0; k < 4; ++k) at[k] = nx * c[k][0][i] + ny * c[k][1][i] + nz * c[k][2][i] + level;
+    // Each corner, and where the plane crosses the side behind it.
+    Corner corner[8];
+#pragma GCC unroll 4
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::size_t next = (k + 1) % 4;
+      const double x = c[k][0][i], y = c[k][1][i], z = c[k][2][i], along = at[k] / (at[k] - at[next]);
+      corner[2 * k] = {x, y, z, at[k] < 0.0};
+      corner[2 * k + 1] = {x + along * (c[next][0][i] - x), y + along * (c[next][1][i] - y),
+                           z + along * (c[next][2][i] - z), (at[k] < 0.0) != (at[next] < 0.0)};
+    }
+    Corner first = corner[7];
+#pragma GCC unroll 8
+    for (std::size_t k = 7; k-- > 0;) first = chosen(corner[k].there, corner[k], first);
+    // Triangles from the first; where there is no corner, one without area.
+    Corner last = first;
+    double area_m2 = 0.0, sum_x = 0.0, sum_y = 0.0, sum_z = 0.0;
+#pragma GCC unroll 8
+    for (std::size_t k = 0; k < 8; ++k) {
+      const Corner here = chosen(corner[k].there, corner[k], last);
+      const double ax = last.x - first.x, ay = last.y - first.y, az = last.z - first.z;
+      const double bx = here.x - first.x, by = here.y - first.y, bz = here.z - first.z;
+      const double x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
+      const double part_m2 = 0.5 * std::sqrt(x * x + y * y + z * z), third_m2 = part_m2 / 3.0;
+      area_m2 += part_m2;
+      sum_x += third_m2 * (first.x + last.x + here.x);
+      sum_y += third_m2 * (first.y + last.y + here.y);
+      sum_z += third_m2 * (first.z + last.z + here.z);
+      last = here;
+    }
+    const bool some = area_m2 > 0.0;
+    batch.area_m2[i] = area_m2;
+    batch.x_m[i] = some ? sum_x / area_m2 : 0.0;
+    batch.y_m[i] = some ? sum_y / area_m2 : 0.0;
+    batch.z_m[i] = some ? sum_z / area_m2 : 0.0;
+  }
+}
+
 }  // namespace touchstone::fast

@@ -23,6 +23,8 @@ struct CellBatch {
   alignas(64) Column nx_T{}, ny_T{}, nz_T{};          ///< (nx, ny, nz) in frame T
   alignas(64) Column lowest_m{}, highest_m{};         ///< corners, over the tangent plane of the rest surface
 
+  alignas(64) Column area_m2{};  ///< of what cut_batch() leaves
+
   /// Lanes that loops work off: those behind `count` hold what the last one does.
   [[nodiscard]] std::size_t lanes() const noexcept { return (count + 3) / 4 * 4; }
   /// Copies the last middle to the lanes behind it.
@@ -39,6 +41,15 @@ struct CellBatch {
     y_m[i] = middle_m.y();
     z_m[i] = middle_m.z();
     reach_m[i] = reach;
+  }
+  void set_corners(std::size_t i, const SurfaceCell& cell) noexcept {
+    for (std::size_t k = 0; k < corner_m.size(); ++k) {
+      // A triangle has its first one twice.
+      const scene::Vec3& at_m = cell.corner_m[k < static_cast<std::size_t>(cell.corners) ? k : 0];
+      corner_m[k][0][i] = at_m.x();
+      corner_m[k][1][i] = at_m.y();
+      corner_m[k][2][i] = at_m.z();
+    }
   }
   /// Takes lane `from` for lane `to`, as far as place_batch() has filled it.
   void move(std::size_t from, std::size_t to) noexcept {
@@ -70,5 +81,8 @@ void rest_batch(const scene::Sphere&, CellBatch&) noexcept;
 void rest_batch(const scene::Ellipsoid&, CellBatch&) noexcept;
 /// Normals in frame T, and the levels of the corners.
 void level_batch(const scene::Mat3& R_WT, CellBatch&) noexcept;
+/// Area and middle (x_m, y_m, z_m), from the cell's, of the part of the polygon of the corners that is below the plane
+/// of (nx_T, ny_T, nz_T) and distance_m: what CutPolygon gives.
+void cut_batch(CellBatch&) noexcept;
 
 }  // namespace touchstone::fast

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 namespace touchstone::fast {
 namespace {
@@ -22,10 +23,9 @@ template <class Body>
 void cut(const Body&, const Mat3&, const PlacedCell& at, CutPolygon& polygon) noexcept {
   polygon.keep_below(at.normal_T, at.rest.signed_distance_m);
 }
-/// Whether that is sure to leave the polygon whole.
 template <class Body>
-bool surely_whole(const Body&, const PlacedCell& at) noexcept {
-  return at.highest_m < 0.0;
+bool by_one_plane(const Body&, const PlacedCell&) noexcept {
+  return true;
 }
 
 /// Faces that meet at edges.
@@ -41,9 +41,9 @@ void cut(const scene::Box& box, const Mat3& R_WT, const PlacedCell& at, CutPolyg
   }
 }
 
-bool surely_whole(const scene::Box& box, const PlacedCell& at) noexcept {
-  if (!(at.highest_m < 0.0)) return false;
-  // The nearest face is not reached, and the others are further away than the cell is large.
+/// Whether no more than the tangent plane at the closest point can cut the cell: the other faces are further away than
+/// the cell is large.
+bool by_one_plane(const scene::Box& box, const PlacedCell& at) noexcept {
   const Vec3 local = at.p_W - box.center_m();
   int within_reach = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -53,7 +53,7 @@ bool surely_whole(const scene::Box& box, const PlacedCell& at) noexcept {
 }
 
 /// Straight pieces of the profile, of which several may cut a cell, and the tangent plane for an arc.
-bool surely_whole(const scene::Revolution&, const PlacedCell&) noexcept { return false; }
+bool by_one_plane(const scene::Revolution&, const PlacedCell&) noexcept { return false; }
 void cut(const scene::Revolution& body, const Mat3& R_WT, const PlacedCell& at, CutPolygon& polygon) noexcept {
   polygon.keep_below(at.normal_T, at.rest.signed_distance_m);
   for (int index = 0; index < body.piece_count(); ++index) {
@@ -150,16 +150,11 @@ class CellFinder {
     scratch_.parts.clear();
     inside_ = 0;
     inside_m2_ = rim_m2_ = 0.0;
-    for (const PlacedCell& here : scratch_.placed) {
-      if (here.wholly_inside()) {
-        is_inside(here);
-      } else if (here.cell->group >= 0) {
-        measure_group(here);
-      } else if (here.lowest_m < 0.0) {
-        measure_cut(here);
-      } else {
-        is_outside(here);
-      }
+    const std::vector<PlacedCell>& placed = scratch_.placed;
+    for (std::size_t begin = 0; begin < placed.size(); begin += CellBatch::size) {
+      const std::size_t end = std::min(placed.size(), begin + CellBatch::size);
+      cut_by_planes({placed.data() + begin, end - begin});
+      for (std::size_t k = begin, lane = 0; k < end; ++k) measure(placed[k], cut_[k - begin], lane);
     }
     return inside_ >= rule_.points && rim_m2_ <= rule_.rim_share * inside_m2_;
   }
@@ -237,13 +232,8 @@ class CellFinder {
       }
       const SurfaceCell& cell = *cell_[kept];
       // Nobody asks for the corners of a cell that is wholly inside.
-      if (!(batch_.distance_m[kept] <= -cell.radius_m)) {
-        for (std::size_t k = 0; k < 4; ++k) {
-          const Vec3& corner_m = cell.corner_m[k < static_cast<std::size_t>(cell.corners) ? k : 0];
-          for (std::size_t axis = 0; axis < 3; ++axis)
-            batch_.corner_m[k][axis][kept] = corner_m[static_cast<Eigen::Index>(axis)];
-        }
-      }
+      if (!(batch_.distance_m[kept] <= -cell.radius_m))
+        batch_.set_corners(kept, cell);
       ++kept;
     }
     batch_.count = kept;
@@ -314,17 +304,57 @@ class CellFinder {
     is_rim(here, -lowest_m / (2.0 * half_m), (0.5 * lowest_m - middle_m) / slope.rise_m * slope.up_m);
   }
 
+  /// How a cell is cut.
+  enum class Cut : std::int8_t { no, by_plane, by_faces };
+  [[nodiscard]] Cut cut_of(const PlacedCell& here) const noexcept {
+    if (here.wholly_inside() || here.cell->group >= 0 || !(here.lowest_m < 0.0)) return Cut::no;
+    if (!by_one_plane(body_, here)) return Cut::by_faces;
+    return here.highest_m < 0.0 && here.rest.signed_distance_m < 0.0 ? Cut::no : Cut::by_plane;
+  }
+
+  /// Says of up to a batch of cells how they are cut, and cuts those that one plane cuts.
+  void cut_by_planes(std::span<const PlacedCell> placed) noexcept {
+    batch_.count = 0;
+    for (std::size_t k = 0; k < placed.size(); ++k) {
+      const PlacedCell& here = placed[k];
+      cut_[k] = cut_of(here);
+      if (cut_[k] != Cut::by_plane) continue;
+      const std::size_t lane = batch_.count++;
+      batch_.set_corners(lane, *here.cell);
+      batch_.distance_m[lane] = here.rest.signed_distance_m;
+      batch_.nx_T[lane] = here.normal_T.x();
+      batch_.ny_T[lane] = here.normal_T.y();
+      batch_.nz_T[lane] = here.normal_T.z();
+    }
+    if (batch_.count > 0) cut_batch(batch_);
+  }
+
+  /// @param lane  of the batch, for the next cell that a plane cuts
+  void measure(const PlacedCell& here, Cut cut, std::size_t& lane) noexcept {
+    if (here.wholly_inside()) return is_inside(here);
+    if (here.cell->group >= 0) return measure_group(here);
+    if (!(here.lowest_m < 0.0)) return is_outside(here);
+    if (cut == Cut::no) return is_inside(here);
+    if (cut == Cut::by_faces) return measure_cut(here);
+    const Vec3 center_m(batch_.x_m[lane], batch_.y_m[lane], batch_.z_m[lane]);
+    measure_part(here, batch_.area_m2[lane++], center_m);
+  }
+
   void measure_cut(const PlacedCell& here) noexcept {
-    const SurfaceCell& cell = *here.cell;
-    if (here.rest.signed_distance_m < 0.0 && surely_whole(body_, here)) return is_inside(here);
-    CutPolygon polygon({cell.corner_m.data(), static_cast<std::size_t>(cell.corners)});
-    cut(body_, at_.R_WT, here, polygon);
+    CutPolygon polygon({here.cell->corner_m.data(), static_cast<std::size_t>(here.cell->corners)});
+    fast::cut(body_, at_.R_WT, here, polygon);
     if (!polygon.is_cut() && here.rest.signed_distance_m < 0.0) return is_inside(here);
     const CutPolygon::Moments part = polygon.moments();
-    const double share = cell.polygon_m2 > 0.0 ? std::min(1.0, part.area_m2 / cell.polygon_m2) : 0.0;
+    measure_part(here, part.area_m2, part.center_m);
+  }
+
+  /// @param area_m2  that is left of the polygon of the cell's corners; @param center_m  its middle
+  void measure_part(const PlacedCell& here, double area_m2, const Vec3& center_m) noexcept {
+    const SurfaceCell& cell = *here.cell;
+    const double share = cell.polygon_m2 > 0.0 ? std::min(1.0, area_m2 / cell.polygon_m2) : 0.0;
     if (!(share > 0.0)) return is_outside(here);
     // The polygon's, moved to the surface that bulges from it.
-    is_rim(here, share, part.center_m - cell.polygon_center_m);
+    is_rim(here, share, center_m - cell.polygon_center_m);
   }
 
   /// @param lane  of the batch, which has the middle of the part
@@ -373,6 +403,7 @@ class CellFinder {
   std::array<const SurfaceCell*, CellBatch::size> cell_;  ///< asked for, not yet placed
   std::array<std::int32_t, CellBatch::size> index_;
   std::size_t asked_ = 0;
+  std::array<Cut, CellBatch::size> cut_;
 };
 
 }  // namespace

@@ -110,15 +110,15 @@ TOUCHSTONE_INLINE void update_singles(const NormalStencils& stencils, const Surf
   for (std::size_t begin = 0; begin < all; begin += batch) {
     const NormalStencils::Single* single = stencils.singles.data() + begin;
     const std::size_t count = std::min(batch, all - begin);
+    const auto& to = stencils.single_neighbour;
+    const std::int32_t *a = to[0].data() + begin, *b = to[1].data() + begin, *c = to[2].data() + begin,
+                       *d = to[3].data() + begin;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float *u = field.displacement_m[axis].data(), *normal = rest.normal[axis].data();
-      const float *t1 = stencils.t1_m[axis].data(), *t2 = stencils.t2_m[axis].data();
-      for (std::size_t i = 0; i < count; ++i) {
-        const auto& [v, to] = single[i];
-        p[axis][i] = t1[v] + (u[to[0]] - u[to[1]]);
-        q[axis][i] = t2[v] + (u[to[2]] - u[to[3]]);
-        r[axis][i] = normal[v];
-      }
+      const float *t1 = stencils.single_t1_m[axis].data() + begin, *t2 = stencils.single_t2_m[axis].data() + begin;
+      for (std::size_t i = 0; i < count; ++i) p[axis][i] = t1[i] + (u[a[i]] - u[b[i]]);
+      for (std::size_t i = 0; i < count; ++i) q[axis][i] = t2[i] + (u[c[i]] - u[d[i]]);
+      for (std::size_t i = 0; i < count; ++i) r[axis][i] = normal[single[i].vertex];
     }
     for (std::size_t i = 0; i < batch; ++i) {
       const float cx = p[1][i] * q[2][i] - p[2][i] * q[1][i] + crushed_m2 * r[0][i];
@@ -216,6 +216,13 @@ NormalStencils normal_stencils(const scene::Surface& surface) {
     neighbour.push_back({a, b, c, d});
   }
   find_runs(surface, neighbour, stencils);
+  for (const auto& [v, to] : stencils.singles) {
+    for (std::size_t k = 0; k < to.size(); ++k) stencils.single_neighbour[k].push_back(to[k]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      stencils.single_t1_m[axis].push_back(stencils.t1_m[axis][static_cast<std::size_t>(v)]);
+      stencils.single_t2_m[axis].push_back(stencils.t2_m[axis][static_cast<std::size_t>(v)]);
+    }
+  }
   return stencils;
 }
 
