@@ -232,8 +232,7 @@ class CellFinder {
       }
       const SurfaceCell& cell = *cell_[kept];
       // Nobody asks for the corners of a cell that is wholly inside.
-      if (!(batch_.distance_m[kept] <= -cell.radius_m))
-        batch_.set_corners(kept, cell);
+      if (!(batch_.distance_m[kept] <= -cell.radius_m)) batch_.set_corners(kept, cell);
       ++kept;
     }
     batch_.count = kept;

@@ -35,17 +35,16 @@ struct NormalStencils {
   std::vector<Run> runs;
   std::vector<Single> singles;
   Columns3 t1_m, t2_m;
-  std::array<std::vector<std::int32_t>, 4> single_neighbour;  ///< the same of the singles, side by side
-  Columns3 single_t1_m, single_t2_m;
+  Columns3 single_t1_m, single_t2_m, single_normal;  ///< of the singles side by side; with the normal at rest
 
   [[nodiscard]] std::size_t memory_bytes() const noexcept {
-    return runs.size() * sizeof(Run) + singles.size() * (sizeof(Single) + 4 * sizeof(std::int32_t)) +
-           6 * (t1_m[0].size() + singles.size()) * sizeof(float);
+    return runs.size() * sizeof(Run) + singles.size() * sizeof(Single) +
+           (6 * t1_m[0].size() + 9 * single_t1_m[0].size()) * sizeof(float);
   }
 };
 [[nodiscard]] NormalStencils normal_stencils(const scene::Surface& surface);
 
 /// Fills field.normal from field.displacement_m; where the surface is crushed to a line, the rest normal stays.
-void update_normals(const NormalStencils&, const SurfacePatches& rest, SurfaceField& field) noexcept;
+void update_normals(const NormalStencils&, SurfaceField& field) noexcept;
 
 }  // namespace touchstone::fast

@@ -135,6 +135,35 @@ void set_rises(const BoxExit& way_out, const Mat3& R_WT, const Vec3& d, RegionPo
 }
 
 TOUCHSTONE_WIDE_LOOPS
+static double most_with_spread_m(const RegionPoints& p) noexcept {
+  const auto count = static_cast<std::size_t>(p.count);
+  double most_m = 0.0;
+  constexpr std::size_t wide = 8;
+  double most[wide] = {};
+  std::size_t i = 0;
+  for (; i + wide <= count; i += wide) {
+    for (std::size_t k = 0; k < wide; ++k) {
+      const double rise1_m = p.rise1_m[i + k], rise2_m = p.rise2_m[i + k];
+      most[k] = larger(most[k], p.depth_m[i + k] + std::sqrt(rise1_m * rise1_m + rise2_m * rise2_m));
+    }
+  }
+  for (; i < count; ++i) most[0] = larger(most[0], p.depth_m[i] + p.depth_spread_m(i));
+  for (const double m : most) most_m = larger(most_m, m);
+  return most_m;
+}
+
+bool reaches_limit(double limit_m, const RegionPoints& points) noexcept {
+  if (points.spread) {
+    // A little less than the limit is for limit_depths() to tell.
+    return !(most_with_spread_m(points) < limit_m * (1.0 - 1e-12));
+  }
+  bool beyond = false;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i)
+    beyond = beyond || !(points.depth_m[i] <= limit_m);
+  return beyond;
+}
+
+TOUCHSTONE_WIDE_LOOPS
 void set_shares(const Vec3& d_T, RegionPoints& p) noexcept {
   const Numbers d = numbers(d_T);
   const auto count = static_cast<std::size_t>(p.count);

@@ -36,6 +36,9 @@ void set_rises(const scene::Mat3& R_WT, const scene::Vec3& d, RegionPoints& poin
 /// The same where it leads to a face of the box.
 void set_rises(const BoxExit& way_out, const scene::Mat3& R_WT, const scene::Vec3& d, RegionPoints& points) noexcept;
 
+/// Whether some of the depths, with their spread, goes beyond a limit.
+[[nodiscard]] bool reaches_limit(double limit_m, const RegionPoints& points) noexcept;
+
 /// What stands for the share of a point that is too near the line through the mass centre for the first terms of a
 /// series.
 inline constexpr double near_the_line = -1.0;
