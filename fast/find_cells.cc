@@ -159,6 +159,15 @@ class CellFinder {
     return inside_ >= rule_.points && rim_m2_ <= rule_.rim_share * inside_m2_;
   }
 
+  /// Whether the points that take() has made are enough for the lever of the mass centre.
+  [[nodiscard]] bool enough_for_lever(const InsideSummary& inside) const noexcept {
+    if (rule_.points_per_lever == 0.0 || points_.count == 0) return true;
+    const double mean = inside.normal_sum.norm() / inside.weight_sum;
+    const double spread = std::sqrt(std::max(0.0, 1.0 - mean * mean));
+    const double radius_m = std::sqrt(inside_m2_ / std::numbers::pi);
+    return !(rule_.points_per_lever * spread * points_.p_T_m(0).norm() > inside_ * radius_m);
+  }
+
   /// Makes points of what measure() has found.
   [[nodiscard]] InsideSummary take() noexcept {
     points_.count = 0;
@@ -433,7 +442,11 @@ InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, con
     // Fewer cells than points are asked for cannot be fine enough.
     if (near.empty() || !room || near.size() >= static_cast<std::size_t>(rule.points)) {
       const bool fine_enough = found.measure();
-      if (near.empty() || !room || fine_enough) return found.take();
+      if (near.empty() || !room) return found.take();
+      if (fine_enough) {
+        const InsideSummary inside = found.take();
+        if (found.enough_for_lever(inside)) return inside;
+      }
     }
     if (of_tool) scratch.begin();
     scratch.now.clear();

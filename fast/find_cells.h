@@ -16,6 +16,10 @@ namespace touchstone::fast {
 struct CellRule {
   int points = 1;          ///< fewer than these are too few
   double rim_share = 1.0;  ///< of the area inside, in cut cells; more than that is too much
+  /// Points that are asked for times the spread of the rest surface's normals over the contact, times the distance of
+  /// the mass centre over the contact's radius. The direction d is the mean of those normals, so its error grows with
+  /// their spread, and that of the line through the mass centre with the distance.
+  double points_per_lever = 0.0;
 };
 
 /// Halved cells that find_cells() looks at in a tick, at most.
@@ -70,8 +74,8 @@ class CellScratch {
 };
 
 /// Fills `points` with what lies inside the rest surface of the tool's cells, one point for each at the middle of that
-/// part and with its area. Where the points are too few, or too much of the area is in cut cells, all cells near the
-/// body are halved, and again, as far as there is room.
+/// part and with its area. Where the points are too few (also for the lever of the mass centre), or too much of the
+/// area is in cut cells, all cells near the body are halved, and again, as far as there is room.
 /// @param margin_m what lies outside, but for less than that, are points too, of negative depth
 template <class Body>
 InsideSummary find_cells(const scene::Shape&, const ToolSamples&, const Placement&, const CellRule&, double margin_m,
