@@ -1,6 +1,7 @@
 #include "fast/contact/contact_detection.h"
 
 #include "fast/contact/find_cells.h"
+#include "fast/contact/point_loops.h"
 #include "fast/contact/pull_back.h"
 #include "fast/contact/rest_distance.h"
 
@@ -61,54 +62,42 @@ InsideSummary summarise(const scene::Shape& shape, const RegionPoints& points) n
   return summary;
 }
 
-/// Outward normal of the rest surface where the way from a point against d leads to.
-template <class Body, class WayOut>
-Vec3 exit_normal(const Body& body, const WayOut&, const Vec3& p_W, double depth_m, const Vec3& d,
-                 const Vec3& closest_normal) noexcept {
-  // The closest surface may be another side.
-  if (-closest_normal.dot(d) > 0.5) return closest_normal;
-  return rest_distance(body, Vec3(p_W - depth_m * d)).normal;
-}
-template <class WayOut>
-Vec3 exit_normal(const scene::Box&, const WayOut& way_out, const Vec3& p_W, double, const Vec3&, const Vec3&) noexcept {
-  return way_out.normal(p_W);
-}
-
-/// Sets how the depth changes along the two vectors of the point's spread. From the tool's surface, which they lie in,
+/// Sets how the depths change along the two vectors of the points' spread. From the tool's surface, which they lie in,
 /// d leads to the rest surface's tangent plane.
-void set_rises(RegionPoints& points, std::size_t k, const Mat3& R_WT, const Vec3& d, const Vec3& exit_normal) noexcept {
-  // A way that grazes the surface ends soon.
-  const Vec3 slope_T = R_WT.transpose() * (exit_normal / std::min(exit_normal.dot(d), -0.3));
-  const Spread spread_T_m = points.spread_T_m(k);
-  points.rise1_m[k] = slope_T.dot(spread_T_m[0]);
-  points.rise2_m[k] = slope_T.dot(spread_T_m[1]);
+template <class Body, class WayOut>
+void set_rises(const Body& body, const WayOut&, const Mat3& R_WT, const Vec3& d, RegionPoints& points) noexcept {
+  set_rises(R_WT, d, points);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
+    // The closest surface may be another side.
+    if (-Vec3(points.rest_nx_W[i], points.rest_ny_W[i], points.rest_nz_W[i]).dot(d) > 0.5) continue;
+    const Vec3 exit_W_m = points.p_W_m(i) - points.depth_m[i] * d;
+    const Vec3 slope_T = depth_slope_T(R_WT, d, rest_distance(body, exit_W_m).normal);
+    const Spread spread_T_m = points.spread_T_m(i);
+    points.rise1_m[i] = slope_T.dot(spread_T_m[0]);
+    points.rise2_m[i] = slope_T.dot(spread_T_m[1]);
+  }
+}
+template <>
+void set_rises(const scene::Box&, const BoxExit& way_out, const Mat3& R_WT, const Vec3& d,
+               RegionPoints& points) noexcept {
+  set_rises(way_out, R_WT, d, points);
 }
 
 template <class Body>
 RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const Vec3& d, RegionPoints& points) noexcept {
   const Body& body = static_cast<const Body&>(shape);
   const auto way_out_m = exit_along(body, -d);
-  const Vec3 d_T = R_WT.transpose() * d;
+  keep_facing(R_WT.transpose() * d, points);
+  set_depths(way_out_m, points);
+  if (points.spread) set_rises(body, way_out_m, R_WT, d, points);
   RegionExtent extent;
   Vec3 center_sum = Vec3::Zero(), plain_sum = Vec3::Zero(), deepest_W_m = Vec3::Zero();
-  int kept = 0;
-  for (int i = 0; i < points.count; ++i) {
-    auto k = static_cast<std::size_t>(i);
-    const double cos_theta = points.nx_T[k] * d_T.x() + points.ny_T[k] * d_T.y() + points.nz_T[k] * d_T.z();
-    if (cos_theta < 0.0) continue;
-    if (kept != i) points.move(i, kept);
-    k = static_cast<std::size_t>(kept++);
-    const Vec3 p_W(points.x_W_m[k], points.y_W_m[k], points.z_W_m[k]);
-    const double depth_m = way_out_m(p_W);
-    points.cos_theta[k] = cos_theta;
-    points.depth_m[k] = depth_m;
-    const double projected_m2 = points.area_m2[k] * cos_theta;
-    if (points.spread) {
-      const Vec3 closest_normal(points.rest_nx_W[k], points.rest_ny_W[k], points.rest_nz_W[k]);
-      set_rises(points, k, R_WT, d, exit_normal(body, way_out_m, p_W, depth_m, d, closest_normal));
-    }
+  const int kept = points.count;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(kept); ++k) {
+    const Vec3 p_W = points.p_W_m(k);
+    const double depth_m = points.depth_m[k], projected_m2 = points.area_m2[k] * points.cos_theta[k];
     const Vec3 on_surface_m = p_W - depth_m * d;
-    if (kept == 1 || depth_m > extent.deepest_m) {
+    if (k == 0 || depth_m > extent.deepest_m) {
       extent.deepest_m = depth_m;
       deepest_W_m = p_W;
     }
@@ -116,7 +105,6 @@ RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const V
     center_sum += projected_m2 * on_surface_m;
     plain_sum += on_surface_m;
   }
-  points.count = kept;
   if (kept > 0) extent.thickness_m = extent.deepest_m + exit_along(body, d)(deepest_W_m);
   // Samples that all stand on edge cover no area: each counts the same.
   if (extent.area_m2 > 0.0) {

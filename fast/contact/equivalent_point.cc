@@ -1,5 +1,7 @@
 #include "fast/contact/equivalent_point.h"
 
+#include "fast/contact/point_loops.h"
+
 #include <algorithm>
 
 namespace touchstone::fast {
@@ -19,6 +21,7 @@ DeformationOrigin origin_at(const scene::Shape& body, const Vec3& p_W_m) noexcep
 }
 
 bool limit_depths(double limit_m, RegionPoints& points) noexcept {
+  if (!reaches_limit(limit_m, points)) return false;
   bool held = false;
   for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
     held = held || points.depth_m[i] > limit_m;

@@ -1,5 +1,6 @@
 #include "fast/contact/find_cells.h"
 
+#include "fast/contact/cell_batch.h"
 #include "fast/contact/rest_distance.h"
 #include "fast/contact/tool_samples.h"
 
@@ -8,7 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
+#include <span>
 
 namespace touchstone::fast {
 namespace {
@@ -19,8 +20,12 @@ using scene::Vec3;
 /// Cuts a polygon, tool frame about the cell's centre, with the rest surface: with its tangent plane at the closest
 /// point, which has all of a convex body on one side.
 template <class Body>
-void cut(const Body&, const Mat3& R_WT, const PlacedCell& at, CutPolygon& polygon) noexcept {
-  polygon.keep_below(R_WT.transpose() * at.rest.normal, at.rest.signed_distance_m);
+void cut(const Body&, const Mat3&, const PlacedCell& at, CutPolygon& polygon) noexcept {
+  polygon.keep_below(at.normal_T, at.rest.signed_distance_m);
+}
+template <class Body>
+bool by_one_plane(const Body&, const PlacedCell&) noexcept {
+  return true;
 }
 
 /// Faces that meet at edges.
@@ -36,9 +41,21 @@ void cut(const scene::Box& box, const Mat3& R_WT, const PlacedCell& at, CutPolyg
   }
 }
 
+/// Whether no more than the tangent plane at the closest point can cut the cell: the other faces are further away than
+/// the cell is large.
+bool by_one_plane(const scene::Box& box, const PlacedCell& at) noexcept {
+  const Vec3 local = at.p_W - box.center_m();
+  int within_reach = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {1.0, -1.0}) within_reach += side * local[axis] - box.half_m()[axis] > -at.cell->radius_m;
+  }
+  return within_reach <= 1;
+}
+
 /// Straight pieces of the profile, of which several may cut a cell, and the tangent plane for an arc.
+bool by_one_plane(const scene::Revolution&, const PlacedCell&) noexcept { return false; }
 void cut(const scene::Revolution& body, const Mat3& R_WT, const PlacedCell& at, CutPolygon& polygon) noexcept {
-  polygon.keep_below(R_WT.transpose() * at.rest.normal, at.rest.signed_distance_m);
+  polygon.keep_below(at.normal_T, at.rest.signed_distance_m);
   for (int index = 0; index < body.piece_count(); ++index) {
     const scene::RevolutionPiece& piece = body.piece(index);
     if (!piece.straight()) continue;
@@ -67,13 +84,10 @@ Vec3 mean_normal(const Body&, const Mat3&, const Vec3&, const RestDistance& rest
   return rest.normal;
 }
 
-/// Of pieces that are nearer to one face in one part and to another in the rest.
-Vec3 mean_normal(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
-                 const Spread& spread_T_m) noexcept {
+/// Of a piece that is nearer to one face in one part and to another in the rest.
+Vec3 mean_normal_at_edge(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
+                         const Spread& spread_T_m) noexcept {
   const Vec3 local = p_W - box.center_m(), above_m = local.cwiseAbs() - box.half_m();
-  const Vec3 under_m = (Vec3::Constant(above_m.maxCoeff()) - above_m).cwiseMax(0.0);
-  const double second_m = under_m.sum() - under_m.maxCoeff();
-  if (second_m * second_m > 6.0 * (spread_T_m[0].squaredNorm() + spread_T_m[1].squaredNorm())) return rest.normal;
   Mat3 normal = Mat3::Zero();
   for (int axis = 0; axis < 3; ++axis) normal(axis, axis) = std::copysign(1.0, local[axis]);
   const Vec3 e1_m = normal * (R_WT * spread_T_m[0]), e2_m = normal * (R_WT * spread_T_m[1]);
@@ -89,69 +103,165 @@ Vec3 mean_normal(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const
   return sum > 0.0 ? Vec3(normal * share / sum) : rest.normal;
 }
 
-/// Cells of the tool, one by one, and what is inside of them.
+Vec3 mean_normal(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
+                 const Spread& spread_T_m) noexcept {
+  const auto above_m = [&](int axis) { return std::abs(p_W[axis] - box.center_m()[axis]) - box.half_m()[axis]; };
+  const double ax_m = above_m(0), ay_m = above_m(1), az_m = above_m(2), most_m = std::max(std::max(ax_m, ay_m), az_m);
+  const double x_m = most_m - ax_m, y_m = most_m - ay_m, z_m = most_m - az_m;
+  // One of them is 0.
+  const double second_m = (x_m + y_m) + z_m - std::max(std::max(x_m, y_m), z_m);
+  if (second_m * second_m > 6.0 * (spread_T_m[0].squaredNorm() + spread_T_m[1].squaredNorm())) return rest.normal;
+  return mean_normal_at_edge(box, R_WT, p_W, rest, spread_T_m);
+}
+
+/// Cells of the tool, a batch at a time, and what is inside of them.
 template <class Body>
 class CellFinder {
  public:
-  CellFinder(const Body& body, const Placement& at, const CellRule& rule, double margin_m,
-             RegionPoints& points) noexcept
-      : body_(body), at_(at), rule_(rule), margin_m_(margin_m), points_(points) {}
+  CellFinder(const Body& body, const Placement& at, const CellRule& rule, double margin_m, RegionPoints& points,
+             CellScratch& scratch) noexcept
+      : body_(body),
+        at_(at),
+        rule_(rule),
+        margin_m_(margin_m),
+        points_(points),
+        scratch_(scratch),
+        batch_(scratch.batch) {}
 
-  /// Forgets what was taken.
-  void begin() noexcept {
-    points_.count = inside_ = 0;
-    points_.spread = true;
+  /// Begins with a new round of cells.
+  void begin_round() noexcept {
+    scratch_.placed.clear();
+    scratch_.near.clear();
+    asked_ = 0;
+  }
+  /// @param index  of the cell, for CellScratch::near
+  void look_at(const SurfaceCell& cell, std::int32_t index) noexcept {
+    cell_[asked_] = &cell;
+    index_[asked_++] = index;
+    if (asked_ == CellBatch::size) place();
+  }
+  /// After the last cell of a round: places what is left. Those within reach are then in CellScratch::placed, and the
+  /// indices of those of which some may be inside, so that their halves need a look where this round is too coarse, in
+  /// CellScratch::near.
+  void end_round() noexcept { place(); }
+
+  /// Takes what is inside of the cells. @return whether that is fine enough
+  bool measure() noexcept {
+    scratch_.parts.clear();
+    inside_ = 0;
     inside_m2_ = rim_m2_ = 0.0;
+    const std::vector<PlacedCell>& placed = scratch_.placed;
+    for (std::size_t begin = 0; begin < placed.size(); begin += CellBatch::size) {
+      const std::size_t end = std::min(placed.size(), begin + CellBatch::size);
+      cut_by_planes({placed.data() + begin, end - begin});
+      for (std::size_t k = begin, lane = 0; k < end; ++k) measure(placed[k], cut_[k - begin], lane);
+    }
+    return inside_ >= rule_.points && rim_m2_ <= rule_.rim_share * inside_m2_;
+  }
+
+  /// Whether the points that take() has made are enough for the lever of the mass centre.
+  [[nodiscard]] bool enough_for_lever(const InsideSummary& inside) const noexcept {
+    if (rule_.points_per_lever == 0.0 || points_.count == 0) return true;
+    const double mean = inside.normal_sum.norm() / inside.weight_sum;
+    const double spread = std::sqrt(std::max(0.0, 1.0 - mean * mean));
+    const double radius_m = std::sqrt(inside_m2_ / std::numbers::pi);
+    return !(rule_.points_per_lever * spread * points_.p_T_m(0).norm() > inside_ * radius_m);
+  }
+
+  /// Makes points of what measure() has found.
+  [[nodiscard]] InsideSummary take() noexcept {
+    points_.count = 0;
+    points_.spread = true;
     summary_ = {};
+    const std::vector<CellPart>& parts = scratch_.parts;
+    for (std::size_t begin = 0, end; begin < parts.size(); begin = end) {
+      batch_.count = 0;
+      for (end = begin; end < parts.size() && batch_.count < CellBatch::size; ++end) {
+        if (parts[end].kind != CellPart::Kind::rim) continue;
+        const Vec3 p_W = parts[end].at->p_W + at_.R_WT * parts[end].off_m;
+        batch_.set(batch_.count++, p_W, 0.0);
+      }
+      if (batch_.count > 0) {
+        batch_.pad();
+        rest_batch(body_, batch_);
+      }
+      for (std::size_t k = begin, rim = 0; k < end; ++k) {
+        const PlacedCell& here = *parts[k].at;
+        switch (parts[k].kind) {
+          case CellPart::Kind::inside:
+            put(here.p_W, here.cell->center_T_m, *here.cell, here.cell->area_m2, here.rest, here.cell->spread_m,
+                here.cell);
+            break;
+          case CellPart::Kind::rim:
+            put_rim(parts[k], rim++);
+            break;
+          case CellPart::Kind::outside:
+            put_outside(here, Vec3::Zero(), here.cell->area_m2);
+            break;
+        }
+      }
+    }
+    return summary_;
   }
 
-  /// Nothing if all of the cell is further out than what is looked for.
-  [[nodiscard]] std::optional<PlacedCell> place(const SurfaceCell& cell) const noexcept {
-    const double reach_m = std::max(cell.radius_m, margin_m_);
-    const Vec3 p_W = at_.R_WT * cell.center_T_m + at_.origin_W_m;
-    if (surely_beyond(body_, p_W, reach_m)) return std::nullopt;
-    const RestDistance rest = rest_distance(body_, p_W);
-    if (!(rest.signed_distance_m < reach_m)) return std::nullopt;
-    return PlacedCell{&cell, p_W, rest, 0.0};
-  }
-
-  /// Whether some of the cell may be inside, so that its halves need a look where this round is too coarse.
-  [[nodiscard]] bool is_near(PlacedCell& here) const noexcept {
-    if (wholly_inside(here)) return true;
-    here.lowest_m = lowest_m(here);
-    return here.lowest_m < here.cell->bulge_m || (here.cell->group >= 0 && lowest_of_group_m(here, slope(here)) < 0.0);
-  }
-
-  /// Takes what is inside of a cell that is_near() has looked at.
-  void add(const PlacedCell& here) noexcept {
-    if (wholly_inside(here)) {
-      put_inside(here);
-    } else if (here.cell->group >= 0) {
-      add_group(here);
-    } else if (here.lowest_m < 0.0) {
-      add_cut(here);
-    } else {
-      put_outside(here, Vec3::Zero(), here.cell->area_m2);
+ private:
+  /// Places the cells asked for.
+  void place() noexcept {
+    const auto keep = [&](std::size_t from, std::size_t to) {
+      cell_[to] = cell_[from];
+      index_[to] = index_[from];
+      batch_.move(from, to);
+    };
+    if (asked_ == 0) return;
+    for (std::size_t i = 0; i < asked_; ++i)
+      batch_.set(i, cell_[i]->center_T_m, std::max(cell_[i]->radius_m, margin_m_));
+    batch_.count = asked_;
+    asked_ = 0;
+    batch_.pad();
+    place_batch(at_, batch_);
+    if (beyond_batch(body_, batch_)) {
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < batch_.count; ++i) {
+        if (batch_.beyond[i] > 0.0) continue;
+        if (kept != i) keep(i, kept);
+        ++kept;
+      }
+      batch_.count = kept;
+      if (kept == 0) return;
+      batch_.pad();
+    }
+    rest_batch(body_, batch_);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < batch_.count; ++i) {
+      if (!(batch_.distance_m[i] < batch_.reach_m[i])) continue;
+      if (kept != i) {
+        keep(i, kept);
+        for (CellBatch::Column* column : {&batch_.distance_m, &batch_.nx, &batch_.ny, &batch_.nz})
+          (*column)[kept] = (*column)[i];
+      }
+      const SurfaceCell& cell = *cell_[kept];
+      // Nobody asks for the corners of a cell that is wholly inside.
+      if (!(batch_.distance_m[kept] <= -cell.radius_m)) batch_.set_corners(kept, cell);
+      ++kept;
+    }
+    batch_.count = kept;
+    level_batch(at_.R_WT, batch_);
+    for (std::size_t i = 0; i < kept; ++i) {
+      const PlacedCell here{cell_[i],
+                            Vec3(batch_.x_m[i], batch_.y_m[i], batch_.z_m[i]),
+                            {batch_.distance_m[i], Vec3(batch_.nx[i], batch_.ny[i], batch_.nz[i])},
+                            Vec3(batch_.nx_T[i], batch_.ny_T[i], batch_.nz_T[i]),
+                            batch_.lowest_m[i],
+                            batch_.highest_m[i]};
+      if (is_near(here)) scratch_.near.push_back(index_[i]);
+      scratch_.placed.push_back(here);
     }
   }
 
-  [[nodiscard]] bool fine_enough() const noexcept {
-    return inside_ >= rule_.points && rim_m2_ <= rule_.rim_share * inside_m2_;
-  }
-  [[nodiscard]] const InsideSummary& summary() const noexcept { return summary_; }
-
- private:
-  [[nodiscard]] static bool wholly_inside(const PlacedCell& here) noexcept {
-    return here.rest.signed_distance_m <= -here.cell->radius_m;
-  }
-
-  /// Signed distance of the cell's lowest corner from the tangent plane of the rest surface.
-  [[nodiscard]] double lowest_m(const PlacedCell& here) const noexcept {
-    const Vec3 normal_T = at_.R_WT.transpose() * here.rest.normal;
-    double lowest = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < here.cell->corners; ++k)
-      lowest = std::min(lowest, normal_T.dot(here.cell->corner_m[static_cast<std::size_t>(k)]));
-    return here.rest.signed_distance_m + lowest;
+  /// Whether some of the cell may be inside.
+  [[nodiscard]] static bool is_near(const PlacedCell& here) noexcept {
+    return here.wholly_inside() || here.lowest_m < here.cell->bulge_m ||
+           (here.cell->group >= 0 && lowest_of_group_m(here, slope(here)) < 0.0);
   }
 
   /// A cell's spread in two vectors, of which one is level and the other shows how the surface rises.
@@ -159,10 +269,9 @@ class CellFinder {
     double rise_m;  ///< over the tangent plane of the rest surface, along `up_m`
     Vec3 up_m, level_m;
   };
-  [[nodiscard]] Slope slope(const PlacedCell& here) const noexcept {
+  [[nodiscard]] static Slope slope(const PlacedCell& here) noexcept {
     const Spread& spread_m = here.cell->spread_m;
-    const Vec3 normal_T = at_.R_WT.transpose() * here.rest.normal;
-    const double rise1_m = normal_T.dot(spread_m[0]), rise2_m = normal_T.dot(spread_m[1]);
+    const double rise1_m = here.normal_T.dot(spread_m[0]), rise2_m = here.normal_T.dot(spread_m[1]);
     const double rise_m = std::sqrt(rise1_m * rise1_m + rise2_m * rise2_m);
     if (!(rise_m > 0.0)) return {0.0, spread_m[0], spread_m[1]};
     return {rise_m, (rise1_m * spread_m[0] + rise2_m * spread_m[1]) / rise_m,
@@ -173,42 +282,107 @@ class CellFinder {
     return here.rest.signed_distance_m - std::numbers::sqrt3 * slope.rise_m;
   }
 
-  /// The cut of a surface whose shape is not known: that of a rectangle with two level sides, of the same area, middle
-  /// and spread.
-  void add_group(const PlacedCell& here) noexcept {
-    const SurfaceCell& cell = *here.cell;
-    const Slope slope = this->slope(here);
-    const double half_m = std::numbers::sqrt3 * slope.rise_m, middle_m = here.rest.signed_distance_m;
-    const double lowest_m = lowest_of_group_m(here, slope);
-    if (lowest_m >= 0.0) return put_outside(here, Vec3::Zero(), cell.area_m2);
-    if (middle_m + half_m <= 0.0) return put_inside(here);
-    put_rim(here, slope, -lowest_m / (2.0 * half_m), (0.5 * lowest_m - middle_m) / slope.rise_m * slope.up_m);
-  }
-
-  void put_inside(const PlacedCell& here) noexcept {
-    const SurfaceCell& cell = *here.cell;
-    put(here.p_W, cell.center_T_m, cell, cell.area_m2, here.rest, cell.spread_m, &cell);
+  void is_inside(const PlacedCell& here) noexcept {
+    ++inside_;
+    inside_m2_ += here.cell->area_m2;
+    scratch_.parts.push_back({&here, CellPart::Kind::inside, 1.0, Vec3::Zero()});
   }
 
   /// @param off_m  from the cell's centre to the middle of the share that is inside, tool frame
-  void put_rim(const PlacedCell& here, const Slope& slope, double share, const Vec3& off_m) noexcept {
-    const SurfaceCell& cell = *here.cell;
-    const double area_m2 = share * cell.area_m2;
-    const Vec3 p_W = here.p_W + at_.R_WT * off_m;
-    RestDistance rest = rest_distance(body_, p_W);
-    // A curved surface may pass beneath the middle of the part under its tangent plane.
-    rest.signed_distance_m = std::min(rest.signed_distance_m, -std::numeric_limits<double>::min());
+  void is_rim(const PlacedCell& here, double share, const Vec3& off_m) noexcept {
+    const double area_m2 = share * here.cell->area_m2;
     rim_m2_ += area_m2;
-    put(p_W, cell.center_T_m + off_m, cell, area_m2, rest, {share * slope.up_m, slope.level_m}, nullptr);
-    if (share < 1.0) put_outside(here, -share / (1.0 - share) * off_m, (1.0 - share) * cell.area_m2);
+    ++inside_;
+    inside_m2_ += area_m2;
+    scratch_.parts.push_back({&here, CellPart::Kind::rim, share, off_m});
+  }
+
+  void is_outside(const PlacedCell& here) noexcept {
+    if (margin_m_ > 0.0) scratch_.parts.push_back({&here, CellPart::Kind::outside, 0.0, Vec3::Zero()});
+  }
+
+  /// The cut of a surface whose shape is not known: that of a rectangle with two level sides, of the same area, middle
+  /// and spread.
+  void measure_group(const PlacedCell& here) noexcept {
+    const Slope slope = CellFinder::slope(here);
+    const double half_m = std::numbers::sqrt3 * slope.rise_m, middle_m = here.rest.signed_distance_m;
+    const double lowest_m = lowest_of_group_m(here, slope);
+    if (lowest_m >= 0.0) return is_outside(here);
+    if (middle_m + half_m <= 0.0) return is_inside(here);
+    is_rim(here, -lowest_m / (2.0 * half_m), (0.5 * lowest_m - middle_m) / slope.rise_m * slope.up_m);
+  }
+
+  /// How a cell is cut.
+  enum class Cut : std::int8_t { no, by_plane, by_faces };
+  [[nodiscard]] Cut cut_of(const PlacedCell& here) const noexcept {
+    if (here.wholly_inside() || here.cell->group >= 0 || !(here.lowest_m < 0.0)) return Cut::no;
+    if (!by_one_plane(body_, here)) return Cut::by_faces;
+    return here.highest_m < 0.0 && here.rest.signed_distance_m < 0.0 ? Cut::no : Cut::by_plane;
+  }
+
+  /// Says of up to a batch of cells how they are cut, and cuts those that one plane cuts.
+  void cut_by_planes(std::span<const PlacedCell> placed) noexcept {
+    batch_.count = 0;
+    for (std::size_t k = 0; k < placed.size(); ++k) {
+      const PlacedCell& here = placed[k];
+      cut_[k] = cut_of(here);
+      if (cut_[k] != Cut::by_plane) continue;
+      const std::size_t lane = batch_.count++;
+      batch_.set_corners(lane, *here.cell);
+      batch_.distance_m[lane] = here.rest.signed_distance_m;
+      batch_.nx_T[lane] = here.normal_T.x();
+      batch_.ny_T[lane] = here.normal_T.y();
+      batch_.nz_T[lane] = here.normal_T.z();
+    }
+    if (batch_.count > 0) cut_batch(batch_);
+  }
+
+  /// @param lane  of the batch, for the next cell that a plane cuts
+  void measure(const PlacedCell& here, Cut cut, std::size_t& lane) noexcept {
+    if (here.wholly_inside()) return is_inside(here);
+    if (here.cell->group >= 0) return measure_group(here);
+    if (!(here.lowest_m < 0.0)) return is_outside(here);
+    if (cut == Cut::no) return is_inside(here);
+    if (cut == Cut::by_faces) return measure_cut(here);
+    const Vec3 center_m(batch_.x_m[lane], batch_.y_m[lane], batch_.z_m[lane]);
+    measure_part(here, batch_.area_m2[lane++], center_m);
+  }
+
+  void measure_cut(const PlacedCell& here) noexcept {
+    CutPolygon polygon({here.cell->corner_m.data(), static_cast<std::size_t>(here.cell->corners)});
+    fast::cut(body_, at_.R_WT, here, polygon);
+    if (!polygon.is_cut() && here.rest.signed_distance_m < 0.0) return is_inside(here);
+    const CutPolygon::Moments part = polygon.moments();
+    measure_part(here, part.area_m2, part.center_m);
+  }
+
+  /// @param area_m2  that is left of the polygon of the cell's corners; @param center_m  its middle
+  void measure_part(const PlacedCell& here, double area_m2, const Vec3& center_m) noexcept {
+    const SurfaceCell& cell = *here.cell;
+    const double share = cell.polygon_m2 > 0.0 ? std::min(1.0, area_m2 / cell.polygon_m2) : 0.0;
+    if (!(share > 0.0)) return is_outside(here);
+    // The polygon's, moved to the surface that bulges from it.
+    is_rim(here, share, center_m - cell.polygon_center_m);
+  }
+
+  /// @param lane  of the batch, which has the middle of the part
+  void put_rim(const CellPart& part, std::size_t lane) noexcept {
+    const PlacedCell& here = *part.at;
+    const SurfaceCell& cell = *here.cell;
+    const Slope slope = CellFinder::slope(here);
+    // A curved surface may pass beneath the middle of the part under its tangent plane.
+    const RestDistance rest{std::min(batch_.distance_m[lane], -std::numeric_limits<double>::min()),
+                            Vec3(batch_.nx[lane], batch_.ny[lane], batch_.nz[lane])};
+    put(Vec3(batch_.x_m[lane], batch_.y_m[lane], batch_.z_m[lane]), cell.center_T_m + part.off_m, cell,
+        part.share * cell.area_m2, rest, {part.share * slope.up_m, slope.level_m}, nullptr);
+    if (part.share < 1.0)
+      put_outside(here, -part.share / (1.0 - part.share) * part.off_m, (1.0 - part.share) * cell.area_m2);
   }
 
   /// @param whole  the cell, if all of it is the point
   void put(const Vec3& p_W, const Vec3& p_T, const SurfaceCell& cell, double area_m2, const RestDistance& rest,
            const Spread& spread_m, const SurfaceCell* whole) noexcept {
     summary_.add(mean_normal(body_, at_.R_WT, p_W, rest, spread_m), -rest.signed_distance_m, area_m2);
-    ++inside_;
-    inside_m2_ += area_m2;
     if (points_.count == points_.capacity) return;
     points_.set(points_.count, p_W, p_T, cell.normal_T, area_m2, rest.signed_distance_m, cell.sample);
     points_.set_spread(points_.count++, rest.normal, spread_m, whole);
@@ -224,26 +398,20 @@ class CellFinder {
     points_.set_spread(points_.count++, rest.normal, here.cell->spread_m, nullptr);
   }
 
-  void add_cut(const PlacedCell& here) noexcept {
-    const SurfaceCell& cell = *here.cell;
-    CutPolygon polygon({cell.corner_m.data(), static_cast<std::size_t>(cell.corners)});
-    cut(body_, at_.R_WT, here, polygon);
-    if (!polygon.is_cut() && here.rest.signed_distance_m < 0.0) return put_inside(here);
-    const CutPolygon::Moments part = polygon.moments();
-    const double share = cell.polygon_m2 > 0.0 ? std::min(1.0, part.area_m2 / cell.polygon_m2) : 0.0;
-    if (!(share > 0.0)) return put_outside(here, Vec3::Zero(), cell.area_m2);
-    // The polygon's, moved to the surface that bulges from it.
-    put_rim(here, slope(here), share, part.center_m - cell.polygon_center_m);
-  }
-
   const Body& body_;
   const Placement& at_;
   const CellRule& rule_;
   double margin_m_;
   RegionPoints& points_;
+  CellScratch& scratch_;
+  CellBatch& batch_;
   InsideSummary summary_;
   int inside_ = 0;
   double inside_m2_ = 0.0, rim_m2_ = 0.0;
+  std::array<const SurfaceCell*, CellBatch::size> cell_;  ///< asked for, not yet placed
+  std::array<std::int32_t, CellBatch::size> index_;
+  std::size_t asked_ = 0;
+  std::array<Cut, CellBatch::size> cut_;
 };
 
 }  // namespace
@@ -252,18 +420,9 @@ template <class Body>
 InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, const Placement& at, const CellRule& rule,
                          double margin_m, RegionPoints& points, CellScratch& scratch) noexcept {
   const Body& body = static_cast<const Body&>(shape);
-  // Cells of a round that are inside or near, with those that a finer round would halve.
-  std::vector<PlacedCell>& placed = scratch.placed;
-  std::vector<std::int32_t>& near = scratch.near;
-  placed.clear();
-  near.clear();
-  CellFinder<Body> found(body, at, rule, margin_m, points);
-  const auto look_at = [&](const SurfaceCell& cell, std::int32_t index) {
-    std::optional<PlacedCell> here = found.place(cell);
-    if (!here) return;
-    if (found.is_near(*here)) near.push_back(index);
-    placed.push_back(*here);
-  };
+  CellFinder<Body> found(body, at, rule, margin_m, points, scratch);
+  const std::vector<std::int32_t>& near = scratch.near;
+  found.begin_round();
   const auto nodes = static_cast<std::int32_t>(tool.tree.size());
   for (std::int32_t node = 0; node < nodes;) {
     const SampleBall& ball = tool.tree[static_cast<std::size_t>(node)];
@@ -274,16 +433,20 @@ InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, con
     }
     ++node;
     if (!ball.leaf) continue;
-    for (std::int32_t i = ball.begin; i < ball.end; ++i) look_at(tool.cell[static_cast<std::size_t>(i)], i);
+    for (std::int32_t i = ball.begin; i < ball.end; ++i) found.look_at(tool.cell[static_cast<std::size_t>(i)], i);
   }
+  found.end_round();
   bool of_tool = true, room = 4 * near.size() <= max_cells;
   std::size_t looked_at = 0;
   while (true) {
     // Fewer cells than points are asked for cannot be fine enough.
     if (near.empty() || !room || near.size() >= static_cast<std::size_t>(rule.points)) {
-      found.begin();
-      for (const PlacedCell& here : placed) found.add(here);
-      if (near.empty() || !room || found.fine_enough()) return found.summary();
+      const bool fine_enough = found.measure();
+      if (near.empty() || !room) return found.take();
+      if (fine_enough) {
+        const InsideSummary inside = found.take();
+        if (found.enough_for_lever(inside)) return inside;
+      }
     }
     if (of_tool) scratch.begin();
     scratch.now.clear();
@@ -291,9 +454,9 @@ InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, con
       const std::int32_t first = of_tool ? scratch.halves_of_sample(tool, k) : scratch.halves_of_half(tool, k);
       scratch.now.insert(scratch.now.end(), {first, first + 1});
     }
-    placed.clear();
-    near.clear();
-    for (const std::int32_t k : scratch.now) look_at(scratch.half(k), k);
+    found.begin_round();
+    for (const std::int32_t k : scratch.now) found.look_at(scratch.half(k), k);
+    found.end_round();
     looked_at += scratch.now.size();
     room = looked_at + 2 * scratch.now.size() <= max_cells;
     of_tool = false;
@@ -317,6 +480,7 @@ CellScratch::CellScratch(int samples)
   now.reserve(max_cells);
   near.reserve(static_cast<std::size_t>(std::max(samples, max_cells)));
   placed.reserve(near.capacity());
+  parts.reserve(near.capacity());
 }
 
 void CellScratch::begin() noexcept {
@@ -349,7 +513,7 @@ std::int32_t CellScratch::halves_of_half(const ToolSamples& tool, std::int32_t h
 std::size_t CellScratch::memory_bytes() const noexcept {
   return halves_.size() * (sizeof(SurfaceCell) + sizeof(std::int32_t)) +
          (of_sample_.size() + now.capacity() + near.capacity()) * sizeof(std::int32_t) +
-         placed.capacity() * sizeof(PlacedCell);
+         placed.capacity() * sizeof(PlacedCell) + parts.capacity() * sizeof(CellPart);
 }
 
 }  // namespace touchstone::fast

@@ -2,6 +2,7 @@
 // below it, and where few are inside they are halved.
 #pragma once
 
+#include "fast/contact/cell_batch.h"
 #include "fast/contact/contact_detection.h"
 #include "fast/contact/rest_distance.h"
 
@@ -15,6 +16,10 @@ namespace touchstone::fast {
 struct CellRule {
   int points = 1;          ///< fewer than these are too few
   double rim_share = 1.0;  ///< of the area inside, in cut cells; more than that is too much
+  /// Points that are asked for times the spread of the rest surface's normals over the contact, times the distance of
+  /// the mass centre over the contact's radius. The direction d is the mean of those normals, so its error grows with
+  /// their spread, and that of the line through the mass centre with the distance.
+  double points_per_lever = 0.0;
 };
 
 /// Halved cells that find_cells() looks at in a tick, at most.
@@ -23,9 +28,21 @@ inline constexpr int max_cells = 1024;
 /// A cell at its place.
 struct PlacedCell {
   const SurfaceCell* cell;
-  scene::Vec3 p_W;    ///< its centre
-  RestDistance rest;  ///< of that
-  double lowest_m;    ///< signed distance of its lowest corner from the tangent plane of the rest surface
+  scene::Vec3 p_W;             ///< its centre
+  RestDistance rest;           ///< of that
+  scene::Vec3 normal_T;        ///< of that, tool frame
+  double lowest_m, highest_m;  ///< signed distance of its corners from the tangent plane of the rest surface
+
+  [[nodiscard]] bool wholly_inside() const noexcept { return rest.signed_distance_m <= -cell->radius_m; }
+};
+
+/// What of a placed cell becomes a point.
+struct CellPart {
+  enum class Kind : std::int8_t { inside, rim, outside };
+  const PlacedCell* at;
+  Kind kind;
+  double share;       ///< of its area that is inside
+  scene::Vec3 off_m;  ///< from its centre to the middle of that share, tool frame
 };
 
 /// What find_cells() writes on its way. Halves are kept, since a contact mostly asks for those of the last tick; the
@@ -46,6 +63,8 @@ class CellScratch {
 
   std::vector<std::int32_t> now, near;  ///< cells of a round, and those of them that are near the body
   std::vector<PlacedCell> placed;       ///< those and what else is looked for
+  CellBatch batch;
+  std::vector<CellPart> parts;  ///< what is inside of those, or nearly
 
  private:
   [[nodiscard]] std::int32_t halves_of(const ToolSamples& tool, const SurfaceCell& cell, std::int32_t& first) noexcept;
@@ -55,8 +74,8 @@ class CellScratch {
 };
 
 /// Fills `points` with what lies inside the rest surface of the tool's cells, one point for each at the middle of that
-/// part and with its area. Where the points are too few, or too much of the area is in cut cells, all cells near the
-/// body are halved, and again, as far as there is room.
+/// part and with its area. Where the points are too few (also for the lever of the mass centre), or too much of the
+/// area is in cut cells, all cells near the body are halved, and again, as far as there is room.
 /// @param margin_m what lies outside, but for less than that, are points too, of negative depth
 template <class Body>
 InsideSummary find_cells(const scene::Shape&, const ToolSamples&, const Placement&, const CellRule&, double margin_m,

@@ -1,5 +1,7 @@
 #include "fast/contact/mass_distribution.h"
 
+#include "fast/contact/point_loops.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -126,24 +128,18 @@ double over_distance_m(const SurfaceCell& cell, const CellGroups& groups, const 
 }  // namespace
 
 void distribute_mass_corrected(const Vec3& d_T, const CellGroups& groups, RegionPoints& points) noexcept {
+  set_shares(d_T, points);
   double sum = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
-    points.share[i] = 0.0;
-    const double area_m2 = points.area_m2[i] * points.cos_theta[i];
-    if (!(area_m2 > 0.0)) continue;
-    const Projected part(area_m2, points.p_T_m(i), points.spread_T_m(i), d_T);
-    if (!part.near()) {
-      points.share[i] = part.over_distance_m();
-    } else if (points.cell[i] != nullptr) {
-      points.share[i] = over_distance_m(*points.cell[i], groups, d_T);
-    } else {
-      points.share[i] = area_m2 * mean_inverse_distance_per_m(part.r2_m2, std::sqrt(area_m2 / std::numbers::pi));
+    if (points.share[i] == near_the_line) {
+      const double area_m2 = points.area_m2[i] * points.cos_theta[i];
+      points.share[i] = points.cell[i] != nullptr
+                            ? over_distance_m(*points.cell[i], groups, d_T)
+                            : area_m2 * mean_inverse_distance_per_m(
+                                            Projected(area_m2, points.p_T_m(i), points.spread_T_m(i), d_T).r2_m2,
+                                            std::sqrt(area_m2 / std::numbers::pi));
     }
     sum += points.share[i];
-    // Depth and 1 / r vary together over the point's area.
-    const double shift_m = (points.rise1_m[i] * part.along1_m2 + points.rise2_m[i] * part.along2_m2) /
-                           std::max({part.r2_m2, part.variance_m2, std::numeric_limits<double>::min()});
-    points.depth_m[i] = std::max(0.0, points.depth_m[i] - shift_m);
   }
   normalise(points, sum);
 }

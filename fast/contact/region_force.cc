@@ -1,5 +1,7 @@
 #include "fast/contact/region_force.h"
 
+#include "fast/contact/point_loops.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,20 +15,17 @@ namespace {
 template <bool spread>
 RegionLoad load_of(const DuffingLaw& law, const RegionPoints& points, double depth_scale) noexcept {
   RegionLoad sum;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
-    const double depth_m = depth_scale * points.depth_m[i];
-    double F_i = points.share[i];
-    if constexpr (spread) {
-      // A ramp begins at depth 0.
-      const double spread_m = std::min(depth_scale * points.depth_spread_m(i), depth_m / std::numbers::sqrt3);
-      // Exact for a cubic law over depths that vary evenly about their mean.
-      F_i *= 0.5 * (law.force_n(depth_m - spread_m) + law.force_n(depth_m + spread_m));
-    } else {
-      F_i *= law.force_n(depth_m);
+  constexpr std::size_t batch = 64;
+  double force_n[batch], depth_m[batch];
+  const auto all = static_cast<std::size_t>(points.count);
+  for (std::size_t begin = 0; begin < all; begin += batch) {
+    const std::size_t count = std::min(batch, all - begin);
+    point_forces<spread>(law, points, depth_scale, begin, count, force_n, depth_m);
+    for (std::size_t k = 0; k < count; ++k) {
+      sum.force_n += force_n[k];
+      sum.center_T_m += force_n[k] * points.p_T_m(begin + k);
+      sum.deepest_m = std::max(sum.deepest_m, depth_m[k]);
     }
-    sum.force_n += F_i;
-    sum.center_T_m += F_i * points.p_T_m(i);
-    sum.deepest_m = std::max(sum.deepest_m, depth_m);
   }
   if (sum.force_n > 0.0) sum.center_T_m /= sum.force_n;
   return sum;

@@ -71,7 +71,7 @@ struct RestDistance {
   return {closest.signed_distance_m, closest.normal};
 }
 
-/// False only if the whole ball about p_m is outside.
+/// False only if the whole ball about p_m is outside; of an ellipsoid, true for some of those, too.
 template <class Body>
 [[nodiscard]] bool may_touch(const Body& body, const scene::Vec3& p_m, double radius_m) noexcept {
   // Not "!(>)": a centre at NaN distance is outside.
@@ -89,19 +89,23 @@ template <class Body>
   return false;
 }
 
-/// The ellipsoid times this ratio passes through the point; everywhere it stands off by (ratio - 1) of the shortest
-/// axis at least.
-[[nodiscard]] inline double size_ratio(const scene::Ellipsoid& ellipsoid, const scene::Vec3& p_m) noexcept {
-  return (p_m - ellipsoid.center_m()).cwiseQuotient(ellipsoid.semi_axes_m()).norm();
+/// Above 0 only if the whole ball about p_m is outside: the half-space that touches the ellipsoid and whose normal is
+/// (x_i / a_i^2), which is nearly the nearest one. Without unit.
+[[nodiscard]] inline double beyond_half_space(const scene::Ellipsoid& ellipsoid, const scene::Vec3& p_m,
+                                              double radius_m) noexcept {
+  const scene::Vec3 per_m = ellipsoid.semi_axes_m().cwiseInverse();
+  const scene::Vec3 scaled = (p_m - ellipsoid.center_m()).cwiseProduct(per_m);
+  const double ratio2 = scaled.squaredNorm();
+  return ratio2 - std::sqrt(ratio2) - radius_m * scaled.cwiseProduct(per_m).norm();
 }
 [[nodiscard]] inline bool surely_beyond(const scene::Ellipsoid& ellipsoid, const scene::Vec3& p_m,
                                         double margin_m) noexcept {
-  return (size_ratio(ellipsoid, p_m) - 1.0) * ellipsoid.semi_axes_m().minCoeff() > margin_m;
+  return beyond_half_space(ellipsoid, p_m, margin_m) > 0.0;
 }
 [[nodiscard]] inline bool may_touch(const scene::Ellipsoid& ellipsoid, const scene::Vec3& p_m,
                                     double radius_m) noexcept {
-  const double off_m = (size_ratio(ellipsoid, p_m) - 1.0) * ellipsoid.semi_axes_m().minCoeff();
-  return off_m <= 0.0 || (off_m <= radius_m && rest_distance(ellipsoid, p_m).signed_distance_m <= radius_m);
+  // Not "!(>)": a centre at NaN distance is outside.
+  return beyond_half_space(ellipsoid, p_m, radius_m) <= 0.0;
 }
 
 /// Way from inside points along one direction to the rest surface [m]; zero for a point on it or outside.
@@ -130,6 +134,10 @@ class BoxExit {
     outward[axis] = sign_[axis];
     return outward;
   }
+  [[nodiscard]] const scene::Vec3& center_m() const noexcept { return center_m_; }
+  [[nodiscard]] const scene::Vec3& half_m() const noexcept { return half_m_; }
+  [[nodiscard]] const scene::Vec3& sign() const noexcept { return sign_; }            ///< of the direction
+  [[nodiscard]] const scene::Vec3& per_speed() const noexcept { return per_speed_; }  ///< 1 / abs(direction)
 
  private:
   scene::Vec3 center_m_, half_m_, sign_, per_speed_;
@@ -147,6 +155,9 @@ class SphereExit {
     if (!(inside_m2 > 0.0)) return 0.0;
     return std::sqrt(along_m * along_m + inside_m2) - along_m;
   }
+  [[nodiscard]] const scene::Vec3& center_m() const noexcept { return center_m_; }
+  [[nodiscard]] const scene::Vec3& direction() const noexcept { return direction_; }
+  [[nodiscard]] double radius2_m2() const noexcept { return radius2_m2_; }
 
  private:
   scene::Vec3 center_m_, direction_;
@@ -170,6 +181,10 @@ class EllipsoidExit {
     const double root = std::sqrt(along * along + a_ * inside);
     return along > 0.0 ? inside / (root + along) : (root - along) / a_;
   }
+  [[nodiscard]] const scene::Vec3& center_m() const noexcept { return center_m_; }
+  [[nodiscard]] const scene::Vec3& per_axis() const noexcept { return per_axis_; }    ///< 1 / semi-axes
+  [[nodiscard]] const scene::Vec3& direction() const noexcept { return direction_; }  ///< times that
+  [[nodiscard]] double a() const noexcept { return a_; }                              ///< its length squared
 
  private:
   scene::Vec3 center_m_, per_axis_, direction_;

@@ -271,7 +271,7 @@ void CutPolygon::keep_below(std::span<const double> level) noexcept {
     if ((level[k] < 0.0) == (level[next] < 0.0)) continue;
     kept[count++] = corner_m_[k] + level[k] / (level[k] - level[next]) * (corner_m_[next] - corner_m_[k]);
   }
-  corner_m_ = kept;
+  std::copy_n(kept.begin(), count, corner_m_.begin());
   count_ = static_cast<int>(count);
 }
 

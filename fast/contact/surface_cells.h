@@ -30,13 +30,13 @@ struct Band {
 /// from the middle.
 using Spread = std::array<scene::Vec3, 2>;
 
-/// Frame T. A cell that is wholly inside asks for the first two lines of the cache only.
+/// Frame T. A cell that is too far away asks for the first line of the cache only, one that is wholly inside for two.
 struct alignas(64) SurfaceCell {
   scene::Vec3 center_T_m;  ///< mean of its surface, so a little below a curved one
   scene::Vec3 normal_T;    ///< outward, mean
+  double area_m2 = 0.0;    ///< of triangles that look different ways: projected along their normal_T
+  double radius_m = 0.0;   ///< about the centre, of a ball with all of it
   Spread spread_m;
-  double area_m2 = 0.0;                 ///< of triangles that look different ways: projected along their normal_T
-  double radius_m = 0.0;                ///< about the centre, of a ball with all of it
   std::int32_t sample = 0;              ///< of ToolSamples, whose cell this is or was cut from
   std::int32_t group = -1;              ///< of CellGroups: neighbouring triangles of a fine mesh
   std::int8_t corners = 4;              ///< 3 or 4

@@ -4,7 +4,7 @@ namespace touchstone::fast {
 namespace {
 
 /// The force is then within about 1 % of its limit, see CellsConverge.
-constexpr CellRule corrected_cells{.points = 64, .rim_share = 0.33};
+constexpr CellRule corrected_cells{.points = 64, .rim_share = 0.33, .points_per_lever = 50.0};
 
 /// A cell says as much as several samples, and finer ones are made where they are needed.
 constexpr int samples_per_cell = 4;

@@ -211,7 +211,7 @@ StepStatus shape_several_regions(const FastModel& model, FastState& state) noexc
     model.formulas.several.apply_local_factors(model.rest, model.local, several.shapes, state.field);
     state.lap(Stage::local_factor);
   }
-  update_normals(model.normals, model.rest, state.field);
+  update_normals(model.normals, state.field);
   state.lap(Stage::normals);
   return StepStatus::ok;
 }

@@ -61,7 +61,7 @@ StepStatus step_shape(const FastModel& model, FastState& state) noexcept {
   state.deformed = true;
   if (state.several != nullptr) return shape_several_regions(model, state);
   displace(model, state);
-  update_normals(model.normals, model.rest, state.field);
+  update_normals(model.normals, state.field);
   state.lap(Stage::normals);
   return state.regions[0].ends.limited ? StepStatus::anchors_limited : StepStatus::ok;
 }

@@ -29,6 +29,10 @@ constexpr float crushed_rel = 1e-9f;
 
 /// Fewer vertices than this are worked off singly.
 constexpr std::int32_t shortest_run = 4;
+/// Single vertices that a loop works off at once.
+constexpr std::size_t singles_at_once = 32;
+/// Vertices that a register holds: a run is rounded up to that.
+constexpr std::int32_t wide = 8;
 /// A run goes on over as many vertices with other neighbours.
 constexpr std::int32_t longest_gap = 2;
 
@@ -82,7 +86,7 @@ TOUCHSTONE_INLINE void update_run(const NormalStencils::Run& run, const NormalSt
   float* nx = field.normal[0].data() + run.begin;
   float* ny = field.normal[1].data() + run.begin;
   float* nz = field.normal[2].data() + run.begin;
-  const std::int32_t count = run.end - run.begin;
+  const std::int32_t count = run.lanes;
   // Columns never overlap.
 #pragma GCC ivdep
   for (std::int32_t v = 0; v < count; ++v) {
@@ -100,36 +104,48 @@ TOUCHSTONE_INLINE void update_run(const NormalStencils::Run& run, const NormalSt
 }
 
 /// The single vertices: their surroundings are brought together a batch at a time.
-TOUCHSTONE_INLINE void update_singles(const NormalStencils& stencils, const SurfacePatches& rest,
-                                      SurfaceField& field) noexcept {
-  constexpr std::size_t batch = 32;
-  float p[3][batch] = {}, q[3][batch] = {}, r[3][batch] = {}, n[3][batch];
+TOUCHSTONE_INLINE void update_singles(const NormalStencils& stencils, SurfaceField& field) noexcept {
+  constexpr std::size_t batch = singles_at_once;
+  float p[3][batch] = {}, q[3][batch] = {}, n[3][batch];
+  const float *ux = field.displacement_m[0].data(), *uy = field.displacement_m[1].data(),
+              *uz = field.displacement_m[2].data();
   const std::size_t all = stencils.singles.size();
   for (std::size_t begin = 0; begin < all; begin += batch) {
     const NormalStencils::Single* single = stencils.singles.data() + begin;
     const std::size_t count = std::min(batch, all - begin);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float *u = field.displacement_m[axis].data(), *normal = rest.normal[axis].data();
-      const float *t1 = stencils.t1_m[axis].data(), *t2 = stencils.t2_m[axis].data();
-      for (std::size_t i = 0; i < count; ++i) {
-        const auto& [v, to] = single[i];
-        p[axis][i] = t1[v] + (u[to[0]] - u[to[1]]);
-        q[axis][i] = t2[v] + (u[to[2]] - u[to[3]]);
-        r[axis][i] = normal[v];
-      }
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::int32_t a = single[i].neighbour[0], b = single[i].neighbour[1], c = single[i].neighbour[2],
+                         d = single[i].neighbour[3];
+      p[0][i] = ux[a] - ux[b];
+      p[1][i] = uy[a] - uy[b];
+      p[2][i] = uz[a] - uz[b];
+      q[0][i] = ux[c] - ux[d];
+      q[1][i] = uy[c] - uy[d];
+      q[2][i] = uz[c] - uz[d];
     }
+    const auto& t1 = stencils.single_t1_m;
+    const auto& t2 = stencils.single_t2_m;
+    const auto& r = stencils.single_normal;
+    const float *t1x = t1[0].data() + begin, *t1y = t1[1].data() + begin, *t1z = t1[2].data() + begin;
+    const float *t2x = t2[0].data() + begin, *t2y = t2[1].data() + begin, *t2z = t2[2].data() + begin;
+    const float *rx = r[0].data() + begin, *ry = r[1].data() + begin, *rz = r[2].data() + begin;
+    // The columns of the singles go on to the end of a batch.
     for (std::size_t i = 0; i < batch; ++i) {
-      const float cx = p[1][i] * q[2][i] - p[2][i] * q[1][i] + crushed_m2 * r[0][i];
-      const float cy = p[2][i] * q[0][i] - p[0][i] * q[2][i] + crushed_m2 * r[1][i];
-      const float cz = p[0][i] * q[1][i] - p[1][i] * q[0][i] + crushed_m2 * r[2][i];
+      const float px = t1x[i] + p[0][i], py = t1y[i] + p[1][i], pz = t1z[i] + p[2][i];
+      const float qx = t2x[i] + q[0][i], qy = t2y[i] + q[1][i], qz = t2z[i] + q[2][i];
+      const float cx = py * qz - pz * qy + crushed_m2 * rx[i];
+      const float cy = pz * qx - px * qz + crushed_m2 * ry[i];
+      const float cz = px * qy - py * qx + crushed_m2 * rz[i];
       const float to_unit = 1.0f / std::sqrt(cx * cx + cy * cy + cz * cz);
       n[0][i] = cx * to_unit;
       n[1][i] = cy * to_unit;
       n[2][i] = cz * to_unit;
     }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      float* normal = field.normal[axis].data();
-      for (std::size_t i = 0; i < count; ++i) normal[single[i].vertex] = n[axis][i];
+    float *nx = field.normal[0].data(), *ny = field.normal[1].data(), *nz = field.normal[2].data();
+    for (std::size_t i = 0; i < count; ++i) {
+      nx[single[i].vertex] = n[0][i];
+      ny[single[i].vertex] = n[1][i];
+      nz[single[i].vertex] = n[2][i];
     }
   }
 }
@@ -158,7 +174,7 @@ void find_runs(const scene::Surface& surface, const std::vector<std::array<std::
   for (std::size_t patch = 0; patch + 1 < surface.patch_begin.size(); ++patch) {
     const std::int32_t end = surface.patch_begin[patch + 1];
     for (std::int32_t v = surface.patch_begin[patch]; v < end;) {
-      NormalStencils::Run run{v, v + 1, offset(v), true};
+      NormalStencils::Run run{v, v + 1, 0, offset(v), true};
       const auto [lowest, highest] = std::minmax_element(run.offset.begin(), run.offset.end());
       std::vector<std::int32_t> passed_over;
       std::int32_t members = spans(v) ? 1 : 0;
@@ -176,6 +192,10 @@ void find_runs(const scene::Surface& surface, const std::vector<std::array<std::
         continue;
       }
       for (const std::int32_t single : passed_over) add_single(single);
+      // What is written behind its end is written over by the runs that follow, or by the singles.
+      const std::int32_t lanes = (run.end - run.begin + wide - 1) / wide * wide;
+      const bool in_memory = run.begin + lanes + std::max(*highest, 0) <= surface.vertex_count();
+      run.lanes = in_memory ? lanes : run.end - run.begin;
       stencils.runs.push_back(run);
       v = run.end;
     }
@@ -210,15 +230,27 @@ NormalStencils normal_stencils(const scene::Surface& surface) {
     neighbour.push_back({a, b, c, d});
   }
   find_runs(surface, neighbour, stencils);
+  for (const NormalStencils::Single& single : stencils.singles) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<std::size_t>(axis), v = static_cast<std::size_t>(single.vertex);
+      stencils.single_t1_m[k].push_back(stencils.t1_m[k][v]);
+      stencils.single_t2_m[k].push_back(stencils.t2_m[k][v]);
+      stencils.single_normal[k].push_back(static_cast<float>(surface.normals(axis, single.vertex)));
+    }
+  }
+  const std::size_t batches = (stencils.singles.size() + singles_at_once - 1) / singles_at_once;
+  for (Columns3* columns : {&stencils.single_t1_m, &stencils.single_t2_m, &stencils.single_normal}) {
+    for (auto& column : *columns) column.resize(batches * singles_at_once);
+  }
   return stencils;
 }
 
 TOUCHSTONE_WIDE_LOOPS
-void update_normals(const NormalStencils& stencils, const SurfacePatches& rest, SurfaceField& field) noexcept {
+void update_normals(const NormalStencils& stencils, SurfaceField& field) noexcept {
   for (const NormalStencils::Run& run : stencils.runs) {
     run.flat ? update_run<true>(run, stencils, field) : update_run<false>(run, stencils, field);
   }
-  update_singles(stencils, rest, field);
+  update_singles(stencils, field);
 }
 
 }  // namespace touchstone::fast

@@ -18,11 +18,12 @@ namespace touchstone::fast {
 ///
 /// Most vertices have their neighbours at the same offsets as the vertex before and are worked off in runs. A run goes
 /// on over a vertex or two with other neighbours, as from one row of a mesh to the next; what it leaves there is
-/// written over by the pass over the single vertices.
+/// written over by the pass over the single vertices. So is what it leaves behind its end, or by the runs that follow.
 struct NormalStencils {
   /// Consecutive vertices whose neighbours lie at the same offsets in the vertex order.
   struct Run {
     std::int32_t begin, end;
+    std::int32_t lanes;                  ///< vertices worked off: some behind the end, too
     std::array<std::int32_t, 4> offset;  ///< of a, b, c, d
     bool flat;                           ///< the chords are those of the first vertex all along
   };
@@ -34,14 +35,16 @@ struct NormalStencils {
   std::vector<Run> runs;
   std::vector<Single> singles;
   Columns3 t1_m, t2_m;
+  Columns3 single_t1_m, single_t2_m, single_normal;  ///< of the singles side by side; with the normal at rest
 
   [[nodiscard]] std::size_t memory_bytes() const noexcept {
-    return runs.size() * sizeof(Run) + singles.size() * sizeof(Single) + 6 * t1_m[0].size() * sizeof(float);
+    return runs.size() * sizeof(Run) + singles.size() * sizeof(Single) +
+           (6 * t1_m[0].size() + 9 * single_t1_m[0].size()) * sizeof(float);
   }
 };
 [[nodiscard]] NormalStencils normal_stencils(const scene::Surface& surface);
 
 /// Fills field.normal from field.displacement_m; where the surface is crushed to a line, the rest normal stays.
-void update_normals(const NormalStencils&, const SurfacePatches& rest, SurfaceField& field) noexcept;
+void update_normals(const NormalStencils&, SurfaceField& field) noexcept;
 
 }  // namespace touchstone::fast

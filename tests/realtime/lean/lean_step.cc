@@ -42,7 +42,7 @@ void bare_tick(const FastModel& model, const scene::Pose& pose, FastState& state
   fast::ContactPoint contact{region.displacement_m, region.origin.normal, region.origin.patch,
                              model.anchors->at(region.origin.patch, region.origin.p0_W_m)};
   model.formulas.interpolate(model.rest, region.ends.displacement_m, contact, state.field);
-  fast::update_normals(model.normals, model.rest, state.field);
+  fast::update_normals(model.normals, state.field);
 }
 
 void run(std::string_view how) {
@@ -57,7 +57,7 @@ void run(std::string_view how) {
     } else {
       bare_tick(model, pose, state);
       if (how == "padded" && tick % 4 == 0 && state.regions[0].active)
-        fast::update_normals(model.normals, model.rest, state.field);
+        fast::update_normals(model.normals, state.field);
     }
   }
   std::printf("%.17g\n", fast::total_force_n(state).z() + state.regions[0].force.force_n.z());

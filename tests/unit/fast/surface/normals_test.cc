@@ -33,7 +33,7 @@ TEST(Normals, OfTheUndeformedBodyAreTheShapes) {
     const FastModel model(scene);
     SurfaceField field(model.rest);
     for (auto& column : field.normal) column.assign(column.size(), 0.0f);
-    update_normals(model.normals, model.rest, field);
+    update_normals(model.normals, field);
     for (int v = 0; v < model.surface.vertex_count(); ++v) {
       EXPECT_LT((vector_at(field.normal, v) - Vec3(model.surface.normals.col(v))).norm(), 1e-6);
     }
@@ -48,7 +48,7 @@ TEST(Normals, TurnWithALinearDeformation) {
     const FastModel model(scene);
     SurfaceField field(model.rest);
     displace(model, field, [&](const Vec3& p) { return Vec3(A * p - p); });
-    update_normals(model.normals, model.rest, field);
+    update_normals(model.normals, field);
     for (int v = 0; v < model.surface.vertex_count(); ++v) {
       const Vec3 expected = (A.inverse().transpose() * Vec3(model.surface.normals.col(v))).normalized();
       EXPECT_LT((vector_at(field.normal, v) - expected).norm(), tolerance * 20.0) << v;
@@ -67,7 +67,7 @@ TEST(Normals, ConvergeToTheSmoothSurfacesAtSecondOrder) {
     SurfaceField field(model.rest);
     displace(model, field,
              [&](const Vec3& p) { return Vec3(0.0, 0.0, p.z() > 0.0599 ? amplitude * std::sin(wave * p.x()) : 0.0); });
-    update_normals(model.normals, model.rest, field);
+    update_normals(model.normals, field);
     double worst = 0.0;
     const Patch& top = model.rest.patches[5];
     for (int v = top.begin; v < top.end; ++v) {
@@ -86,7 +86,7 @@ TEST(Normals, KeepTheRestNormalWhereTheSurfaceIsCrushed) {
   const FastModel model(test::ball_on_cube());
   SurfaceField field(model.rest);
   displace(model, field, [](const Vec3& p) { return Vec3(-p); });
-  update_normals(model.normals, model.rest, field);
+  update_normals(model.normals, field);
   for (int v = 0; v < model.surface.vertex_count(); ++v) {
     // Single precision leaves a little of the surface.
     EXPECT_GT(vector_at(field.normal, v).dot(Vec3(model.surface.normals.col(v))), 0.9);

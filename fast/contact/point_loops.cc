@@ -1,0 +1,241 @@
+#include "fast/contact/point_loops.h"
+
+#include "fast/realtime/wide_loops.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace touchstone::fast {
+namespace {
+
+using scene::Mat3;
+using scene::Vec3;
+
+TOUCHSTONE_INLINE double larger(double a, double b) noexcept { return a < b ? b : a; }
+TOUCHSTONE_INLINE double smaller(double a, double b) noexcept { return b < a ? b : a; }
+
+/// Numbers of a vector, for loops.
+struct Numbers {
+  double x, y, z;
+};
+TOUCHSTONE_INLINE Numbers numbers(const Vec3& v) noexcept { return {v.x(), v.y(), v.z()}; }
+
+/// The rises of one point, from the normal of the plane that d leads to.
+struct Rises {
+  explicit Rises(const Mat3& R_WT, const Vec3& direction) noexcept : R(R_WT), d(numbers(direction)) {}
+  TOUCHSTONE_INLINE void set(double nx, double ny, double nz, const RegionPoints& p, std::size_t i) const noexcept {
+    const double against = smaller(nx * d.x + ny * d.y + nz * d.z, -0.3);
+    const double x = nx / against, y = ny / against, z = nz / against;
+    const double sx = R(0, 0) * x + R(1, 0) * y + R(2, 0) * z, sy = R(0, 1) * x + R(1, 1) * y + R(2, 1) * z,
+                 sz = R(0, 2) * x + R(1, 2) * y + R(2, 2) * z;
+    p.rise1_m[i] = sx * p.e1x_T_m[i] + sy * p.e1y_T_m[i] + sz * p.e1z_T_m[i];
+    p.rise2_m[i] = sx * p.e2x_T_m[i] + sy * p.e2y_T_m[i] + sz * p.e2z_T_m[i];
+  }
+  Mat3 R;
+  Numbers d;
+};
+
+}  // namespace
+
+TOUCHSTONE_WIDE_LOOPS
+static bool set_cosines(const Vec3& d_T, const RegionPoints& p) noexcept {
+  const Numbers d = numbers(d_T);
+  const auto count = static_cast<std::size_t>(p.count);
+  double least = 0.0;
+  // Columns never overlap, here and below.
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) p.cos_theta[i] = p.nx_T[i] * d.x + p.ny_T[i] * d.y + p.nz_T[i] * d.z;
+  for (std::size_t i = 0; i < count; ++i) least = smaller(least, p.cos_theta[i]);
+  return least < 0.0;
+}
+
+void keep_facing(const Vec3& d_T, RegionPoints& points) noexcept {
+  if (!set_cosines(d_T, points)) return;
+  int kept = 0;
+  for (int i = 0; i < points.count; ++i) {
+    if (points.cos_theta[i] < 0.0) continue;
+    if (kept != i) {
+      points.move(i, kept);
+      points.cos_theta[kept] = points.cos_theta[i];
+    }
+    ++kept;
+  }
+  points.count = kept;
+}
+
+TOUCHSTONE_WIDE_LOOPS
+void set_depths(const BoxExit& way_out_m, RegionPoints& p) noexcept {
+  const Numbers center = numbers(way_out_m.center_m()), half = numbers(way_out_m.half_m()),
+                sign = numbers(way_out_m.sign()), per = numbers(way_out_m.per_speed());
+  const auto count = static_cast<std::size_t>(p.count);
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = (half.x - sign.x * (p.x_W_m[i] - center.x)) * per.x,
+                 y = (half.y - sign.y * (p.y_W_m[i] - center.y)) * per.y,
+                 z = (half.z - sign.z * (p.z_W_m[i] - center.z)) * per.z;
+    const double exit_m = smaller(smaller(x, y), z);
+    p.depth_m[i] = exit_m > 0.0 ? exit_m : 0.0;
+  }
+}
+
+TOUCHSTONE_WIDE_LOOPS
+void set_depths(const SphereExit& way_out_m, RegionPoints& p) noexcept {
+  const Numbers center = numbers(way_out_m.center_m()), to = numbers(way_out_m.direction());
+  const double radius2_m2 = way_out_m.radius2_m2();
+  const auto count = static_cast<std::size_t>(p.count);
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = p.x_W_m[i] - center.x, y = p.y_W_m[i] - center.y, z = p.z_W_m[i] - center.z;
+    const double along_m = x * to.x + y * to.y + z * to.z, inside_m2 = radius2_m2 - (x * x + y * y + z * z);
+    const double way_m = std::sqrt(larger(along_m * along_m + inside_m2, 0.0)) - along_m;
+    p.depth_m[i] = inside_m2 > 0.0 ? way_m : 0.0;
+  }
+}
+
+TOUCHSTONE_WIDE_LOOPS
+void set_depths(const EllipsoidExit& way_out_m, RegionPoints& p) noexcept {
+  const Numbers center = numbers(way_out_m.center_m()), per = numbers(way_out_m.per_axis()),
+                to = numbers(way_out_m.direction());
+  const double a = way_out_m.a();
+  const auto count = static_cast<std::size_t>(p.count);
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = (p.x_W_m[i] - center.x) * per.x, y = (p.y_W_m[i] - center.y) * per.y,
+                 z = (p.z_W_m[i] - center.z) * per.z;
+    const double inside = 1.0 - (x * x + y * y + z * z), along = x * to.x + y * to.y + z * to.z;
+    const double root = std::sqrt(larger(along * along + a * inside, 0.0));
+    const double way_m = along > 0.0 ? inside / (root + along) : (root - along) / a;
+    p.depth_m[i] = inside > 0.0 ? way_m : 0.0;
+  }
+}
+
+TOUCHSTONE_WIDE_LOOPS
+void set_rises(const Mat3& R_WT, const Vec3& d, RegionPoints& p) noexcept {
+  const Rises rises(R_WT, d);
+  const auto count = static_cast<std::size_t>(p.count);
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) rises.set(p.rest_nx_W[i], p.rest_ny_W[i], p.rest_nz_W[i], p, i);
+}
+
+TOUCHSTONE_WIDE_LOOPS
+void set_rises(const BoxExit& way_out, const Mat3& R_WT, const Vec3& d, RegionPoints& p) noexcept {
+  const Rises rises(R_WT, d);
+  const Numbers center = numbers(way_out.center_m()), half = numbers(way_out.half_m()), sign = numbers(way_out.sign()),
+                per = numbers(way_out.per_speed());
+  const auto count = static_cast<std::size_t>(p.count);
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = (half.x - sign.x * (p.x_W_m[i] - center.x)) * per.x,
+                 y = (half.y - sign.y * (p.y_W_m[i] - center.y)) * per.y,
+                 z = (half.z - sign.z * (p.z_W_m[i] - center.z)) * per.z;
+    const bool by_x = (x <= y) & (x <= z), by_y = !by_x & (y <= z);
+    rises.set(by_x ? sign.x : 0.0, by_y ? sign.y : 0.0, by_x | by_y ? 0.0 : sign.z, p, i);
+  }
+}
+
+TOUCHSTONE_WIDE_LOOPS
+static double most_with_spread_m(const RegionPoints& p) noexcept {
+  const auto count = static_cast<std::size_t>(p.count);
+  double most_m = 0.0;
+  constexpr std::size_t wide = 8;
+  double most[wide] = {};
+  std::size_t i = 0;
+  for (; i + wide <= count; i += wide) {
+    for (std::size_t k = 0; k < wide; ++k) {
+      const double rise1_m = p.rise1_m[i + k], rise2_m = p.rise2_m[i + k];
+      most[k] = larger(most[k], p.depth_m[i + k] + std::sqrt(rise1_m * rise1_m + rise2_m * rise2_m));
+    }
+  }
+  for (; i < count; ++i) most[0] = larger(most[0], p.depth_m[i] + p.depth_spread_m(i));
+  for (const double m : most) most_m = larger(most_m, m);
+  return most_m;
+}
+
+bool reaches_limit(double limit_m, const RegionPoints& points) noexcept {
+  if (points.spread) {
+    // A little less than the limit is for limit_depths() to tell.
+    return !(most_with_spread_m(points) < limit_m * (1.0 - 1e-12));
+  }
+  bool beyond = false;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i)
+    beyond = beyond || !(points.depth_m[i] <= limit_m);
+  return beyond;
+}
+
+TOUCHSTONE_WIDE_LOOPS
+void set_shares(const Vec3& d_T, RegionPoints& p) noexcept {
+  const Numbers d = numbers(d_T);
+  const auto count = static_cast<std::size_t>(p.count);
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const double area_m2 = p.area_m2[i] * p.cos_theta[i];
+    const double x = p.x_T_m[i], y = p.y_T_m[i], z = p.z_T_m[i];
+    const double ax = p.e1x_T_m[i], ay = p.e1y_T_m[i], az = p.e1z_T_m[i];
+    const double bx = p.e2x_T_m[i], by = p.e2y_T_m[i], bz = p.e2z_T_m[i];
+    // See Projected.
+    const double on_line_m = x * d.x + y * d.y + z * d.z, up1_m = ax * d.x + ay * d.y + az * d.z,
+                 up2_m = bx * d.x + by * d.y + bz * d.z;
+    const double r2_m2 = larger(0.0, x * x + y * y + z * z - on_line_m * on_line_m);
+    const double along1_m2 = ax * x + ay * y + az * z - up1_m * on_line_m,
+                 along2_m2 = bx * x + by * y + bz * z - up2_m * on_line_m;
+    const double variance_m2 =
+        ax * ax + ay * ay + az * az + (bx * bx + by * by + bz * bz) - up1_m * up1_m - up2_m * up2_m;
+    const bool near = !(r2_m2 > 6.0 * variance_m2);
+    const double inverse_per_m2 = 1.0 / (near ? 1.0 : r2_m2);
+    const double across_m2 = 3.0 * (along1_m2 * along1_m2 + along2_m2 * along2_m2) * inverse_per_m2 - variance_m2;
+    const double over_m = area_m2 * std::sqrt(inverse_per_m2) * (1.0 + 0.5 * across_m2 * inverse_per_m2);
+    const double shift_m = (p.rise1_m[i] * along1_m2 + p.rise2_m[i] * along2_m2) /
+                           larger(larger(r2_m2, variance_m2), std::numeric_limits<double>::min());
+    const bool covers = area_m2 > 0.0;
+    const double depth_m = p.depth_m[i];
+    p.share[i] = covers ? (near ? near_the_line : over_m) : 0.0;
+    p.depth_m[i] = covers ? larger(0.0, depth_m - shift_m) : depth_m;
+  }
+}
+
+template <bool spread>
+TOUCHSTONE_INLINE void forces(const DuffingLaw& law, const RegionPoints& p, double depth_scale, std::size_t begin,
+                              std::size_t count, double* force_n, double* depth_m) noexcept {
+  const DuffingLaw at = law;
+#pragma GCC ivdep
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = begin + k;
+    const double depth = depth_scale * p.depth_m[i];
+    depth_m[k] = depth;
+    if constexpr (spread) {
+      const double rise1_m = p.rise1_m[i], rise2_m = p.rise2_m[i];
+      // A ramp begins at depth 0.
+      const double spread_m =
+          smaller(depth_scale * std::sqrt(rise1_m * rise1_m + rise2_m * rise2_m), depth / std::numbers::sqrt3);
+      // Exact for a cubic law over depths that vary evenly about their mean.
+      force_n[k] = p.share[i] * (0.5 * (at.force_n(depth - spread_m) + at.force_n(depth + spread_m)));
+    } else {
+      force_n[k] = p.share[i] * at.force_n(depth);
+    }
+  }
+}
+
+TOUCHSTONE_WIDE_LOOPS
+static void forces_of_pieces(const DuffingLaw& law, const RegionPoints& p, double depth_scale, std::size_t begin,
+                             std::size_t count, double* force_n, double* depth_m) noexcept {
+  forces<true>(law, p, depth_scale, begin, count, force_n, depth_m);
+}
+TOUCHSTONE_WIDE_LOOPS
+static void forces_of_samples(const DuffingLaw& law, const RegionPoints& p, double depth_scale, std::size_t begin,
+                              std::size_t count, double* force_n, double* depth_m) noexcept {
+  forces<false>(law, p, depth_scale, begin, count, force_n, depth_m);
+}
+
+template <>
+void point_forces<true>(const DuffingLaw& law, const RegionPoints& p, double depth_scale, std::size_t begin,
+                        std::size_t count, double* force_n, double* depth_m) noexcept {
+  forces_of_pieces(law, p, depth_scale, begin, count, force_n, depth_m);
+}
+template <>
+void point_forces<false>(const DuffingLaw& law, const RegionPoints& p, double depth_scale, std::size_t begin,
+                         std::size_t count, double* force_n, double* depth_m) noexcept {
+  forces_of_samples(law, p, depth_scale, begin, count, force_n, depth_m);
+}
+
+}  // namespace touchstone::fast
