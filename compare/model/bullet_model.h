@@ -1,7 +1,7 @@
 // Bullet's deformable body, a cube under a ball.
 #pragma once
 
-#include "compare/model/registry.h"
+#include "compare/model/request.h"
 
 namespace touchstone::compare {
 

@@ -1,7 +1,7 @@
 // The body as a precomputed linear compliance.
 #pragma once
 
-#include "compare/model/registry.h"
+#include "compare/model/request.h"
 
 namespace touchstone::compare {
 

@@ -1,7 +1,7 @@
 // The levels of the reference.
 #pragma once
 
-#include "compare/model/registry.h"
+#include "compare/model/request.h"
 
 namespace touchstone::compare {
 

@@ -1,28 +1,11 @@
 // Which models there are.
 #pragma once
 
-#include "compare/model/model.h"
-#include "reference/solver.h"
+#include "compare/model/request.h"
 
-#include <filesystem>
-#include <functional>
 #include <vector>
 
 namespace touchstone::compare {
-
-/// What models are chosen by.
-struct ModelRequest {
-  const scene::Scene& scene;
-  std::vector<scene::Scene> contacts;             ///< that they are judged on
-  std::vector<std::filesystem::path> parameters;  ///< files that tune left, each a model more
-  bool quick = false;                             ///< small sizes
-  std::function<int()> reference_levels;          ///< that every contact's reference has
-  /// The reference of a contact on so many levels.
-  std::function<reference::Result(const scene::Scene&, const scene::Surface&, int levels)> solve;
-};
-
-/// Some models of one kind.
-using ModelList = std::vector<ModelEntry> (*)(const ModelRequest&);
 
 /// Every kind, in the order in which tables list them. A new kind is a line here.
 [[nodiscard]] const std::vector<ModelList>& registered_models();

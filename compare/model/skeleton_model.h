@@ -2,7 +2,7 @@
 // surfaces of several sizes.
 #pragma once
 
-#include "compare/model/registry.h"
+#include "compare/model/request.h"
 
 namespace touchstone::compare {
 

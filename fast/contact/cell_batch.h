@@ -2,7 +2,7 @@
 // the one that rest_distance() and Eigen give for a single cell, bit by bit.
 #pragma once
 
-#include "fast/contact/contact_detection.h"
+#include "fast/contact/region_points.h"
 #include "fast/contact/rest_distance.h"
 
 #include <array>

@@ -3,8 +3,9 @@
 #pragma once
 
 #include "fast/contact/cell_batch.h"
-#include "fast/contact/contact_detection.h"
+#include "fast/contact/region_points.h"
 #include "fast/contact/rest_distance.h"
+#include "fast/contact/tool_samples.h"
 
 #include <cstddef>
 #include <cstdint>

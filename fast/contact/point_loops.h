@@ -2,7 +2,7 @@
 // formula gives for a single point with Eigen's vectors, bit by bit.
 #pragma once
 
-#include "fast/contact/contact_detection.h"
+#include "fast/contact/region_points.h"
 #include "fast/contact/contact_law.h"
 #include "fast/contact/rest_distance.h"
 

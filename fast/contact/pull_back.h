@@ -3,7 +3,7 @@
 // rest.
 #pragma once
 
-#include "fast/contact/contact_detection.h"
+#include "fast/contact/region_points.h"
 #include "scene/shape/shape.h"
 
 #include <array>
