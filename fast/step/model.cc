@@ -29,6 +29,8 @@ Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
                   interpolate_corrected, apply_local_factor_corrected, several_regions_corrected};
       break;
   }
+  // Several regions have several directions, and their normals together say nothing of any.
+  if (formulas.cells && !scene.tool.convex() && fast.max_regions > 1) formulas.cells->points_per_lever = 0.0;
   if (!scene.contact.friction) formulas.resolve_friction = nullptr;
   if (fast.C_n == 0.0) formulas.apply_local_factor = nullptr;
   return formulas;
