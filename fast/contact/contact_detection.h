@@ -109,8 +109,8 @@ class PointStore {
   std::vector<std::int32_t> samples_;
 };
 
-/// What the inside samples say about the rest surface above them, each weighted by its area times its distance to
-/// the rest surface.
+/// Sums over the inside samples of properties of the rest surface above them, each weighted by its area times its
+/// distance to the rest surface.
 struct InsideSummary {
   scene::Vec3 normal_sum = scene::Vec3::Zero();  ///< of the rest surface's normals at the closest points
   double weight_sum = 0.0;
@@ -126,7 +126,7 @@ struct InsideSummary {
 
 /// Fills `points` with the samples strictly inside the rest surface, or nearer to it from outside than margin_m: a ball
 /// of the tree further out than that is passed over. Points come in the order of the tree, so equal poses give equal
-/// bits. The summary speaks of the inside ones.
+/// bits. The summary is of the inside ones.
 /// @param limit stops once this many points are found
 using FindInside = InsideSummary (*)(const scene::Shape&, const ToolSamples&, const Placement&, double margin_m,
                                      int limit, RegionPoints&) noexcept;

@@ -28,7 +28,7 @@ struct PlacedCell {
   double lowest_m;    ///< signed distance of its lowest corner from the tangent plane of the rest surface
 };
 
-/// What find_cells() writes on its way. Halves are kept, since a contact mostly asks for those of the last tick; the
+/// Scratch memory of find_cells(). Halved cells are kept, since a contact mostly needs those of the last tick; the
 /// answer never depends on which are.
 class CellScratch {
  public:
@@ -57,7 +57,7 @@ class CellScratch {
 /// Fills `points` with what lies inside the rest surface of the tool's cells, one point for each at the middle of that
 /// part and with its area. Where the points are too few, or too much of the area is in cut cells, all cells near the
 /// body are halved, and again, as far as there is room.
-/// @param margin_m what lies outside, but for less than that, are points too, of negative depth
+/// @param margin_m cells outside by less than this are points too, of negative depth
 template <class Body>
 InsideSummary find_cells(const scene::Shape&, const ToolSamples&, const Placement&, const CellRule&, double margin_m,
                          RegionPoints&, CellScratch&) noexcept;

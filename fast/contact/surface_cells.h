@@ -1,4 +1,4 @@
-// Cells of the tool's surface: the piece of it that a sample stands for, which can be halved again and again. A contact
+// Cells of the tool's surface: the piece of it that belongs to a sample, which can be halved repeatedly. A contact
 // that few samples reach is looked at in smaller cells, so no contact falls between the samples, and the body's
 // surface cuts cells, so the contact's area does not jump by whole samples.
 #pragma once
@@ -35,12 +35,12 @@ struct alignas(64) SurfaceCell {
   scene::Vec3 center_T_m;  ///< mean of its surface, so a little below a curved one
   scene::Vec3 normal_T;    ///< outward, mean
   Spread spread_m;
-  double area_m2 = 0.0;                 ///< of triangles that look different ways: projected along their normal_T
+  double area_m2 = 0.0;                 ///< of triangles with different normals: projected along their normal_T
   double radius_m = 0.0;                ///< about the centre, of a ball with all of it
   std::int32_t sample = 0;              ///< of ToolSamples, whose cell this is or was cut from
   std::int32_t group = -1;              ///< of CellGroups: neighbouring triangles of a fine mesh
   std::int8_t corners = 4;              ///< 3 or 4
-  bool curved = false;                  ///< `band` says how; without group: flat
+  bool curved = false;                  ///< described by `band`; without group: flat
   std::array<scene::Vec3, 4> corner_m;  ///< from the centre, in order; of a group: of a rectangle around it
   double polygon_m2 = 0.0;              ///< area of the polygon of its corners
   scene::Vec3 polygon_center_m;         ///< from the centre

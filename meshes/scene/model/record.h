@@ -1,5 +1,5 @@
 // What a solver answers: the contract between fast/, reference/ and compare/. Plain data, SI units,
-// world frame. Forces act on the tool unless the name says support.
+// world frame. Forces act on the tool unless named as the support's.
 #pragma once
 
 #include "scene/base/frames.h"
@@ -27,7 +27,7 @@ struct InstantRecord {
   double time_s = 0.0;
   Pose tool;
   double depth_m = 0.0;                 ///< rest_depth_m, zero when apart
-  double separation_m = 0.0;            ///< between tool and body while apart; a solver that does not know it says 0
+  double separation_m = 0.0;            ///< between tool and body while apart; 0 from a solver that does not compute it
   std::vector<RegionRecord> regions;    ///< empty when apart; in the order of their creation
   Vec3 support_force_n = Vec3::Zero();  ///< of the support on the body
   Eigen::Matrix3Xd displacement_m;      ///< one column per rest point asked for

@@ -25,14 +25,14 @@ struct Column {
 /// @param prefix put before every name, such as "fast_"; may be empty
 [[nodiscard]] std::vector<Column> record_columns(const std::vector<InstantRecord>& records, const std::string& prefix);
 
-/// time_s and the tool's pose, which both sides share.
+/// time_s and the tool's pose, the same for both solvers.
 [[nodiscard]] std::vector<Column> track_columns(const std::vector<InstantRecord>& records);
 
 /// Comma-separated, one header line, numbers as short as they read back exactly; unknown is nan.
 void write_csv(const std::filesystem::path& path, const std::vector<Column>& columns);
 
 /// One flat JSON object, dotted key to number or text, plus "units" with the same keys. A number that is not finite is
-/// null, and its text, which then says why, stands in "reasons" under the same key.
+/// null, and its text, the reason, is in "reasons" under the same key.
 void write_summary(const std::filesystem::path& path, const Figures& figures);
 
 /// Wall and CPU time of a named stage [s].
@@ -74,7 +74,7 @@ struct Manifest {
 /// @throws std::filesystem::filesystem_error
 void write_manifest(const std::filesystem::path& path, const Manifest& manifest);
 
-/// Makes the folder, takes it for this process, and clears it of what killed runs left half-written. Or says in one
+/// Creates the folder, locks it for this process, and removes unfinished files of killed runs. Or returns in one
 /// InputError why it cannot be written to, at once also where another process writes to it.
 /// @returns what keeps others out, until its end
 [[nodiscard]] FolderLock prepare_result_folder(const std::filesystem::path& folder);
