@@ -17,7 +17,7 @@
 
 namespace touchstone::compare {
 
-/// Who made the model of a row.
+/// The kind of model of a row.
 enum class TradeFamily {
   paper,       ///< the paper's skeleton with its own law
   area_aware,  ///< the same skeleton with the area-aware law
@@ -33,7 +33,7 @@ struct TradeRow {
   std::string label;  ///< short, for the plot
   TradeFamily family = TradeFamily::paper;
   std::string absent{};  ///< why there is nothing to measure; empty where there is
-  std::string note{};    ///< what a reader must know to compare it
+  std::string note{};    ///< condition of the comparison, for the reader
   int size = 0;          ///< surface triangles, or unknowns
   double step_p50_us = std::numeric_limits<double>::quiet_NaN();
   double step_p999_us = std::numeric_limits<double>::quiet_NaN();
@@ -47,7 +47,7 @@ struct TradeRow {
 /// A figure that rows are compared by.
 using TradeError = Measure TradeRow::*;
 
-/// The error as it counts: what lies below the reference's uncertainty is not known to be any better than that.
+/// The error as it counts: an error below the reference's uncertainty is replaced by that.
 /// Nothing where it is not known at all.
 [[nodiscard]] std::optional<double> judged_error(const Measure& error);
 
@@ -75,14 +75,14 @@ struct TradeOptions {
 
 /// Builds, measures and judges every row.
 /// @param solve  the reference, by number of levels; nothing: as many as the scene and the command line ask for
-/// @param say    one line about what begins; may be empty
+/// @param say    called with one line about what begins; may be empty
 /// @throws scene::InputError, and what `solve` throws
 [[nodiscard]] Trade trade(
     const scene::Scene& scene, const TradeOptions& options,
     const std::function<reference::Result(const scene::Scene&, const scene::Surface&, std::optional<int>)>& solve,
     const std::function<void(const std::string&)>& say = {});
 
-/// Who wins, a sentence each; able to say that the paper's model loses.
+/// The verdict, one sentence per finding, also where the paper's model is dominated.
 [[nodiscard]] std::vector<std::string> trade_verdict(const Trade& trade);
 
 /// The plot: time of a step over both errors, the fronts drawn, the points named.

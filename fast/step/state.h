@@ -44,7 +44,7 @@ struct ContactRegion {
   void clear() noexcept;
 
   bool active = false;
-  bool met = false;                       ///< a part of the tool has been inside the shape that this region is in contact with
+  bool met = false;                       ///< the tool has been inside the shape that this region contacts
   int id = 0;                             ///< the smallest number free at its creation
   scene::Vec3 d = -scene::Vec3::UnitZ();  ///< direction of deformation, into the body
   double depth_rel = 0.0;                 ///< deepest point of the last tick over the body's thickness there

@@ -15,7 +15,7 @@ struct LevelRecord {
   double element_size_m = 0.0;  ///< under the tool
   int unknowns = 0;             ///< displacement unknowns
   int newton_iterations = 0;    ///< all load steps
-  int steps_cut = 0;            ///< load steps halved on the way
+  int steps_cut = 0;            ///< load steps halved
   double wall_s = 0.0;          ///< when it was solved, also if it now comes from the store
   double cpu_s = 0.0;           ///< the same, of all threads
   std::vector<double> force_n;  ///< magnitude of the contact force per instant
@@ -59,8 +59,8 @@ struct Result {
   std::vector<std::vector<scene::Vec3>> region_middles_m;   ///< per instant, one for every region
   std::vector<double> force_uncertainty_n;                  ///< per instant, conservative half width
   std::vector<Eigen::VectorXd> displacement_uncertainty_m;  ///< per instant, per rest point
-  std::optional<double> force_uncertainty_rel;      ///< largest band / |F| over the instants with a deep contact
-  std::optional<double> shape_uncertainty_rel;      ///< band over displacement, both root mean square by area over all
+  std::optional<double> force_uncertainty_rel;      ///< largest uncertainty / |F| over the instants with a deep contact
+  std::optional<double> shape_uncertainty_rel;      ///< over displacement, both root mean square by area over all
                                                     ///< points and instants
   std::vector<double> residual_penetration_m;       ///< per instant, largest over contact nodes
   std::vector<double> between_nodes_penetration_m;  ///< per instant, largest over face quadrature points

@@ -1,4 +1,4 @@
-// How far the finest level may be from the exact answer of the model, from what refinement changed.
+// Uncertainty of the finest level with respect to the exact answer of the model, from the changes under refinement.
 #pragma once
 
 #include "scene/model/record.h"
@@ -10,39 +10,39 @@
 
 namespace touchstone::reference {
 
-/// Half width of the band per instant, for a quantity F0, F1, F2 on the last three levels, whose cells are 1 / f of a
-/// common size:
+/// Uncertainty (half width of the band) per instant, for a quantity F0, F1, F2 on the last three levels, whose cells
+/// are 1 / f of a common size:
 ///   b = 1.25 max over pairs j < k of |Fk - Fj| / (f2 / fj - f2 / fk),  pairs no closer than fk / fj = 1.5,
 /// then the largest over the instant and its two neighbours.
-/// Why so: a contact force does not approach its limit from one side, because the contact's edge moves by whole nodes;
-/// Richardson's extrapolation would be luck. Each quotient is the error of F2 when the error is of first order in the
-/// cell size and the pair differs by no chance; quadratic cells do better. Several pairs guard against two levels
-/// agreeing by chance, the neighbours against all doing so at one instant, and 1.25 is Roache's factor for three or
-/// more grids (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413). It covers the mesh and nothing else: not the material
-/// law.
+/// Reason: a contact force does not approach its limit from one side, because the contact's edge moves by whole nodes;
+/// Richardson's extrapolation is not applicable. Each quotient is the error of F2 when the error is of first order in
+/// the cell size and the difference is not accidental; quadratic cells converge faster. Several pairs guard against two
+/// levels agreeing by chance, the neighbours against all doing so at one instant, and 1.25 is Roache's factor for three
+/// or more grids (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413). It covers the mesh and nothing else: not the
+/// material law.
 /// @param levels  [level][instant], coarsest first
 /// @param finer   f of each level
 /// @returns NaN, for unknown, throughout with fewer than three levels
 [[nodiscard]] std::vector<double> force_band(const std::vector<std::vector<double>>& levels,
                                              const std::vector<double>& finer);
 
-/// The same per rest point, with the length of the difference of two displacement vectors. Quadratic cells do better
-/// than first order, but the far field is refined less than the contact.
+/// The same per rest point, with the length of the difference of two displacement vectors. Quadratic cells converge
+/// faster than first order, but the far field is refined less than the contact.
 /// @param levels  [level][instant], each 3 x points
 /// @returns per instant, per point
 [[nodiscard]] std::vector<Eigen::VectorXd> displacement_band(const std::vector<std::vector<Eigen::Matrix3Xd>>& levels,
                                                              const std::vector<double>& finer);
 
-/// Figures "where the contact is deep" use the instants whose depth exceeds this share of the largest depth.
+/// Figures "where the contact is deep" use the instants whose depth exceeds this fraction of the largest depth.
 inline constexpr double deep_share = 0.1;
 
-/// Below this depth a tool only grazes: round-off of the track decides whether it touches at all.
+/// Below this depth a tool only grazes: round-off of the track decides whether there is contact.
 inline constexpr double grazing_depth_m = 1e-9;
 
 /// Per instant: in contact, and deeper than deep_share of the deepest.
 [[nodiscard]] std::vector<bool> deep_instants(const std::vector<scene::InstantRecord>& instants);
 
-/// Largest band / |F| over the deep instants; absent where nothing pushes.
+/// Largest band / |F| over the deep instants; absent where there is no force.
 [[nodiscard]] std::optional<double> force_uncertainty_rel(const std::vector<scene::InstantRecord>& instants,
                                                           const std::vector<double>& band_n);
 
