@@ -1,5 +1,5 @@
 // The body's answer to small forces, condensed onto the surface nodes that the tool may touch: what a precomputed
-// linear model needs to know of it. Small strain, from the stiffness of the reference's own elements at rest. Free of
+// linear model needs of it. Small strain, from the stiffness of the reference's own elements at rest. Free of
 // deal.II, as solver.h.
 #pragma once
 
@@ -19,7 +19,7 @@ struct LinearResponse {
   Eigen::Matrix3Xd nodes_m;              ///< rest places, 3 x n, world; (r, 0, z) where axisymmetric
   Eigen::Matrix3Xd normals;              ///< outward at rest, 3 x n
   Eigen::Matrix3Xd force_on_tool;        ///< of the whole body's surface, by a unit force at each node, 3 x n
-  Eigen::MatrixXd compliance_m_per_n;    ///< n x n, symmetric: way of node i against its normal
+  Eigen::MatrixXd compliance_m_per_n;    ///< n x n, symmetric: displacement of node i against its normal
   Eigen::MatrixXd displacement_m_per_n;  ///< 3 m x n: rows 3 p to 3 p + 2 are the displacement of rest point p
   int unknowns = 0;                      ///< of the factorised stiffness
 };
@@ -30,13 +30,13 @@ struct LinearResponseOptions {
   bool whole_body = true;   ///< without the mirror planes that the scene's track has but a hand need not keep to. A
                             ///< body of revolution stays one where the scene is axisymmetric
   double margin_rel = 0.1;  ///< a node may be touched where the tool comes nearer to it at rest, at any instant, than
-                            ///< this share of the track's largest depth
+                            ///< this fraction of the track's largest depth
 };
 
 /// Factorises once and solves once per node that may be touched.
 /// @param rest_points_m  of the rest surface at which displacement is wanted, 3 x m, world frame
-/// @param progress       called now and then with the share done; may be empty and may throw to stop
-/// @throws scene::InputError when solve() could not be asked about the scene, it has friction, or the tool touches
+/// @param progress       called now and then with the fraction done; may be empty and may throw to stop
+/// @throws scene::InputError when solve() does not support the scene, it has friction, or the tool touches
 ///         nothing; std::runtime_error when the stiffness is singular or the memory does not suffice
 [[nodiscard]] LinearResponse linear_response(const scene::Scene& scene, const Eigen::Matrix3Xd& rest_points_m,
                                              const LinearResponseOptions& options = {},

@@ -1,4 +1,4 @@
-// `touchstone export`: the scene as a deck for a second finite element code, and what that code says of it.
+// `touchstone export`: the scene as a deck for a second finite element code, and the results of that code.
 #pragma once
 
 #include "compare/solve/reference_run.h"

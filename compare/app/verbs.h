@@ -1,4 +1,4 @@
-// The verbs of `touchstone`: load a scene, refuse what cannot be done before any work, run, write, say.
+// The commands of `touchstone`: load a scene, refuse what cannot be done before any work, run, write, report.
 #pragma once
 
 #include "compare/solve/reference_run.h"

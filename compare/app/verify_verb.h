@@ -35,7 +35,7 @@ struct ProblemRecord {
 [[nodiscard]] std::vector<ProblemRecord> run_problems(const std::vector<verification::Problem>& all,
                                                       const VerifyOptions& options);
 
-/// The table: problem, target, value, error, limit, band of the mesh, observed order, pass or MISS.
+/// The table: problem, target, value, error, limit, uncertainty of the mesh, observed order, pass or MISS.
 [[nodiscard]] std::string verify_text(const std::vector<ProblemRecord>& records);
 
 /// Per problem `verify.<name>.checks|missed|largest_error_over_limit`, per check its target, value, error, limit.

@@ -10,7 +10,7 @@
 
 namespace touchstone::compare {
 
-/// What CalculiX says at the end of one step of a deck, of the whole body in the world frame.
+/// Results of CalculiX at the end of one step of a deck, of the whole body in the world frame.
 struct CalculixStep {
   scene::Vec3 force_n = scene::Vec3::Zero();  ///< on the tool
   Eigen::Matrix3Xd displacement_m;            ///< one column per node of Deck::surface_nodes

@@ -18,7 +18,7 @@ namespace touchstone::compare {
 [[nodiscard]] std::vector<scene::Column> curve_columns(const fast::Run& run, const reference::Result& result,
                                                        const Errors& errors);
 
-/// What is left to say on the terminal once the folder is written.
+/// The text for the terminal once the folder is written.
 struct Comparison {
   scene::Figures figures;  ///< what summary.json holds
   std::string text;        ///< the verdict, wrapped for a terminal

@@ -9,7 +9,7 @@ namespace touchstone::compare {
 /// An error, and how much of it may be the reference's own, in the same norm.
 struct Measure {
   std::optional<double> value;        ///< absent where the figure has no meaning, such as a ratio to no force
-  std::optional<double> uncertainty;  ///< absent where the reference does not know it
+  std::optional<double> uncertainty;  ///< absent where the reference does not give it
 
   /// False where the error is no larger than the reference's uncertainty: the two sides may then agree.
   [[nodiscard]] bool distinguishable() const noexcept {
@@ -17,7 +17,7 @@ struct Measure {
   }
 };
 
-/// Known only when finite: a reference with too few levels has no band.
+/// Known only when finite: a reference with too few levels has no uncertainty.
 [[nodiscard]] inline std::optional<double> known(double uncertainty) {
   return std::isfinite(uncertainty) ? std::optional(uncertainty) : std::nullopt;
 }

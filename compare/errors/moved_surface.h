@@ -11,7 +11,7 @@ namespace touchstone::compare {
 /// theorem. The surface must be closed; vertices doubled at an edge must move alike.
 [[nodiscard]] double enclosed_volume_m3(const scene::Surface& surface, const Eigen::Matrix3Xd& displacement_m);
 
-/// Largest distance from a vertex of one moved surface to the triangles of the other, both ways [m]. Exact for
+/// Largest distance from a vertex of one moved surface to the triangles of the other, in both directions [m]. Exact for
 /// the vertices; the inside of a triangle may be farther by the sag of one triangle. NaN when a place is not finite.
 [[nodiscard]] double hausdorff_m(const scene::Surface& surface, const Eigen::Matrix3Xd& displacement_a_m,
                                  const Eigen::Matrix3Xd& displacement_b_m);

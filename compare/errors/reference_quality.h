@@ -17,7 +17,7 @@ using reference::grazing_depth_m;
 
 /// The largest over the deep instants, absent where there is none.
 struct ReferenceQuality {
-  std::optional<double> force_uncertainty_rel;     ///< band / |F|
+  std::optional<double> force_uncertainty_rel;     ///< uncertainty / |F|
   std::optional<double> residual_penetration_rel;  ///< into the tool at contact nodes, / depth
   std::optional<double> between_nodes_rel;         ///< into the tool between contact nodes, / depth
   std::optional<double> equilibrium_rel;           ///< |contact + support| / |contact|

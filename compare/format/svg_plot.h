@@ -1,5 +1,5 @@
 // Line plots as SVG text, for a page that must open anywhere: no library, no display, no script.
-// Text and axes take the page's text colour; every marker says its numbers when pointed at.
+// Text and axes take the page's text colour; every marker shows its numbers when pointed at.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 namespace touchstone::compare {
 
 /// Who a curve belongs to; fixes colour and dash so that a side looks the same in every figure and in grey print. The
-/// last three tell curves of one side apart.
+/// last three distinguish curves of one solver.
 enum class Look { reference, fast, plain, outline, inclusion, first, second, third };
 
 /// One curve; a point that is not finite, or not positive on a logarithmic axis, interrupts it.
@@ -69,7 +69,7 @@ struct Plot {
   std::vector<Bars> bars = {};
 };
 
-/// @returns one <svg> element, well-formed XML; without any point to draw it says "nothing to show"
+/// @returns one <svg> element, well-formed XML; without any point to draw it shows "nothing to show"
 [[nodiscard]] std::string to_svg(const Plot& plot, int width_px = 560, int height_px = 360);
 
 /// Where the x axis of such an element begins and ends [px].
@@ -82,7 +82,7 @@ struct Plot {
 [[nodiscard]] std::string in_rows(const std::string& title, const std::vector<std::string>& svgs, int columns,
                                   int width_px, int height_px);
 
-/// What a reader sees of a band: none, one narrower than the line within it, or an area.
+/// How a band appears in the plot: not at all, narrower than its line, or as an area.
 enum class BandSeen { nowhere, narrower_than_the_line, area };
 [[nodiscard]] BandSeen band_seen(const Plot& plot, const Band& band, int width_px = 560, int height_px = 360);
 

@@ -17,7 +17,7 @@ inline constexpr std::string_view no_break = "\u00a0";
 /// A ratio smaller than this is round-off or the tolerance of a solver.
 inline constexpr double least_ratio = 1e-6;
 
-/// A ratio as a percentage, "99.6 %"; "below 0.0001 %" where it is smaller than anything here is known to.
+/// A ratio as a percentage, "99.6 %"; "below 0.0001 %" where it is below the accuracy of every figure here.
 [[nodiscard]] std::string percent_text(double ratio);
 
 /// A count in thousands from a thousand on: "400", "4k".

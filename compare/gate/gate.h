@@ -73,7 +73,7 @@ using GateNames = std::vector<std::string>;
 void require_known(const GateFolder& folder, const GateNames& names);
 
 /// Runs the files asked for and holds their gates. A scene that gives no answer makes its gates red.
-/// @param working  told what is run; may be empty
+/// @param working  called with what is run; may be empty
 [[nodiscard]] std::vector<GateRecord> run_gates(const GateFolder& folder, const GateNames& names,
                                                 const std::function<void(const std::string&)>& working = {});
 

@@ -1,4 +1,4 @@
-// Limits may become narrower; wider needs somebody's name and a date.
+// Limits may become narrower; a wider one needs a waiver with a name and a date.
 #pragma once
 
 #include "compare/gate/gate.h"

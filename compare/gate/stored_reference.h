@@ -1,7 +1,7 @@
 // Reference results small enough to be committed, which accuracy gates compare with. A folder holds
 //
 //   reference.json   what it is of, how good it is, the command that makes it again, checksums of the other two
-//   curve.csv        a row per instant: pose, forces, bands, quality
+//   curve.csv        a row per instant: pose, forces, uncertainties, quality
 //   surface.f32.z    displacement and its uncertainty of every rest point at every instant, in single precision
 #pragma once
 

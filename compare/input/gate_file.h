@@ -26,7 +26,7 @@
 
 namespace touchstone::compare {
 
-/// A key as the gate reference explains it; the reader knows no others.
+/// A key as the gate reference explains it; the reader refuses all others.
 struct GateKey {
   std::string key;            ///< within its table
   std::string value;          ///< what may stand there

@@ -5,7 +5,7 @@
 //   g = s + C f,   g >= 0,   f >= 0,   g_i f_i = 0,
 // which is the reference's problem of small strain on its own mesh. Solved by the primal-dual active set method from
 // the last step's contact on (M. Hintermueller, K. Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865-888), a Cholesky
-// factor of C's touching part following what joins and leaves.
+// factor of the active part of C updated as nodes join and leave.
 #pragma once
 
 #include "compare/model/growing_cholesky.h"

@@ -31,7 +31,7 @@ struct ComparisonDrawings {
 [[nodiscard]] ComparisonDrawings comparison_drawings(const scene::Scene& scene, const fast::Run& run,
                                                      const reference::Result& result, const Errors& errors);
 
-/// Force of both sides with the reference's band, over depth or, where that does not only grow, over time.
+/// Force of both solvers with the reference's uncertainty, over depth or, where that does not only grow, over time.
 [[nodiscard]] Plot force_plot(const Errors& errors);
 
 /// Largest uncertainty of the reference's force relative to it; nothing where it is unknown at an instant of contact.

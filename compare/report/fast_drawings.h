@@ -22,12 +22,12 @@ struct Drawing {
 /// Names of all drawings any scene can have.
 [[nodiscard]] const std::vector<std::string>& drawing_names();
 
-/// None where the tool never touches the body. Else "force" over time; with friction "friction"; with several regions
+/// None where there is never contact. Else "force" over time; with friction "friction"; with several regions
 /// at a time "regions"; normal force over "depth"; contact "area"; where the tool travels sideways while pressed
 /// "path", with friction also "friction-path".
 [[nodiscard]] std::vector<Drawing> force_drawings(const scene::Scene& scene, const fast::Run& run);
 
-/// "section" of the whole body at instants_shown(); where the tool ever touches it also around the "contact", the
+/// "section" of the whole body at instants_shown(); where there is ever contact also around the "contact", the
 /// "dent" in the section, and a "view" in space at the middle instant or that with most regions.
 [[nodiscard]] std::vector<Drawing> shape_drawings(const scene::Scene& scene, const fast::Run& run);
 
@@ -36,7 +36,7 @@ struct Drawing {
 /// way. Else the deepest. Of equal ones the last.
 [[nodiscard]] std::vector<std::size_t> instants_shown(const fast::Run& run);
 
-/// Stretches of time "stuck" and "sliding"; an instant stands for the time nearer to it than to its neighbours. Several
+/// Intervals of time "stuck" and "sliding"; an instant represents the time nearer to it than to its neighbours. Several
 /// regions slide when one does.
 [[nodiscard]] std::vector<Span> friction_spans(const fast::Run& run);
 

@@ -13,7 +13,7 @@ namespace touchstone::compare {
 /// The cells of one result under them.
 [[nodiscard]] std::string headline_cells(const scene::Figures& figures);
 
-/// What the table says in it, as a paragraph below.
+/// The findings of the table, as a paragraph below it.
 [[nodiscard]] std::string headline_note();
 
 }  // namespace touchstone::compare

@@ -22,7 +22,7 @@ struct JudgedModel {
 };
 
 /// Runs and judges the models that stand beside the one already run.
-/// @param given   the scene as its file says
+/// @param given   the scene as in its file
 /// @param judged  the scene that was run: `given`, or with tuned constants
 /// @param run, errors  of `judged`
 /// @param tuned   name of the parameter file; empty: none
@@ -32,7 +32,7 @@ struct JudgedModel {
                                                     const fast::Run& run, const Errors& errors,
                                                     const reference::Result& result, const std::string& tuned);
 
-/// The table for a terminal, with a line that says how to read it.
+/// The table for a terminal, with a line that explains it.
 [[nodiscard]] std::string model_table_text(const std::vector<JudgedModel>& models);
 
 /// The table for a page.

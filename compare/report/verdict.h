@@ -35,7 +35,7 @@ struct Verdict {
   [[nodiscard]] std::string text() const;
 };
 
-/// For a reader who knows neither model. An error within the reference's uncertainty is called not distinguishable.
+/// For a reader who is new to both models. An error within the reference's uncertainty is called not distinguishable.
 [[nodiscard]] Verdict verdict(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
                               const Errors& errors, const Call& call);
 

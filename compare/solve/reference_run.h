@@ -14,7 +14,7 @@ namespace touchstone::compare {
 /// Limit of one solve that refines until an error is reached.
 constexpr double default_minutes = 60.0;
 
-/// What the command line says about a solve.
+/// Command-line options of a solve.
 struct ReferenceOptions {
   std::filesystem::path store = "out/reference-store";  ///< content-addressed results, shared by all runs
   std::optional<int> levels = {};                       ///< in place of the scene's levels or error
@@ -38,7 +38,7 @@ struct ReferenceOptions {
 [[nodiscard]] reference::Result solve_with_progress(const scene::Scene& scene, const scene::Surface& surface,
                                                     const ReferenceOptions& options, bool quiet);
 
-/// Runs a solve; its ways of giving no answer become one message and the exit code that is returned.
+/// Runs a solve; where it gives no answer, prints one message and returns the exit code.
 [[nodiscard]] int with_reference_exits(const std::function<int()>& solve);
 
 /// Writes curve.csv, summary.json and manifest.json of the reference alone.

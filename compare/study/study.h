@@ -55,7 +55,7 @@ struct StudyManifest {
 StudyManifest expand(const Study& study, const std::filesystem::path& folder,
                      const std::filesystem::path& program, const std::filesystem::path& store);
 
-/// Where a result folder stands in the study it lies in.
+/// The position of a result folder in its study.
 struct StudyPlace {
   std::filesystem::path study;  ///< the study's folder, without symbolic links
   int index = 0;                ///< of the case, from 1

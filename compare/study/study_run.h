@@ -43,7 +43,7 @@ struct CaseRange {
 };
 
 /// Runs what is not done of the range, then waits for the cases that other processes have in hand.
-/// @param say  one line about every case
+/// @param say  called with one line about every case
 /// @returns 0 when all are done; of one case its exit code, of several 1 when any failed; fast::interrupted at once
 /// when
 ///          a run was stopped

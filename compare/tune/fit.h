@@ -1,5 +1,5 @@
-// Bounded least squares that says what it does not know: several starts, active bounds, the parameters that the data
-// leave open, profiles. It knows nothing of contacts. Minimised by Ceres (Levenberg-Marquardt, projected on the box).
+// Bounded least squares that reports what the data do not determine: several starting points, active bounds, open
+// parameters, profiles. Independent of contact. Minimised by Ceres (Levenberg-Marquardt, projected on the box).
 #pragma once
 
 #include <Eigen/Core>
@@ -41,12 +41,12 @@ struct FitStart {
 
 enum class AtBound { no, low, high };
 
-/// What the data say about one parameter.
+/// The result for one parameter.
 struct Determination {
   double value = 0.0;
   AtBound at_bound = AtBound::no;
-  bool open = false;  ///< known no better than its bounds say already
-  /// Standard error, as a share of the value where it is searched in its logarithm, in its unit otherwise. Absent at an
+  bool open = false;  ///< determined no better than by its bounds
+  /// Standard error, relative to the value where it is searched in its logarithm, in its unit otherwise. Absent at an
   /// active bound and for an open parameter, where a bare number would mislead; where another bound is active it holds
   /// only while that parameter stays there.
   std::optional<double> error;
@@ -64,12 +64,12 @@ struct Fit {
   /// Of the parameters away from their bounds; NaN where one is at a bound or open.
   Eigen::MatrixXd correlation;
   int rank = 0, free = 0;  ///< of the Jacobian, and how many columns it has: parameters away from their bounds
-  double condition = 0.0;  ///< of the Jacobian per share of the bounds; infinite where rank < free
+  double condition = 0.0;  ///< of the Jacobian, parameters scaled by their bounds; infinite where rank < free
   /// Directions that the data leave open: in each the parameters that take part in it.
   std::vector<std::vector<std::size_t>> open_directions;
 };
 
-/// A parameter counts as open when its standard error exceeds this share of its bounds; that of a number of which
+/// A parameter counts as open when its standard error exceeds this fraction of its bounds; that of a number of which
 /// nothing is known between them is 0.29.
 inline constexpr double open_share = 0.25;
 

@@ -37,10 +37,10 @@ struct StageFit {
   std::vector<FitParameter> searched;  ///< the same, as the fit takes them
   Fit fit;
   std::vector<Profile> profiles;
-  std::vector<std::string> notes;  ///< what the data cannot say, a sentence each
+  std::vector<std::string> notes;  ///< what the data do not determine, a sentence each
 };
 
-/// What one instant says about where the model holds.
+/// Error of the model at one instant, and where it occurs.
 struct RegimePoint {
   double depth_m = 0.0;
   double depth_over_radius = 0.0;  ///< of the tool where it is round, else of the reference's contact disc
@@ -94,7 +94,7 @@ void keep_instants(scene::Answer& answer, const std::vector<std::size_t>& instan
 /// A contact's scene with the model's formulation, law and values so far.
 [[nodiscard]] scene::Scene tuned_scene(const scene::Scene& scene, const TunedModel& model);
 
-/// @param say  one line about what begins; may be empty
+/// @param say  called with one line about what begins; may be empty
 /// @throws what `solve` throws, std::runtime_error when the model has no answer at any start of a fit
 [[nodiscard]] Tuning tune(const TuningStudy& study, const SolveReference& solve,
                           const std::function<void(const std::string&)>& say = {});

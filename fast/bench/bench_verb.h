@@ -17,7 +17,7 @@ struct BenchVerbOptions : BenchOptions {
 
 /// Runs the benchmark, prints the tables, leaves summary.json and manifest.json.
 /// @param command for the manifest, such as "touchstone-fast bench"
-/// @returns done: a missed target is told, not an error
+/// @returns done: a missed target is reported, not an error
 /// @throws scene::InputError for bad input
 int bench_verb(const BenchVerbOptions& options, const std::string& command);
 

@@ -6,7 +6,7 @@
 
 namespace touchstone::bench {
 
-/// Outside the kernel only. Where counting is not permitted or the machine has no counters, it says so and counts
+/// Outside the kernel only. Where counting is not permitted or the machine has no counters, it reports so and counts
 /// nothing.
 class HardwareCounters {
  public:

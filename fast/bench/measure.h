@@ -35,7 +35,7 @@ struct Durations {
 
 struct CaseResult {
   Case which;
-  bool available = true;  ///< else this build cannot run the case, and `why` says why
+  bool available = true;  ///< else this build cannot run the case, and `why` gives the reason
   std::string why;
   int triangles = 0, vertices = 0, ticks = 0;
   int regions_least = 0, regions_most = 0;  ///< contact regions that pressed, over the measured ticks

@@ -1,4 +1,4 @@
-// What the benchmark says: targets met or missed, the figures, the table.
+// Results of the benchmark: targets met or missed, the figures, the table.
 #pragma once
 
 #include "fast/bench/measure.h"

@@ -19,7 +19,7 @@ struct Case {
   [[nodiscard]] std::string name() const;
 };
 
-/// Triangles wished for under a name such as "4k". @throws scene::InputError for another name
+/// Number of triangles for a name such as "4k". @throws scene::InputError for another name
 [[nodiscard]] int triangles_wished(const std::string& size);
 
 /// Every body, size and number of regions; the quick list leaves out what no target needs.
@@ -40,7 +40,7 @@ struct Case {
 /// one mesh, sampled as densely.
 [[nodiscard]] scene::Scene scene_of(const Case& which);
 
-/// Ticks of the way in, before anything is measured.
+/// Ticks of the approach, before anything is measured.
 inline constexpr std::int64_t approach_ticks = 64;
 
 /// The tool's pose at a tick: from apart to its depth (2.5 mm for one ball, 2.2 mm for several) during the approach,

@@ -1,4 +1,4 @@
-// What every verb of both executables shares: options, exit codes, how progress and plans are shown.
+// Common to all commands of both executables: options, exit codes, how progress and plans are shown.
 #pragma once
 
 #include "scene/model/plan.h"
@@ -37,7 +37,7 @@ CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& wh
 /// The verbs of --help under headings, in this order; the rest under "More".
 void group_verbs(CLI::App& app, const std::vector<std::pair<std::string, std::vector<std::string>>>& groups);
 
-/// What a misspelt verb or option is to be told, with the nearest known one; empty when the fault is another.
+/// The message for a misspelt command or option, with the nearest known one; empty when the fault is another.
 [[nodiscard]] std::string misspelt(const CLI::App& app);
 
 /// Parses and runs the chosen verb; a command that cannot be is one message on stderr and an exit code. Without any

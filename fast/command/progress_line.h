@@ -1,4 +1,4 @@
-// One line that tells how far a piece of work is: redrawn in place on a terminal, now and then in a log.
+// One line that shows the progress of a piece of work: redrawn in place on a terminal, now and then in a log.
 #pragma once
 
 #include <chrono>
@@ -31,7 +31,7 @@ class ProgressLine {
   bool quiet_, terminal_, open_ = false;
   int file_descriptor_;
   std::chrono::steady_clock::duration heartbeat_;
-  std::size_t width_ = 0;  // of what stands in the line
+  std::size_t width_ = 0;  // of the text in the line
   std::string marked_;     // the last text that was
   std::chrono::steady_clock::time_point last_;
 };

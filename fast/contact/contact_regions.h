@@ -1,5 +1,5 @@
-// Which contact points belong together, and which region of the last tick they are (sections II-B, III, appendix I).
-// The paper cuts its meshes apart to follow several contacts; here the points themselves are told apart.
+// Clusters the contact points into regions and tracks the regions from tick to tick (sections II-B, III, appendix I).
+// The paper divides its meshes to follow several contacts; here the points are clustered.
 #pragma once
 
 #include "fast/contact/contact_detection.h"
@@ -26,10 +26,10 @@ struct Cluster {
   scene::Vec3 center_W_m = scene::Vec3::Zero();  ///< area-weighted centre
 };
 
-/// The tool's samples in cells that are smaller than r_th, and which cells stand near each other. The samples are rigid
-/// in the tool frame, so all of it is fixed once built; a tick looks only at the cells it meets.
+/// The tool's samples in cells that are smaller than r_th, and which cells are near each other. The samples are rigid
+/// in the tool frame, so all of it is constant; a tick visits only the cells with contact points.
 struct ClusterGrid {
-  /// Another cell with samples nearer than r_th, perhaps. Each pair stands once, at its cell of lower number.
+  /// Another cell that may have samples nearer than r_th. Each pair is listed once, at its cell of lower number.
   struct Neighbour {
     std::int32_t cell = 0;
     bool certain = false;  ///< every sample of one is nearer than r_th to every sample of the other
@@ -56,7 +56,7 @@ struct ClusterGrid {
 /// @param r_th_m > 0
 [[nodiscard]] ClusterGrid cluster_grid(const ToolSamples& tool, double r_th_m);
 
-/// What cluster() writes on its way; its content does not outlast a call.
+/// Scratch memory of cluster(), valid during a call only.
 class ClusterScratch {
  public:
   /// @param points at most
@@ -107,19 +107,19 @@ struct TrackedRegion {
 
 struct Tracking {
   int count = 0;
-  int dropped = 0;  ///< new regions beyond the capacity, the shallowest; their clusters go without force
+  int dropped = 0;  ///< new regions beyond the capacity, the shallowest; their clusters have no force
 };
 
-/// Follows regions from tick to tick: remembers which sample belonged to which.
+/// Follows regions from tick to tick: stores the region of every sample.
 class RegionTracker {
  public:
   /// @param max_regions at most 32767
   RegionTracker(int samples, int max_clusters, int max_regions);
 
-  /// The regions of this tick by creation: the ones that go on, in the last tick's order, then the new ones.
-  /// - Regions choose in the order of their creation. Each takes, of the clusters nobody has taken, the one in which
-  ///   most of its last samples lie, by area. So the larger part of a region that splits is that region and the other
-  ///   part a new one, and where regions merge the oldest goes on and the others end.
+  /// The regions of this tick in order of creation: the continuing ones, in the last tick's order, then the new ones.
+  /// - Regions choose in the order of their creation. Each takes, of the clusters not yet taken, the one in which
+  ///   most of its last samples lie, by area. So when a region splits, its larger part continues it and the other part
+  ///   is a new one; when regions merge, the oldest continues and the others end.
   /// - A region none of whose samples is in contact any more takes the nearest cluster that is free and without any
   ///   region's samples, if the centres are nearer than reach_m: a tool that rolls fast.
   /// - Of the remaining clusters, the new regions, the deepest comes first. (The paper has one new region per tick.)

@@ -1,4 +1,4 @@
-// How the tool's mass is shared out over the points of a contact region, appendix III.
+// Mass weights: distribution of the tool's mass over the points of a contact region, appendix III.
 #pragma once
 
 #include "fast/contact/contact_detection.h"
@@ -6,13 +6,13 @@
 namespace touchstone::fast {
 
 /// Sets share[i] = m_i / m of every point, from r_i (distance of p_i from the line through the tool's mass centre along
-/// d), theta_i and A_i. Shares are >= 0 and sum to 1; where all weights vanish they are uniform.
+/// d), theta_i and A_i. The mass weights are >= 0 and sum to 1; where all terms vanish they are uniform.
 /// @param d_T unit direction of deformation in tool coordinates
 /// @param groups of the tool's cells
 using DistributeMass = void (*)(const scene::Vec3& d_T, const CellGroups& groups, RegionPoints& points) noexcept;
 
 /// As printed: m_i ~ r_i cos(theta_i). Errata E6: the printed formula contradicts the text beside it; a point under the
-/// mass centre gets nothing. Guarded where the sum vanishes.
+/// mass centre has weight zero. Guarded where the sum vanishes.
 void distribute_mass_published(const scene::Vec3& d_T, const CellGroups& groups, RegionPoints& points) noexcept;
 
 /// Errata E6: m_i is the integral of 1 / r over the point's area projected along d, which is the text's "inversely

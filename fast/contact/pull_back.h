@@ -1,6 +1,6 @@
-// Contact with the already deformed body (section VI): a later region sees Shape_{i-1}, the body under the regions
-// before it. Instead of a distance to that shape, which changes every tick, its points are taken back to the body at
-// rest.
+// Contact with the already deformed body (section VI): a later region is in contact with Shape_{i-1}, the body deformed
+// by the earlier regions. That shape changes every tick, so no distance to it is computed. Instead a rest-point search
+// takes the region's points to the body at rest.
 #pragma once
 
 #include "fast/contact/region_points.h"
@@ -38,7 +38,7 @@ struct QuadraticFit {
   Eigen::Matrix<double, 6, PointLanes::size> solve;  ///< its pseudo-inverse
 };
 
-/// What pull_back() writes on its way; its content does not outlast a call. Storage is fixed at construction.
+/// Scratch memory of pull_back(), valid during a call only. Storage is fixed at construction.
 struct PullBackScratch {
   /// @param points at most
   explicit PullBackScratch(int points);
@@ -48,27 +48,28 @@ struct PullBackScratch {
   struct Foot {
     scene::SurfaceQuery rest;   ///< c
     scene::Vec3 off_m;          ///< p - c - u(c), of the best c so far
-    scene::Vec3 from_m, way_m;  ///< the last step, to c
-    scene::Vec3 normal;         ///< of the displaced surface where it began
-    double distance_m;          ///< signed, of p; 0 where it is not inside for sure
-    bool overshot;              ///< the last step led further off
+    scene::Vec3 from_m, way_m;  ///< start and displacement of the last step, to c
+    scene::Vec3 normal;         ///< of the displaced surface at the start of the last step
+    double distance_m;          ///< signed, of p; 0 where it is certainly not inside
+    bool overshot;              ///< the last step increased the distance
     bool settled;               ///< the last step was short
   };
   std::vector<Foot> foot;             ///< per point
-  std::vector<double> height_m;       ///< per point, over the displaced surface at least
+  std::vector<double> height_m;       ///< per point, a lower bound over the displaced surface
   std::vector<std::int32_t> seeking;  ///< points whose foot is not yet the closest one
   std::vector<std::int32_t> near;     ///< of them those that may be inside
   PointLanes lanes, beside, across;
   QuadraticFit fit;
 };
 
-/// Takes every point back beside the rest point c whose displaced place c + u(c) is closest to it, as far from the body
-/// at rest as it was from the deformed one, and drops those that are not inside. What is then found out about the
-/// points and the rest shape (Summarise, MeasureDepths) is true of the given points and the deformed one. World
-/// coordinates and depth_m change; tool coordinates stay, for forces act where the tool is.
+/// Rest-point search. For every point finds the rest point c whose displaced position c + u(c) is closest to it, and
+/// moves the point next to c, at the same distance from the body at rest as it had from the deformed one. Drops points
+/// that are not inside. Results for the moved points and the rest shape (Summarise, MeasureDepths) then hold for the
+/// given points and the deformed shape. World coordinates and depth_m change; tool coordinates stay, since forces act
+/// on the tool where it is.
 ///
-/// The foot of a point is first guessed from the displacement across the region, taken as quadratic, and then followed
-/// down the slope of the displaced surface by Newton's method.
+/// The initial guess of c comes from a quadratic fit of the displacement across the region; Newton's method on the
+/// displaced surface then improves it.
 /// @param points with depth_m to the rest surface
 template <class Body>
 InsideSummary pull_back(const scene::Shape& shape, const DisplacedSurface& surface, RegionPoints& points,

@@ -3,7 +3,7 @@
 //
 // Not for the step: a distance takes FCL up to 0.8 ms, a query that finds contact takes memory from the heap, and
 // triangles only approach the shapes. The step finds contact by itself, in every phase; this serves the records of a
-// track. What FCL says about meshes that overlap (penetration depth, negative distance) or about
+// track. FCL's results for overlapping meshes (penetration depth, negative distance) or about
 // a hierarchy that was refitted is wrong, so neither is used: hierarchies are built once, from the rest shapes.
 #pragma once
 

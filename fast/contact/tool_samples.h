@@ -1,6 +1,6 @@
-// Points of the tool's surface that feel contact, and the bounding-sphere tree that finds them (sections III, IV-C).
-// The paper takes the vertices of the tool's mesh "provided that these vertex points are evenly distributed"; sampling
-// the surface makes that true for any tool.
+// Points of the tool's surface where contact is evaluated, and the bounding-sphere tree that finds them (sections III,
+// IV-C). The paper takes the vertices of the tool's mesh "provided that these vertex points are evenly distributed";
+// sampling the surface makes that true for any tool.
 #pragma once
 
 #include "fast/contact/surface_cells.h"
@@ -14,8 +14,8 @@ namespace touchstone::fast {
 /// Samples in a leaf of the tree, at most.
 inline constexpr std::int32_t tool_leaf_size = 8;
 
-/// Balls around the samples [begin, end) in tool coordinates, and around their cells. Nodes stand in depth-first order:
-/// the first child of an inner node follows it, and `next` is the node to visit when this one's samples are done with.
+/// Balls around the samples [begin, end) in tool coordinates, and around their cells. Nodes are in depth-first order:
+/// the first child of an inner node follows it, and `next` is the node to visit after this one's samples.
 struct SampleBall {
   scene::Vec3 center_T_m;
   double radius_m = 0.0;        ///< of the ball with the samples
@@ -25,7 +25,7 @@ struct SampleBall {
   bool leaf = true;
 };
 
-/// Evenly spread points of the tool's surface, each with outward normal and share of the surface, in the order of the
+/// Evenly spread points of the tool's surface, each with outward normal and area of the surface, in the order of the
 /// tree's leaves. Frame T: its origin is the tool's mass centre.
 struct ToolSamples {
   std::vector<double> x_T_m, y_T_m, z_T_m;
@@ -41,15 +41,15 @@ struct ToolSamples {
 };
 
 /// Samples of any tool, each for nearly the same area, together for all of it. Their number is about `count` and at
-/// most twice that, but for the least a tool needs: four in each ring, one on each face or triangle that stands alone.
+/// most twice that, except for the minimum a tool needs: four in each ring, one on each separate face or triangle.
 /// - sphere: of equal area
 /// - capsule, cylinder: rings of evenly spaced points, at least two along each piece of the profile
 /// - box: a grid on every face
-/// - mesh: triangles are halved at their longest side until small enough; of a finer mesh, neighbouring triangles that
-///   look the same way share a sample, at the one nearest their middle. Those of a convex mesh are shared out evenly:
-///   their number is that of the shape it may stand for, to some percent
-/// The pattern is mirrored where the tool is, so a straight press has no side force or torque of the sampling's making.
-/// Samples stand within the faces, none on an edge or corner.
+/// - mesh: triangles are halved at their longest side until small enough; of a finer mesh, neighbouring triangles with
+///   similar normals have one sample, on the triangle nearest to their centre. On a convex mesh they are evenly spread:
+///   their number is that of a primitive shape of the same form, to some percent
+/// The pattern is mirrored where the tool is, so that in a straight press sampling causes no side force or torque.
+/// Samples are inside the faces, none on an edge or corner.
 [[nodiscard]] ToolSamples sample_tool(const scene::Tool& tool, int count);
 
 /// The same with their cells; of a sphere in rings, too.

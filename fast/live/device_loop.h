@@ -28,7 +28,7 @@ class TickListener {
   TickListener& operator=(const TickListener&) = default;
 };
 
-/// What others may know while the loop runs.
+/// What other threads may read while the loop runs.
 struct LoopProgress {
   std::atomic<std::int64_t> ticks{0}, missed{0};
   std::atomic<double> force_n{0.0};  ///< norm of the published force

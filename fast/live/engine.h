@@ -1,4 +1,4 @@
-// The contact model as the device loop sees it. The only file of the loop that knows the model's state.
+// The contact model's interface to the device loop. No other file of the loop uses the model's state.
 #pragma once
 
 #include "fast/live/device.h"

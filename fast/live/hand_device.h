@@ -1,4 +1,4 @@
-// A virtual hand that feels the force: the loop is closed without hardware.
+// A virtual hand on which the force acts: closes the loop without hardware.
 #pragma once
 
 #include "fast/live/device.h"

@@ -1,4 +1,4 @@
-// How well the loop kept time, and what it sent.
+// Statistics of a live run: timing, and forces sent.
 #pragma once
 
 #include "fast/run/duration_histogram.h"

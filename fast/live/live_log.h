@@ -17,11 +17,11 @@ void append_log_line(const TickRecord& record, std::string& text);
 
 /// A log as read.
 struct LiveLog {
-  int rate_hz = 0;  ///< of the ticks; 0 where the log is too short to tell
+  int rate_hz = 0;  ///< of the ticks; 0 where the log is too short
   std::vector<TickRecord> ticks;
 };
 
-/// Reads a log back. Columns may stand in any order, and others among them are passed over.
+/// Reads a log back. Columns may be in any order, and unknown ones are skipped.
 /// @throws scene::InputError with one fault, the first: file, line, and what was expected. A pose may be anything, as a
 ///   device may give it; the rest is finite. A log that lacks records (they were dropped) cannot be replayed.
 [[nodiscard]] LiveLog read_log(const std::filesystem::path& file);

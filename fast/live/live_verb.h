@@ -1,4 +1,4 @@
-// `live`, the same in both executables but for the page, which only the full one can write.
+// `live`, the same in both executables, except for the page, which only the full one can write.
 #pragma once
 
 #include "fast/command/command_line.h"

@@ -1,4 +1,4 @@
-// What stands between the model and the hand: a wrench to the device is finite, bounded and never jumps.
+// Safety limits between model and device: the wrench sent is finite, bounded and never jumps.
 #pragma once
 
 #include "fast/live/device.h"
@@ -11,7 +11,7 @@ namespace touchstone::live {
 struct WrenchLimits {
   double force_max_n = 0.0;
   double force_slew_n_per_s = 0.0;
-  double release_s = 0.0;  ///< fall to zero after a bad pose, and the way back
+  double release_s = 0.0;  ///< time to fall to zero after a bad pose, and to return
   double lever_m = 1.0;    ///< reach of the tool about its mass centre
 
   [[nodiscard]] static WrenchLimits of(const scene::LiveSettings& settings, double lever_m) noexcept {
@@ -20,10 +20,11 @@ struct WrenchLimits {
 };
 
 /// Saturates the norm and the change of a wrench, keeping its direction: force and torque are scaled by one factor.
-/// A wrench that is cut axis by axis would point elsewhere, one that is cut to zero would jump.
+/// A wrench limited axis by axis would change its direction; one set to zero would jump.
 class WrenchLimiter {
  public:
-  /// @param period_s between two calls. Missed ticks are not told: the slew is then below its limit, never above.
+  /// @param period_s between two calls. Missed ticks are not counted: the slew rate is then below its limit, never
+  ///   above.
   WrenchLimiter(const WrenchLimits& limits, double period_s) noexcept;
 
   /// The wrench to send. |F| <= force_max_n and |T| <= force_max_n lever_m; no change since the last call beyond the

@@ -1,4 +1,4 @@
-// The scene's track as a device that feels nothing.
+// The scene's track as a device that ignores the force.
 #pragma once
 
 #include "fast/live/device.h"

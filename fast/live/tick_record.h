@@ -27,7 +27,7 @@ struct TickRecord {
   std::int64_t lateness_ns = 0, force_ns = 0, shape_ns = 0;
 };
 
-/// The newest shape, for whoever draws it.
+/// The newest shape, for drawing.
 struct ShapeFrame {
   std::int64_t tick = -1;     ///< -1: at rest, before the first tick
   std::int64_t stamp_ns = 0;  ///< the loop's clock at publication

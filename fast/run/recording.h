@@ -21,7 +21,7 @@ struct RecordedTick {
   DeformationOrigin origin;  ///< as the points have it, without friction's drag
   int points = 0;
   bool spread = false;          ///< RegionPoints::spread
-  std::vector<double> numbers;  ///< x_T, y_T, z_T, depth, rises and share of every point, column by column
+  std::vector<double> numbers;  ///< x_T, y_T, z_T, depth, rises and mass weight of every point, column by column
 };
 
 /// The ticks on which the answer at the instants hangs: all of them with friction, which remembers; else the instants.

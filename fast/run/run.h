@@ -47,8 +47,8 @@ struct Run : scene::Answer {
 /// What the fast model computes for this scene and what it leaves out.
 [[nodiscard]] scene::Plan plan(const scene::Scene& scene);
 
-/// Runs the whole track at fast.rate_hz. Deterministic but for the timings. The memory hangs on the instants, not on
-/// the ticks.
+/// Runs the whole track at fast.rate_hz. Deterministic except for the timings. The memory depends on the instants, not
+/// on the ticks.
 /// @param progress called now and then with the fraction done; may be empty
 [[nodiscard]] Run run(const scene::Scene& scene, const std::function<void(double)>& progress = {});
 

@@ -16,7 +16,7 @@ struct Tick {
 };
 
 /// Ticks at the scene's rate, one after the other, so that a long track takes no more memory than a short one. The tick
-/// nearest to an instant takes the instant's own time, so that both sides answer at exactly equal poses.
+/// nearest to an instant takes the instant's own time, so that both solvers compute exactly equal poses.
 class Ticks {
  public:
   /// @param scene  may go out of scope

@@ -109,12 +109,12 @@ class EllipsoidAnchors final : public AnchorPoints {
 /// tips. A body that stands on a dome also has its lowest point, which the support holds.
 ///
 /// The pieces of the profile between two circles, or a circle and the axis, make a band. s is the arc length along it,
-/// phi' = sin phi / (sin phi + cos phi) the way along the chord of a quadrant. Displacements are linear in both, on a
-/// band and on a sector that ends in a tip or a held pole. A cap without an anchor point on the axis is one patch over
-/// all four points of its rim: with t the arc length from the axis over that of the rim, a = t cos phi / (|cos phi| +
-/// |sin phi|) and b = t sin phi / (...) lie in a diamond whose corners are the points, and weights are bilinear in it.
-/// Where a band crosses the support's height the height over it, from 0 to 1 at the band's upper end, stands for s: the
-/// displacement falls linearly to zero there, and below it all is held.
+/// phi' = sin phi / (sin phi + cos phi) the distance along the chord of a quadrant. Displacements are linear in both,
+/// on a band and on a sector that ends in a tip or a held pole. A cap without an anchor point on the axis is one patch
+/// over all four points of its rim: with t the arc length from the axis over that of the rim, a = t cos phi / (|cos
+/// phi| + |sin phi|) and b = t sin phi / (...) lie in a diamond whose corners are the points, and weights are bilinear
+/// in it. Where a band crosses the support's height the height over it, from 0 to 1 at the band's upper end, is used in
+/// place of s: the displacement falls linearly to zero there, and below it all is held.
 ///
 /// Where the rule finds no circle, as on a sphere written as a profile, the profile's corners take their place: the
 /// sphere's upper pole would lie inside a patch.

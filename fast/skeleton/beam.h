@@ -14,7 +14,7 @@ struct BeamSegment {
   double second_moment_m4 = 0.0;   ///< I_z
 };
 
-/// I_z = s^2 / (4 pi): a disc of area s, whatever the axis (errata E17: the paper never says).
+/// I_z = s^2 / (4 pi): a disc of area s, whatever the axis (errata E17: the paper does not give it).
 [[nodiscard]] double second_moment_m4(double area_m2) noexcept;
 
 /// y' / F_y of the contact end [m/N], fixed at the anchor point: the sum over the segments of the integral of

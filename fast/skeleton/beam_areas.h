@@ -10,11 +10,11 @@
 
 namespace touchstone::fast {
 
-/// The triangles (p_i, p_ij, p_ik) that stand for the anchor points' Voronoi regions: p_ij is the centre of the
+/// The triangles (p_i, p_ij, p_ik) that approximate the anchor points' Voronoi regions: p_ij is the centre of the
 /// shortest curve to anchor point j, and j, k are neighbours around a patch. Two anchor points of one patch count as
 /// adjacent, also across a box face's diagonal, where their regions meet in a point: without it a box would have no
 /// triangle at all. With it the triangles cover a box exactly. On a sphere the flat triangles cover 55.3 % of the
-/// surface, the same part of every region, so the shares are exact there too.
+/// surface, the same fraction of every region, so the fractions are exact there too.
 struct AreaTriangles {
   struct Triangle {
     std::array<int, 3> anchor{};   ///< i, j, k
@@ -32,9 +32,9 @@ struct AreaTriangles {
 [[nodiscard]] std::vector<double> voronoi_shares(const AreaTriangles& triangles);
 
 /// The same on the body that earlier regions have deformed (appendix IV). p_ij
-/// follows by the mean of the displacements of i and j, as far as the anchor points alone tell. No share falls under a
-/// millionth of the mean one, so that no beam loses its section; where the anchor points fall together all are equal.
-/// @param anchor_displacement_m per anchor point, from its place at rest; @param shares per anchor point
+/// follows by the mean of the displacements of i and j, as given by the anchor points alone. No fraction is less than a
+/// millionth of the mean one, so that no beam has a zero section; where the anchor points coincide all are equal.
+/// @param anchor_displacement_m per anchor point, from its place at rest; @param shares gamma_i per anchor point
 void voronoi_shares(const AreaTriangles& triangles, std::span<const scene::Vec3> anchor_displacement_m,
                     std::span<double> shares) noexcept;
 

@@ -48,7 +48,7 @@ void beam_stresses(const SkeletonView&, const BeamEnds&, std::span<BeamStress> s
                                                  const PatchPlace& place) noexcept;
 
 /// The stress integrated over a contact region that is small against the body, sigma n A [N]: the force of the outside
-/// on the body there. The tool feels the opposite.
+/// on the body there. The tool is subject to the opposite.
 /// @param normal outward, unit length; @param area_m2 of the region
 [[nodiscard]] scene::Vec3 stress_force_n(const scene::Mat3& stress_W_pa, const scene::Vec3& normal,
                                          double area_m2) noexcept;

@@ -1,4 +1,4 @@
-// Everything the real-time step knows before the first contact. Built once from a scene, constant after that.
+// The constant data of the real-time step, built once from a scene.
 #pragma once
 
 #include "fast/skeleton/anchor_points.h"

@@ -13,7 +13,7 @@
 
 namespace touchstone::fast {
 
-/// What such a tick keeps and needs besides the regions. Storage is fixed at construction.
+/// State and scratch memory of such a tick besides the regions. Storage is fixed at construction.
 struct SeveralRegionsState {
   explicit SeveralRegionsState(const FastModel& model);
 
@@ -26,19 +26,19 @@ struct SeveralRegionsState {
   ShapeStack shapes;
   std::vector<std::vector<BeamStress>> stress_pa;  ///< per region
   std::vector<int> order;                          ///< of creation: places in FastState::regions
-  double bulge_m = 0.0;                            ///< how far the last tick's surface may stand out of the rest one
+  double bulge_m = 0.0;                            ///< largest outward displacement of the last tick's surface, a bound
 
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };
 
-/// Finds, tracks and presses all regions. Region i meets Shape_{i-1} by having its points pulled back through the
-/// displacement of that shape. F_Si = F_ii + sum_{j > i} F_ji, F_ji from the stresses of skeleton j at region i.
+/// Finds, tracks and presses all regions. Contact of region i with Shape_{i-1} is evaluated by a rest-point search
+/// for its points (pull_back.h). F_Si = F_ii + sum_{j > i} F_ji, F_ji from the stresses of skeleton j at region i.
 StepStatus press_several_regions(const FastModel&, const Motion&, FastState&) noexcept;
 
 /// Shape_m of the regions pressed last.
 StepStatus shape_several_regions(const FastModel&, FastState&) noexcept;
 
-/// What the paper leaves open about several regions (errata E18), for one pose.
+/// Effects of what the paper leaves undefined about several regions (errata E18), for one pose.
 struct OrderSpread {
   double spread_rel = 0.0;       ///< largest change of the total force under another order of creation, over that force
   double equilibrium_rel = 0.0;  ///< |force on the tool - force of the support| over the force on the tool

@@ -15,16 +15,16 @@
 
 namespace touchstone::fast {
 
-/// What went other than planned in a step: bits, ok for none. The answer is finite in every case.
+/// What was limited or failed in a step: bits, ok for none. The answer is finite in every case.
 enum class StepStatus : std::uint32_t {
   ok = 0,
   not_finite = 1u << 0,       ///< the pose was not a finite placement; the last good answer was held
   depth_limited = 1u << 1,    ///< deeper than depth_limit_rel of the body's thickness; press less deep
   law_saturated = 1u << 2,    ///< past the peak of a softening law; raise contact.k3_n_per_m3 or press less deep
-  anchors_limited = 1u << 3,  ///< an anchor point outran the contact and was held back; raise fast.s_c_m2
+  anchors_limited = 1u << 3,  ///< an anchor point would move farther than the contact; raise fast.s_c_m2
   regions_full = 1u << 4,     ///< more contact regions than fast.max_regions; the smallest were left out
-  /// Of a run over a track, never of a step, which knows the tool by its samples alone: at a recorded instant the tool
-  /// is inside the body by the exact shapes, and none of its samples is. Raise fast.tool_samples.
+  /// Set by a run over a track, never by a step, which has the tool's samples only: at a recorded instant the tool is
+  /// inside the body by the exact shapes, and none of its samples is. Raise fast.tool_samples.
   contact_missed = 1u << 5
 };
 [[nodiscard]] constexpr StepStatus operator|(StepStatus a, StepStatus b) noexcept {
@@ -44,7 +44,7 @@ struct ContactRegion {
   void clear() noexcept;
 
   bool active = false;
-  bool met = false;                       ///< some of the tool has been inside the shape that it meets
+  bool met = false;                       ///< the tool has been inside the shape that this region contacts
   int id = 0;                             ///< the smallest number free at its creation
   scene::Vec3 d = -scene::Vec3::UnitZ();  ///< direction of deformation, into the body
   double depth_rel = 0.0;                 ///< deepest point of the last tick over the body's thickness there
@@ -54,9 +54,9 @@ struct ContactRegion {
   RegionForce force;
   FrictionState friction;                            ///< as it begins where the scene has none
   scene::Vec3 displacement_m = scene::Vec3::Zero();  ///< D of the equivalent point contact, world
-  BeamEnds ends;                                     ///< what it does to the anchor points
+  BeamEnds ends;                                     ///< displacements and forces of the anchor points
 
-  /// It pushes on the body: not only the tool's back is inside.
+  /// It pushes on the body: not only surfaces facing away from it are inside.
   [[nodiscard]] bool pressing() const noexcept { return active && points.count > 0; }
 };
 
@@ -67,12 +67,12 @@ struct FastState {
 
   PointStore store;
   CellScratch cells;
-  PointStore probe;                    ///< for looking at poses between two ticks
+  PointStore probe;                    ///< for poses between two ticks
   std::vector<ContactRegion> regions;  ///< by creation; the first `region_count` are active
   int region_count = 0;
   SurfaceField field;
   std::unique_ptr<SeveralRegionsState> several;  ///< null where the model has one region
-  StageClock* clock = nullptr;                   ///< laps at the end of every stage, where somebody wants to know
+  StageClock* clock = nullptr;                   ///< laps at the end of every stage, if set
   bool deformed = false;                         ///< field differs from rest
   bool placed = false;                           ///< `pose` holds a good pose
   scene::Pose pose;                              ///< last good pose, its orientation of unit length

@@ -7,8 +7,8 @@
 
 namespace touchstone::fast {
 
-/// Contact and force: the tool's samples against the rest shape, the region's direction, depths, shares and force.
-/// The answer is total_force_n(state) and state.regions; a device gets it before the shape is touched.
+/// Contact and force: the tool's samples against the rest shape, the region's direction, depths, mass weights and
+/// force. The answer is total_force_n(state) and state.regions; a device gets it before the shape is computed.
 /// A pose that is not finite leaves the state as it is.
 StepStatus step_force(const FastModel& model, const scene::Pose& pose, FastState& state) noexcept;
 
@@ -16,7 +16,7 @@ StepStatus step_force(const FastModel& model, const scene::Pose& pose, FastState
 /// state.regions[].ends. Follows step_force.
 StepStatus step_shape(const FastModel& model, FastState& state) noexcept;
 
-/// Of that the displacements alone, where the first region is the only one and presses.
+/// The displacements only, where there is a single region and it presses.
 void displace(const FastModel& model, FastState& state) noexcept;
 
 /// Force and shape. No heap, lock, throw, log or file access happens below; equal poses from equal states give equal

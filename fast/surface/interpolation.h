@@ -19,15 +19,15 @@ struct ContactPoint {
 /// Fills field.displacement_m of every vertex.
 ///
 /// A quantity q of patch k is the sum of its anchor points' q by weight. The contact point enters as one more
-/// interpolation point: its q less what the anchor points alone give at p0, times the hat over p0 (hat.h). What the
-/// support holds stays put: a held anchor point has no displacement, and on held surface no other has weight and the
-/// hat is zero.
+/// interpolation point: its q minus that of the anchor points alone at p0, times the kernel function of p0 (hat.h). The
+/// supported surface does not move: a held anchor point has no displacement, and on the held surface the other anchor
+/// points have zero weight and the kernel function is zero.
 using Interpolate = void (*)(const SurfacePatches&, const std::vector<scene::Vec3>& anchor_displacement_m,
                              const ContactPoint&, SurfaceField&) noexcept;
 
 /// As printed: q is the length of the displacement and its angle to the outward normal. Errata E15: the angle alone
-/// leaves the azimuth open; here it is that of the mean displacement of the patch's interpolation points. A point that
-/// does not move has no angle and takes that of the same mean. Lengths are kept >= 0 and angles within 0 to pi.
+/// leaves the azimuth undefined; here it is that of the mean displacement of the patch's interpolation points. A point
+/// that does not move has no angle and takes that of the same mean. Lengths are kept >= 0 and angles within 0 to pi.
 void interpolate_published(const SurfacePatches&, const std::vector<scene::Vec3>& anchor_displacement_m,
                            const ContactPoint&, SurfaceField&) noexcept;
 

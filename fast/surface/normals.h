@@ -14,7 +14,7 @@ namespace touchstone::fast {
 /// n = (t1 + u_a - u_b) x (t2 + u_c - u_d), t1 and t2 the chords between its neighbours a, b and c, d in two crossing
 /// mesh directions, laid into the rest shape's tangent plane. The undeformed surface thus has the shape's own normals,
 /// where averaged triangles would have theirs. Neighbours are taken within the patch, so a sharp edge keeps one normal
-/// per side; on the border of a patch the vertex itself stands in for the missing neighbour.
+/// per side; on the border of a patch the vertex itself replaces the missing neighbour.
 ///
 /// Most vertices have their neighbours at the same offsets as the vertex before and are worked off in runs. A run goes
 /// on over a vertex or two with other neighbours, as from one row of a mesh to the next; what it leaves there is

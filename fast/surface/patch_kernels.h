@@ -15,7 +15,7 @@ namespace touchstone::fast {
 
 inline constexpr std::size_t corners_max = patch_corners_max;
 
-/// A hat over the vertices of a patch.
+/// A kernel function (hat.h) at the vertices of a patch.
 class Hat {
  public:
   Hat(const SurfacePatches& rest, const HatPart& part) noexcept
@@ -44,7 +44,7 @@ class Hat {
   std::array<const float*, corners_max> weight_;
 };
 
-/// Adds a hat of that height over a patch to the displacements.
+/// Adds a kernel function of that height over a patch to the displacements.
 TOUCHSTONE_INLINE void raise(const SurfacePatches& rest, const Patch& patch, const HatPart& part,
                              const scene::Vec3& height_m, float* x, float* y, float* z) noexcept {
   const Hat hat(rest, part);

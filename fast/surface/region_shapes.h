@@ -1,5 +1,5 @@
-// The deformed shape of several contact regions, section VI-B, and its displacement at any one point, which is what a
-// later region meets.
+// The deformed shape of several contact regions, section VI-B, and its displacement at any one point, which
+// contact of a later region needs.
 #pragma once
 
 #include "fast/surface/hat.h"
@@ -17,23 +17,24 @@ namespace touchstone::fast {
 
 /// One region's part in the deformed shape.
 struct RegionShape {
-  /// U_i, what the region's skeleton does to the anchor points, world. Borrowed until the next ShapeStack::clear().
+  /// U_i, displacements of the anchor points by the region's skeleton, world. Borrowed until the next
+  /// ShapeStack::clear().
   std::span<const scene::Vec3> anchor_displacement_m;
   ContactPoint contact;                      ///< with D_i, which comes on top of Shape_{i-1}
   scene::Vec3 p0_W_m = scene::Vec3::Zero();  ///< on the rest surface
   RegionSize size;
 };
 
-/// Shape_i, i = 0 to count: the regions by creation, each with the make-up of its increment u_i = Shape_i -
+/// Shape_i, i = 0 to count: the regions in order of creation, each with the terms of its increment u_i = Shape_i -
 /// Shape_{i-1}.
 ///
 /// A quantity q of u_i is the sum of its anchor points' q by weight and, on top, the hats (hat.h) over the contact
 /// points p0_k of the regions k <= i by coefficient c_ik, so that it has its value at p0_i and that of no displacement
 /// at every earlier p0_k, which the tool holds. The coefficients solve, for j <= i, sum_k h_k(p0_j) c_ik = target_j -
 /// W(p0_j) q: one triangular factorisation that grows by a row and a column per region, since u_i's matrix is a corner
-/// of the next one's. Its pivots are kept from zero: a region that comes within a hundredth of its patch of an earlier
-/// contact point gives way to that, and nothing grows beyond measure. A contact point that does not move the surface
-/// (held, or without force) takes no part. Storage is fixed at construction.
+/// of the next one's. Its pivots are bounded away from zero: where a contact point is within a hundredth of its patch
+/// of an earlier one, its own value is not met in full, and the coefficients stay bounded. A contact point that does
+/// not move the surface (held, or without force) takes no part. Storage is fixed at construction.
 struct ShapeStack {
   ShapeStack(const SurfacePatches& rest, const AnchorPoints& anchors, int max_regions);
   /// Shape_0: the body at rest.
@@ -42,7 +43,7 @@ struct ShapeStack {
   /// Lengths and angles of one region's displacements at the corners of one patch, as printed.
   struct Printed {
     std::array<double, patch_corners_max> length_m{}, angle_rad{};
-    scene::Vec3 toward = scene::Vec3::Zero();  ///< unit mean of the displacements, stands in for the azimuth (E15)
+    scene::Vec3 toward = scene::Vec3::Zero();  ///< unit mean of the displacements, in place of the azimuth (E15)
   };
 
   std::size_t count = 0;  ///< regions so far

@@ -1,5 +1,5 @@
 // The scene as an input deck of CalculiX, an independent finite element code: the same mesh, material, contact and
-// track, solved by elements and a contact method that share nothing with the reference.
+// track, solved by elements and a contact method that are independent of the reference.
 #pragma once
 
 #include "scene/base/error.h"
@@ -44,7 +44,7 @@ inline constexpr double largest_deck_poissons_ratio = 0.49;
 /// the neo-Hookean law with C10 = mu / 2 and D1 = 2 / kappa, small strain linear elasticity; a cell is of the material
 /// at its middle. The tool is a coat of elements with every node moved; contact is from surface to surface with a
 /// linear pressure over overclosure. Friction is Coulomb's with mu_D: CalculiX has no power law.
-/// @throws scene::InputError with the faults of unsupported_in_deck or when the tool never touches
+/// @throws scene::InputError with the faults of unsupported_in_deck or when there is never contact
 [[nodiscard]] Deck calculix_deck(const scene::Scene& scene, const DeckOptions& options);
 
 }  // namespace touchstone::reference

@@ -28,7 +28,7 @@ struct ToolCoat {
 /// triangles. Elements are a quarter of the contact's half width long at most, and half of the radius of a tight bend.
 [[nodiscard]] ToolCoat<2> meridian_coat(const scene::Tool& tool, const Eigen::Quaterniond& orientation,
                                         const ModelChoice& choice);
-/// @param meets  tells of a corner of a triangle whether it ever comes near the body; triangles without are left out
+/// @param meets  whether a corner of a triangle ever comes near the body; triangles without are left out
 [[nodiscard]] ToolCoat<3> surface_coat(const scene::Tool& tool, const ModelChoice& choice,
                                        const std::function<bool(const scene::Vec3& p_T_m)>& meets);
 

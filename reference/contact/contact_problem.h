@@ -3,21 +3,23 @@
 // Unknowns are nodal displacements u and per-cell pressures p. Equilibrium with contact forces lambda_n >= 0 on the
 // surface nodes n,
 //   F_int(u, p) = sum_n lambda_n grad g_n,   g_n >= 0,   lambda_n g_n = 0,
-// is solved by the primal-dual active set method: in every iteration a touching node's displacement along grad g_n is
-// eliminated exactly (n . du = -g), and lambda_n is read from the internal force. A node stays touching while
-// lambda_n / w_n - c g_n > 0 (w_n its area, c = E over the tool's half width) and starts to touch when g_n < 0. At the
-// end the gap of every touching node is zero to round-off and no other node penetrates. Source: M. Hintermueller, K.
-// Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865-888; for contact S. Hueeber, B. I. Wohlmuth, Comput. Methods Appl.
-// Mech. Eng. 194 (2005) 3147-3166.
+// is solved by the primal-dual active set method: in every iteration the displacement of an active node
+// (`touching` in the code) along grad g_n is eliminated exactly (n . du = -g), and lambda_n is read from the internal
+// force. A node stays active while lambda_n / w_n - c g_n > 0 (w_n its area, c = E over the tool's half width), and
+// becomes active when g_n < 0. At the end the gap of every active node is zero to round-off and no other node
+// penetrates. Source: M. Hintermueller, K. Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865-888; for contact S. Hueeber,
+// B. I. Wohlmuth, Comput. Methods Appl. Mech. Eng. 194 (2005) 3147-3166.
 //
-// With friction a touching node has a force t along the surface besides N n, |t| <= m N, and a slip s: its way over the
-// tool since the last solved state, along the surface. It sticks (s = 0; its displacement is eliminated) or slips,
+// With friction an active node has a force t along the surface besides N n, |t| <= m N, and a slip s: its displacement
+// relative to the tool, along the surface, since the last solved state. It sticks (s = 0; its displacement is
+// eliminated) or slips,
 //   t = m N tau / |tau|,  tau = t - k_n s,
-// and is taken to slip when |tau| > m N. k_n = E sqrt(w_n) is near what the body resists a shift of the node's patch
-// with: much less lets a slipping node stick again far from its place; where it is too much, slip turns round for ever
-// and k_n is lowered. Newton's method on this is that of S. Hueeber, G. Stadler, B. I. Wohlmuth, SIAM J. Sci. Comput.
-// 30 (2008) 572-596; the part of its tangent that is not symmetric is in friction.h. One solve is one increment of the
-// backward Euler rule: t opposes the whole slip, so that no increment gives energy back.
+// and is taken to slip when |tau| > m N. k_n = E sqrt(w_n) is about the body's stiffness against a shift of the node's
+// patch. With a much smaller k_n a slipping node sticks again far from its place; where k_n is too large the direction
+// of slip oscillates, and k_n is reduced. Newton's method on this is that of S. Hueeber, G. Stadler, B. I. Wohlmuth,
+// SIAM J. Sci. Comput. 30 (2008) 572-596; the part of its tangent that is not symmetric is in friction.h. One solve is
+// one increment of the backward Euler rule: t opposes the whole slip, so that friction returns no energy in any
+// increment.
 #pragma once
 
 #include "reference/fe/element.h"
@@ -40,20 +42,20 @@
 
 namespace touchstone::reference {
 
-/// Everything a load step needs to go on from.
+/// The state that a load step starts from.
 template <int dim>
 struct State {
   Eigen::Matrix<double, dim, Eigen::Dynamic> u_m;       ///< one column per node, hanging ones included
   Eigen::Matrix<double, dim + 1, Eigen::Dynamic> p_pa;  ///< one column per cell: coefficients of 1, (X - Xc) / h
-  std::vector<char> touching;                           ///< per node
-  // What friction remembers; empty without friction, and at rest.
-  std::vector<char> slipping{};  ///< per node: touches and slips
-  std::vector<char> sliding{};   ///< per node: touches in a region that has begun to slide as a whole
+  std::vector<char> touching;                           ///< per node: in the active set
+  // History of friction; empty without friction, and at rest.
+  std::vector<char> slipping{};  ///< per node: active and slipping
+  std::vector<char> sliding{};   ///< per node: active, in a region that slips as a whole
   Eigen::Matrix3Xd on_tool_m{};  ///< per node of the free surface: its place in the tool frame
   double dissipated_j = 0.0;     ///< by friction since the body was at rest, of the whole body
 };
 
-/// The force of the tool on the body at one touching node.
+/// The force of the tool on the body at one active node.
 template <int dim>
 struct NodeContact {
   using Point = Eigen::Matrix<double, dim, 1>;
@@ -67,29 +69,29 @@ struct NodeContact {
   int region = 0;
 };
 
-/// Choices of the method that should not matter, as factors on the usual ones.
+/// Numerical parameters that should not affect the result, as factors on the usual ones.
 struct Numerics {
   double contact_parameter = 1.0;  ///< c of the active set
   double numerical_bulk = 1.0;     ///< bulk modulus that an incompressible material has in the tangent
 };
 
-/// What Newton solves with, each in place of the one before where that is not positive definite.
+/// Tangents of Newton's method; each replaces the one before where that is not positive definite.
 enum class Tangent {
   consistent,
-  without_curvature,  ///< of the tool, which lowers the tangent
-  definite,           ///< nor with what makes the body itself unstable, see Stiffness
+  without_curvature,  ///< of the tool, whose curvature may make the tangent indefinite
+  definite,           ///< also without the terms that make the body itself unstable, see Stiffness
 };
 
-/// How a Newton solve went.
+/// Report of a Newton solve.
 struct NewtonReport {
   bool converged = false;
   int iterations = 0;
   double residual_rel = 0.0;  ///< out-of-balance force over the sum of contact and support forces
-  int indefinite = 0;         ///< iterations whose tangent was not positive definite, and made so
-  std::string trouble;        ///< in words, when not converged
+  int indefinite = 0;         ///< iterations whose tangent was not positive definite and was made so
+  std::string trouble;        ///< as text, when not converged
 };
 
-/// What a solved state says, of the whole body: mirror images are counted.
+/// Results of a solved state, of the whole body: mirror images are included.
 struct Observation {
   scene::Vec3 force_n = scene::Vec3::Zero();          ///< on the tool, sum over the regions
   scene::Vec3 torque_nm = scene::Vec3::Zero();        ///< on the tool, about its mass centre
@@ -104,9 +106,9 @@ struct Observation {
   std::vector<ContactRegion> regions;
 };
 
-/// The discrete problem. Not thread-safe; uses `threads` threads inside. Of several ranks the first one makes and uses
-/// it; each has a share of the cells and of the matrix. The tangent of a cell that contact acts on is made by the first
-/// one wherever the cell belongs, so that contact is known to no other.
+/// The discrete problem. Not thread-safe; uses `threads` threads inside. Of several ranks the first one creates and
+/// uses it; each has a part of the cells and of the matrix. The first rank computes the tangents of all cells in
+/// contact, so that the others need no contact data.
 template <int dim>
 class ContactProblem : public ranks::Part {
  public:
@@ -127,32 +129,32 @@ class ContactProblem : public ranks::Part {
   /// Dead forces on the nodes from the next solve on, one column per node [N]; hanging nodes pass theirs on.
   void load(Eigen::Matrix<double, dim, Eigen::Dynamic> force_n);
 
-  /// The tool's place for the next solve; without a tool nothing touches.
+  /// The tool's pose for the next solve; without a tool there is no contact.
   void set_tool(const RigidTool<dim>& tool) { tool_ = tool; }
 
-  /// Friction from the next solve on. Regions are told apart as by observe().
+  /// Friction from the next solve on. Regions are separated as by observe().
   void set_friction(const scene::Friction& friction, double region_gap_m);
   [[nodiscard]] bool has_friction() const noexcept { return friction_.has_value(); }
 
-  /// Lets friction know where on a tool the body's surface is: of a state that nothing touches.
+  /// Stores for friction where the nodes are in the tool frame; the state must be without contact.
   void note_places(const RigidTool<dim>& tool, State<dim>& state) const;
 
   [[nodiscard]] State<dim> rest() const;
 
-  /// Newton from the given state, which is left unfinished when it does not converge. Only stable balances count as
+  /// Newton from the given state, which is left unfinished when it does not converge. Only stable equilibria count as
   /// converged: the last tangent was positive definite.
   NewtonReport solve(State<dim>& state, const Watch& watch = {});
 
-  /// @param region_gap_m  touching nodes of one cell face, or nearer to each other than this, are of one region; in two
+  /// @param region_gap_m  active nodes of one cell face, or nearer to each other than this, are in one region; in two
   ///                      dimensions all are
   [[nodiscard]] Observation observe(const State<dim>& state, double region_gap_m = 0.0) const;
 
-  /// Forces at the nodes that touch and can move along the surface; normal forces only without friction. The
+  /// Forces at the active nodes that can move along the surface; normal forces only without friction. The
   /// coefficient is that of the node's region.
   [[nodiscard]] std::vector<NodeContact<dim>> node_contacts(const State<dim>& state, double region_gap_m = 0.0) const;
 
   /// Internal nodal forces of a state less the dead forces, hanging nodes' passed on to their masters [N]: the
-  /// support's force where displacement is prescribed, zero elsewhere but for contact.
+  /// support's force where displacement is prescribed, zero elsewhere except for contact.
   [[nodiscard]] Eigen::Matrix<double, dim, Eigen::Dynamic> internal_forces(const State<dim>& state) const;
 
   /// A force on one node, which must not hang.
@@ -160,14 +162,14 @@ class ContactProblem : public ranks::Part {
     int node = 0;
     Eigen::Matrix<double, dim, 1> force_n = Eigen::Matrix<double, dim, 1>::Zero();
   };
-  /// The nodal displacements that each force alone brings about by the stiffness at rest, the matrix factorised at the
+  /// The nodal displacements under each force alone, with the stiffness at rest, the matrix factorised at the
   /// first call, after which no new place may be prescribed and nothing else be solved. Prescribed places stay. The
   /// bulk modulus is the tangent's, see MixedMaterial.
   /// @throws std::runtime_error when the stiffness is singular
   [[nodiscard]] std::vector<Eigen::Matrix<double, dim, Eigen::Dynamic>> linear_displacements_m(
       const std::vector<NodeForce>& forces);
 
-  /// The nodes that contact looks at, and the outward normal of the surface at rest at one of them.
+  /// The nodes that may come into contact, and the outward normal of the surface at rest at one of them.
   [[nodiscard]] const std::vector<int>& contact_nodes() const noexcept { return contact_nodes_; }
   [[nodiscard]] Eigen::Matrix<double, dim, 1> surface_normal(int node) const { return surface_normal_.col(node); }
 
@@ -178,10 +180,10 @@ class ContactProblem : public ranks::Part {
   /// Processor time of tangents and forces, all threads.
   [[nodiscard]] double assembly_s() const noexcept { return assembly_s_; }
 
-  /// On the other ranks: their shares of what the first one's methods do.
+  /// On the other ranks: their part of the work of the first one's methods.
   void follow(Order order) override;
 
-  /// Newton stops when the out-of-balance force is below this share of the acting forces.
+  /// Newton stops when the out-of-balance force is below this fraction of the acting forces.
   static constexpr double force_tolerance = 1e-8;
   static constexpr int largest_iterations = 25;
   static constexpr int largest_iterations_with_friction = 40;
@@ -199,14 +201,14 @@ class ContactProblem : public ranks::Part {
       terms.clear();
     }
   };
-  /// One thread's share of a global matrix and right-hand side.
+  /// One thread's part of a global matrix and right-hand side.
   struct Lane {
     std::vector<double> value;
     std::vector<double> right;
     std::vector<Eigen::Triplet<double>> slip_rows{};  // of SlipCoupling
     std::vector<double> slip_normal_n{};
   };
-  /// Touching nodes and their regions on the whole body: node i of mirror image k is point i + k * nodes.size().
+  /// Active nodes and their regions on the whole body: node i of mirror image k is point i + k * nodes.size().
   struct Touching {
     std::vector<int> nodes;
     std::vector<scene::Vec3> mirrors;
@@ -230,7 +232,7 @@ class ContactProblem : public ranks::Part {
                bool with_slip = false) const;
   void add_slip_rows(const std::vector<std::pair<int, int>>& places, const std::vector<int>& unknowns,
                      const Eigen::MatrixXd& KT, const Eigen::VectorXd& out_of_balance_n, Lane& lane) const;
-  /// The same for a cell without hanging, touching or moving prescribed nodes, which is most of them.
+  /// The same for a cell without hanging, active or moving prescribed nodes, which is most of them.
   void scatter_plain(const std::array<int, Mesh<dim>::nodes_per_cell>& cell, const CellResult<dim>& result,
                      Lane& lane) const;
   /// Adds a symmetric matrix given by columns, of which the lower triangle is read; unknowns ascending.
@@ -247,20 +249,21 @@ class ContactProblem : public ranks::Part {
   /// What the pressures do with a displacement, all cells'.
   [[nodiscard]] Pressures pressure_change(const Nodal& du_m) const;
   [[nodiscard]] Pressures pressure_change_of_share(const Nodal& du_m) const;
-  /// Next active set; late in a solve it changes less easily. Returns the largest |gap| over touching nodes [m].
+  /// Next active set; late in a solve it changes less easily. Returns the largest |gap| over active nodes [m].
   double update_touching(State<dim>& state, bool late, bool& changed) const;
   [[nodiscard]] Touching touching_points(const State<dim>& state, double region_gap_m) const;
-  /// Where contact is looked at: in small strain at rest.
+  /// The node's position for contact: in small strain that at rest.
   [[nodiscard]] Point contact_place_m(const State<dim>& state, int node) const;
-  /// Of all touching nodes, also those without freedom along the surface.
+  /// Of all active nodes, also those without freedom along the surface.
   [[nodiscard]] std::vector<NodeContact<dim>> contacts_of(const State<dim>& state, const Nodal& forces_n,
                                                           const Touching& touching) const;
-  /// Of a vector, what lies along the surface at a node and is free to move.
+  /// The component of a vector along the surface at a node, in directions free to move.
   [[nodiscard]] Point along_surface(int node, const Point& normal, Point vector) const;
   [[nodiscard]] bool can_slip(int node) const;
   void begin_increment(State<dim>& state);
-  /// Which touching nodes slip next, and how; returns how far those that stick are from their places [m].
-  /// @param before  touching in the last iteration
+  /// Which active nodes slip next, and their direction; returns the largest distance of a sticking node from its place
+  /// [m].
+  /// @param before  active in the last iteration
   double update_slipping(State<dim>& state, const std::vector<char>& before, const Nodal& forces_n, int iteration,
                          bool& changed);
   /// Friction of a region, of the whole body.
@@ -270,10 +273,11 @@ class ContactProblem : public ranks::Part {
     bool sticks_somewhere = false, slides = false;
   };
   [[nodiscard]] std::vector<RegionFriction> region_frictions(const State<dim>& state) const;
-  /// Regions of which every node slips, all to one side, begin to slide. @returns whether that changes the coefficient
-  /// of one
+  /// Regions whose nodes all slip, in one direction, begin to slip as a whole (sliding). @returns whether that changes
+  /// the coefficient of a region
   bool begin_sliding(State<dim>& state) const;
-  /// Makes the solved state the start of the next increment. A region slides on until half of its normal force sticks.
+  /// Makes the solved state the start of the next increment. A region keeps sliding until nodes with half of its normal
+  /// force stick.
   void keep_history(State<dim>& state) const;
   /// Out-of-balance force and sum of the acting forces [N].
   [[nodiscard]] std::array<double, 2> residual(const State<dim>& state, const Nodal& forces_n) const;
@@ -304,8 +308,8 @@ class ContactProblem : public ranks::Part {
   // Per node.
   std::vector<int> hanging_;       // index into mesh_.hanging or -1
   Nodal surface_normal_;           // outward at rest, zero away from the free surface
-  std::vector<double> area_m2_;    // share of the free surface; zero: never touches
-  std::vector<int> axis_partner_;  // dim = 2: a node on the axis follows this one in touching; else -1
+  std::vector<double> area_m2_;    // of the free surface; zero: never in contact
+  std::vector<int> axis_partner_;  // dim = 2: a node on the axis is active when this one is; else -1
   std::vector<int> contact_nodes_;
   double largest_extent_m_ = 0.0;
 
@@ -337,12 +341,12 @@ class ContactProblem : public ranks::Part {
 
   // Of the current increment and Newton iteration, with friction.
   static constexpr int all_directions = dim;
-  /// How a touching node's friction enters the tangent.
+  /// Terms of an active node's friction in the tangent.
   struct Slip {
     Point direction = Point::Zero();  // tau / |tau|
     double turning_n_per_m = 0.0;     // resists slip across it
   };
-  Eigen::Matrix3Xd anchors_m_;  // per node: where on the tool its slip is measured from; NaN: nowhere yet
+  Eigen::Matrix3Xd anchors_m_;  // per node: point of the tool from which its slip is measured; NaN: none yet
   std::vector<NodeContact<dim>> contacts_;
   std::vector<Slip> slips_;      // per contact
   std::vector<int> contact_of_;  // per node: index into contacts_, or -1

@@ -11,9 +11,9 @@ namespace touchstone::reference {
 template <int dim>
 [[nodiscard]] std::vector<char> cells_of_nodes(const Mesh<dim>& mesh, const std::vector<int>& nodes);
 
-/// Shares the cells out in equal numbers, each share in a box, so that shares have few nodes in common. The boxes come
-/// from cutting across the longest side again and again. Source: M. J. Berger, S. H. Bokhari, IEEE Trans. Comput. C-36
-/// (1987) 570-580.
+/// Divides the cells into parts of equal number, each in a box, so that the parts have few nodes in common. The boxes
+/// come from cutting across the longest side again and again. Source: M. J. Berger, S. H. Bokhari, IEEE Trans. Comput.
+/// C-36 (1987) 570-580.
 /// @returns the rank of every cell
 template <int dim>
 [[nodiscard]] std::vector<int> ranks_of_cells(const Mesh<dim>& mesh, int ranks);

@@ -1,4 +1,4 @@
-// Friction of a contact region as a law for every touching node, and its unsymmetric share of the tangent.
+// Friction of a contact region as a law for every active node, and its unsymmetric part of the tangent.
 #pragma once
 
 #include "scene/model/scene.h"
@@ -10,14 +10,14 @@
 
 namespace touchstone::reference {
 
-/// The scene's friction, which limits the friction of a whole region, carried to its nodes: |t_A| <= m N_A with one m
+/// The scene's friction, which limits the friction of a whole region, applied to its nodes: |t_A| <= m N_A with one m
 /// for all of them. The limits of the nodes then sum to m F_n, F_n = sum N_A, which is the region's limit.
 class FrictionLaw {
  public:
   explicit FrictionLaw(const scene::Friction& friction) noexcept : friction_(friction) {}
 
-  /// m of a region under the normal force F_n > 0 [N]. Stuck regions have m F_n = K F_n^beta; sliding ones mu_D F_n,
-  /// but never more than they could hold at rest (paper, IV-B, condition C4).
+  /// m of a region under the normal force F_n > 0 [N]. Sticking regions have m F_n = K F_n^beta; slipping ones mu_D
+  /// F_n, but at most the limit of sticking (paper, IV-B, condition C4).
   [[nodiscard]] double coefficient(double normal_n, bool sliding) const noexcept;
   [[nodiscard]] double mu_D() const noexcept { return friction_.mu_D; }
 

@@ -1,4 +1,4 @@
-// Follows the tool's track from one solved instant to the next, halving the way where Newton fails.
+// Follows the tool's track from one solved instant to the next, halving the step where Newton fails.
 #pragma once
 
 #include "reference/contact/contact_problem.h"
@@ -23,7 +23,7 @@ struct AdvanceReport {
   int newton_iterations = 0;
   int halvings = 0;
   int indefinite = 0;
-  double stuck_time_s = 0.0;  ///< where it gave up
+  double stuck_time_s = 0.0;  ///< time of the last failed attempt
   NewtonReport last;
 };
 
@@ -31,17 +31,17 @@ struct AdvanceReport {
 template <int dim>
 class LoadPath {
  public:
-  /// The tool at a time; nothing when it does not reach the body at rest. Contact that has ended leaves no trace, so
-  /// the body is then at rest whatever came before.
+  /// The tool at a time; nothing when it does not reach the body at rest. Without contact the body is at
+  /// rest, whatever the history.
   using ToolAt = std::function<std::optional<RigidTool<dim>>(double time_s)>;
   using ToolAnywhere = std::function<RigidTool<dim>(double time_s)>;
 
-  /// @param approach  the tool at any time, for friction: a node that comes to touch holds on where its way over the
-  ///                  tool began. Without it, that of the first contact begins at the nearest place of the tool
+  /// @param approach  the tool at any time, for friction: a node that becomes active sticks where its path over the
+  ///                  tool began. Without it, the path of the first contact begins at the nearest point of the tool
   LoadPath(ContactProblem<dim>& problem, ToolAt tool_at, ToolAnywhere approach = {})
       : problem_(problem), tool_at_(std::move(tool_at)), approach_(std::move(approach)) {}
 
-  /// Smallest piece of the way between two instants, as a share.
+  /// Smallest step between two instants, as a fraction of their distance in time.
   static constexpr double smallest_share = 1.0 / 64.0;
 
   /// @param before  the instant before `from` for the linear predictor, or nullptr. Only recorded instants are passed,

@@ -18,7 +18,7 @@ class Prolongation {
   Prolongation(const Mesh<dim>& from, const Mesh<dim>& to);
 
   /// Displacement through the shape functions; in each cell the pressure that is linear in the one its middle lies in;
-  /// a surface node touches when the touching nodes of its cell have most of its weight.
+  /// a surface node is active when the active nodes of its cell have most of its weight.
   [[nodiscard]] State<dim> operator()(const State<dim>& state) const;
 
  private:

@@ -1,4 +1,4 @@
-// Which touching points belong together, and which region of the last instant they are.
+// Groups contact points into regions, and matches these with the regions of the last instant.
 #pragma once
 
 #include "scene/base/frames.h"
@@ -12,7 +12,7 @@ namespace touchstone::reference {
 struct ContactRegion {
   scene::Vec3 force_n = scene::Vec3::Zero();     ///< on the tool, sum of pressures and friction
   scene::Vec3 torque_nm = scene::Vec3::Zero();   ///< on the tool, about its mass centre
-  scene::Vec3 center_m = scene::Vec3::Zero();    ///< mean of the touching points by force
+  scene::Vec3 center_m = scene::Vec3::Zero();    ///< centre of pressure: mean of the contact points by force
   double area_m2 = 0.0;                          ///< on the deformed surface
   scene::Vec3 friction_n = scene::Vec3::Zero();  ///< part of force_n along the surface, summed over the nodes
   double stuck_share = 1.0;                      ///< of the normal force, carried by nodes that stick
@@ -25,8 +25,8 @@ struct ContactRegion {
 [[nodiscard]] std::vector<int> region_of_points(const Eigen::Matrix3Xd& points_m,
                                                 const std::vector<std::pair<int, int>>& links, double gap_m);
 
-/// Keeps the numbers of regions from instant to instant: the nearest pairs of old and new centres go together, as far
-/// as they are nearer than a reach; the other old ones end, and the other new ones take the smallest numbers free.
+/// Keeps the numbers of regions from instant to instant: the nearest pairs of old and new centres are matched, if
+/// they are nearer than a reach; the other old ones end, and the other new ones take the smallest numbers free.
 class RegionIds {
  public:
   struct Place {

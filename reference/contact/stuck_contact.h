@@ -1,4 +1,4 @@
-// Where a load step that does not converge is stuck, in words for the user.
+// Where a load step fails to converge, as text for the user.
 #pragma once
 
 #include "reference/contact/contact_problem.h"

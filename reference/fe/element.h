@@ -72,7 +72,7 @@ enum class Stiffness {
                ///< and is positive semidefinite where the derivative is not
 };
 
-/// One cell of the mixed element. Stateless but for the materials; every method may be called by several threads.
+/// One cell of the mixed element. Stateless except for the materials; every method may be called by several threads.
 template <int dim>
 class Element {
  public:

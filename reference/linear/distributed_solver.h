@@ -1,4 +1,4 @@
-// Sparse direct solver for a matrix of which every rank has a part: MUMPS, whose factor lies over all ranks.
+// Sparse direct solver for a matrix of which every rank has a part: MUMPS, whose factor is distributed over all ranks.
 // Source: P. R. Amestoy, I. S. Duff, J. Koster, J.-Y. L'Excellent, SIAM J. Matrix Anal. Appl. 23 (2001) 15-41.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace touchstone::reference {
 
-/// L D L' with the number of negative pivots, which says whether the matrix, the sum of all ranks' parts, is definite;
+/// L D L' with the number of negative pivots, which shows whether the matrix, the sum of all ranks' parts, is definite;
 /// the same factor solves when it is not. On the first rank the methods have the other ranks' solvers follow; there
 /// they are not called. Made and dropped on all ranks together.
 class DistributedSolver : public LinearSolver {

@@ -1,6 +1,6 @@
-// The processes that mpirun started to solve one case together. The first one runs the program; of each problem it
-// solves the others take a part, and do with it what the first one orders. So every decision is made once, by the
-// first, and only it sees the scene, the store and the terminal. ranks.cc is the one file that sees MPI.
+// The processes that mpirun started to solve one case together. The first one runs the program. The others have
+// a part of each problem that it solves, and execute its orders on that part. So every decision is made once, by the
+// first rank, and only this rank uses the scene, the store and the terminal. Only ranks.cc calls MPI.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +12,10 @@
 
 namespace touchstone::reference {
 
-/// What the first rank may order of a part. Which rank holds which cells is fixed when the part is made.
+/// Orders of the first rank to a part. The cells of each rank are fixed when the part is made.
 enum class Order {
   forces,     ///< internal forces of the part's cells
-  pattern,    ///< the places of the part's matrix
+  pattern,    ///< the sparsity pattern of the part's matrix
   assemble,   ///< its values
   pressures,  ///< the pressures of the part's cells after a displacement
   analyse,    ///< of the linear solver, as the following
@@ -25,8 +25,8 @@ enum class Order {
 
 namespace ranks {
 
-/// Joins the other processes where mpirun, or a batch system that knows MPI, started this one; does nothing where not,
-/// and the process is alone. Made once, by main(). The first rank's end lets the others go.
+/// Joins the other processes where mpirun, or a batch system with MPI, started this one; otherwise does nothing, and
+/// the process is the only rank. Created once, by main(). When the first rank's session ends, the others end too.
 class Session {
  public:
   Session();
@@ -41,11 +41,11 @@ class Session {
 [[nodiscard]] inline bool first() noexcept { return own() == 0; }
 /// Ranks on this machine, this one included.
 [[nodiscard]] int on_this_machine() noexcept;
-/// Threads a rank may use: threads_to_use(), shared with the ranks that run on the same processors unless
-/// OMP_NUM_THREADS says what each is to have.
+/// Threads a rank may use: threads_to_use(), divided among the ranks that run on the same processors, unless
+/// OMP_NUM_THREADS gives the number for each.
 [[nodiscard]] int threads() noexcept;
 
-/// From the first rank to all others; nothing happens to one alone. Every rank knows the size.
+/// From the first rank to all others; without others does nothing. Every rank must pass the same size.
 void send(const void* data, std::size_t bytes);
 void receive(void* data, std::size_t bytes);
 template <class Range>
@@ -59,23 +59,23 @@ void receive(Range& range) {
   receive(range.data(), static_cast<std::size_t>(range.size()) * sizeof(*range.data()));
 }
 
-/// Adds up over all ranks on the first one; what the others have afterwards is of no use.
+/// Sums over all ranks, on the first one; the values of the others are undefined afterwards.
 void sum_on_first(double* values, std::size_t size);
 /// The largest of all ranks, on the first one.
 [[nodiscard]] double largest_on_first(double value);
 
-/// Ends every rank with a message and exit code 1. For what only one of them knows and the others would wait for ever.
+/// Ends every rank with a message and exit code 1. For a failure on one rank, for which the others would wait for ever.
 [[noreturn]] void end_all(const char* message);
 
-/// What a rank other than the first has of a problem.
+/// A problem's part on a rank other than the first.
 class Part {
  public:
   virtual ~Part() = default;
-  /// Takes part in what the first rank has just begun.
+  /// Executes an order of the first rank.
   virtual void follow(Order order) = 0;
 };
 
-/// The first rank's hold on the others' parts of one problem. Its life is theirs.
+/// The first rank's handle to the parts of one problem on the other ranks; destroying it destroys them.
 class Lead {
  public:
   /// @param kind  of the parts, for follow_orders(); their maker receives what the first rank sends next
@@ -84,8 +84,8 @@ class Lead {
   Lead(const Lead&) = delete;
   Lead& operator=(const Lead&) = delete;
 
-  /// Has every part follow an order while this rank does its own share. An exception that leaves the share ends all
-  /// ranks, for the others would wait for the rest of it.
+  /// Every part executes an order while this rank does its own part of it, `share`. An exception from that ends all
+  /// ranks, since the others would wait for the rest of it.
   template <class Share>
   auto jointly(Order order, const Share& share) const {
     give(order);
@@ -101,7 +101,7 @@ class Lead {
   int part_;
 };
 
-/// The life of every rank but the first: makes parts and has them follow orders until the first rank's session ends.
+/// The main loop of every rank but the first: creates parts and executes orders until the first rank's session ends.
 using PartMaker = std::function<std::unique_ptr<Part>()>;
 void follow_orders(const std::map<int, PartMaker>& makers);
 

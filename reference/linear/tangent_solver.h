@@ -30,7 +30,7 @@ class TangentSolver : public LinearSolver {
   ///                      ones
   [[nodiscard]] bool solve(const SymmetricMatrix& K, double tolerance_rel, Eigen::VectorXd& x) override;
 
-  /// The factor of this K says so where there is one, otherwise conjugate gradients with an arbitrary right-hand side,
+  /// The factor of this K shows it where there is one, otherwise conjugate gradients with an arbitrary right-hand side,
   /// in which every direction of negative curvature has its part, and where they doubt it a factorisation.
   [[nodiscard]] bool positive_definite(const SymmetricMatrix& K) override;
 

@@ -14,7 +14,8 @@ namespace touchstone::reference {
 /// that must wait for a processor holds up the others: on a busy machine fewer are faster.
 [[nodiscard]] int idle_processors();
 
-/// Threads that run or wait for a processor, of all processes, from the text of /proc/loadavg; 0 where it says nothing.
+/// Threads that run or wait for a processor, of all processes, from the text of /proc/loadavg; 0 where that has no such
+/// number.
 [[nodiscard]] int runnable_threads(std::string_view loadavg) noexcept;
 
 }  // namespace touchstone::reference

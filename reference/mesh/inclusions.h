@@ -1,4 +1,4 @@
-// Parts of the body of another material, in a mesh that does not know of them.
+// Parts of the body of another material, in a mesh whose cells do not follow them.
 #pragma once
 
 #include "reference/mesh/mesh.h"

@@ -103,7 +103,7 @@ struct CylinderSpec {
 
 /// A coarse grid in coordinates of its own, its cells between flat sides, and the map that makes the body of it. The
 /// map is continuous, and smooth in each coarse cell. Nodes are mapped one by one: those of the boundary lie on the
-/// body's surface to round-off, but for hanging ones.
+/// body's surface to round-off, except for hanging ones.
 template <int dim>
 struct MappedSpec {
   using Point = Eigen::Matrix<double, dim, 1>;

@@ -12,7 +12,7 @@ namespace touchstone::reference {
 struct MeshWork {
   int dim = 3;
   double unknowns = 0.0;  ///< displacement unknowns
-  int load_steps = 0;     ///< instants at which the tool touches
+  int load_steps = 0;     ///< instants in contact
   bool friction = false;
 };
 

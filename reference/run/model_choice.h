@@ -45,10 +45,10 @@ inline constexpr double smallest_fillet_share = 0.25;
 /// halvings, since an octree would round anything in between down.
 [[nodiscard]] double far_share(int level);
 
-/// Edge of the cells at the rim of the deepest contact on a level, 0 the coarsest, as wished: octree cells are up to
-/// half of it, by the same share on every level. Cells are smaller towards the middle, so that shallower contacts are
-/// resolved by as many cells as the deepest, down to a tenth of its depth; and smaller where the tool bends tightly:
-/// rim_share of the bend's radius on the coarsest level, but at least a sixteenth of the others. From
+/// Edge of the cells at the rim of the deepest contact on a level, 0 the coarsest, as requested: octree cells are down
+/// to half of it, by the same ratio on every level. Cells are smaller towards the middle, so that shallower contacts
+/// are resolved by as many cells as the deepest, down to a tenth of its depth; and smaller where the tool bends
+/// tightly: rim_share of the bend's radius on the coarsest level, but at least a sixteenth of the others. From
 /// scene.reference.element_size_m; automatic: a / 1.5 in three dimensions, a / 4 in two.
 [[nodiscard]] double element_size_m(const scene::Scene& scene, const ModelChoice& choice, int level);
 inline constexpr double rim_share = 0.4;

@@ -1,4 +1,4 @@
-// What a solve of the reference is given, how it tells its progress, and how it can end without a result.
+// Inputs of a solve of the reference, its reports of progress, and the ways it can end without a result.
 #pragma once
 
 #include <atomic>
@@ -33,7 +33,7 @@ struct Options {
   std::filesystem::path store;                    ///< folder of content-addressed results; made when missing
   std::function<void(const Progress&)> progress;  ///< may be empty
   const std::atomic<bool>* stop = nullptr;        ///< when it becomes true: throw Interrupted, losing no finished step
-  /// Area that each rest point stands for in the norm of the shape's uncertainty; empty: all the same.
+  /// Area assigned to each rest point in the norm of the shape's uncertainty; empty: all equal.
   std::vector<double> rest_area_m2{};
   /// Limits of a solve, on every mesh and sensitivity: none is begun that would exceed them by prediction, and what
   /// has been begun ends when the time is up, between two Newton iterations. What is in the store is read all the same.

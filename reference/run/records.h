@@ -1,4 +1,4 @@
-// What a level's solved instants say, in the form that a result has.
+// Converts a level's solved instants to the records of a result.
 #pragma once
 
 #include "reference/run/step_record.h"

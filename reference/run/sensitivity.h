@@ -1,4 +1,4 @@
-// What choices of the method that refinement does not touch change in the answer.
+// Change of the answer by choices of the method that refinement does not affect.
 #pragma once
 
 #include "reference/contact/load_path.h"
@@ -22,13 +22,13 @@ struct SensitivityCase {
   const Mesh<dim>& mesh;
   const Eigen::Matrix3Xd& rest_points_m;
   const std::vector<double>& rest_area_m2;  ///< see Options
-  const std::vector<double>& times_s;       ///< of the instants up to the one looked at, which is the last
+  const std::vector<double>& times_s;       ///< of the instants up to the one measured, which is the last
   const Solved<dim>& at;                    ///< the instant's solution
   const scene::Vec3& force_n;               ///< its contact force
   const Solved<dim>* before;                ///< the solution of the instant before, or nullptr
 };
 
-/// What the bands hold of a sensitivity on a level, 0 the coarsest, as a multiple of it.
+/// The part of a sensitivity that the uncertainty includes on a level, 0 the coarsest, as a multiple of it.
 [[nodiscard]] double share_at(const Sensitivity& sensitivity, int level);
 
 /// One of the sensitivities before it is measured.
@@ -37,8 +37,8 @@ struct SensitivityWork {
   MeshWork work;
 };
 
-/// What measuring those takes that the store has not.
-/// @param touching  instants in contact up to the one looked at
+/// The work to measure those that the store does not have.
+/// @param touching  number of instants in contact up to the one measured
 /// @param store  nullptr: as if it were empty
 template <int dim>
 [[nodiscard]] std::vector<SensitivityWork> missing_sensitivities(const scene::Scene& scene, const ModelChoice& choice,
@@ -49,8 +49,8 @@ using SensitivityWatch = std::function<void(const std::string& part, int iterati
 
 /// One after another: the load step halved, with friction a quarter as long, the active set's contact parameter and
 /// the numerical bulk modulus of the tangent ten times as large, the grid of a mesh tool's distance half as wide, cells
-/// at inclusions half as large, and cells far from the contact half as large. Parts that the scene has not are left
-/// out, and the last one is measured everywhere. Solved once per scene: the store keeps them.
+/// at inclusions half as large, and cells far from the contact half as large. Those that do not apply to the scene
+/// are left out; the last one always applies. Solved once per scene: the store keeps them.
 /// @param watch  called in every Newton iteration, which are none when all is in the store; may throw to stop
 /// @throws NotConverged
 template <int dim>

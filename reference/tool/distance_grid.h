@@ -21,7 +21,7 @@ namespace touchstone::reference {
 inline constexpr double grid_points_max = 4e6;
 
 /// Uniform cubic B-splines through the samples have two continuous derivatives; value, gradient and Hessian are those
-/// of the one spline, so Newton converges. Away from edges its zero is the mesh's surface to a small share of the
+/// of the one spline, so Newton converges. Away from edges its zero is the mesh's surface to a small fraction of the
 /// spacing; edges are rounded over about one spacing. The gradient is of unit length only to that accuracy: contact
 /// forces are lambda grad g with the gradient as it is, and nothing needs its length. Within two spacings of the
 /// surface the samples are exact: distance to the nearest triangle, sign by the angle-weighted normal of the nearest

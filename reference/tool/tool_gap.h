@@ -14,7 +14,7 @@ namespace touchstone::reference {
 template <int dim>
 struct Gap {
   double value_m = std::numeric_limits<double>::infinity();  ///< negative: the point is inside the tool
-  /// Out of the tool; contact pushes along it. Unit length, but for a mesh tool only nearly so, see distance_grid.h.
+  /// Out of the tool; contact pushes along it. Unit length; for a mesh tool only approximately, see distance_grid.h.
   Eigen::Matrix<double, dim, 1> gradient = Eigen::Matrix<double, dim, 1>::Zero();
   Eigen::Matrix<double, dim, dim> hessian_per_m = Eigen::Matrix<double, dim, dim>::Zero();
 };
@@ -30,7 +30,8 @@ class ToolDistance {
   [[nodiscard]] virtual scene::Bounds bounds() const = 0;
   /// Half the tool's smallest extent: the unit of tolerances.
   [[nodiscard]] virtual double half_width_m() const = 0;
-  /// Whether its surface bends at the edges of facets, on a scale that belongs to its description and not to its shape.
+  /// Whether its surface bends at the edges of facets, on a scale that is due to its triangulation and not to its
+  /// shape.
   [[nodiscard]] virtual bool faceted() const { return false; }
 };
 
@@ -48,15 +49,15 @@ class RigidTool {
 
   /// Small kinematics: distance along the body's rest normal N from the point X + u to the tool's surface above the
   /// rest place X, g = s(X) - N . u. This is the boundary condition of Hertz's and Sneddon's problems. A line that
-  /// passes the tool by has no gap, nor has one that meets it only behind X, within the body.
+  /// misses the tool has no gap, nor has one that meets it only behind X, within the body.
   [[nodiscard]] Gap<dim> gap_along(const Point& X_m, const Point& N, const Point& u_m) const;
 
   /// A point of the world as a point of the tool, and back [m].
   [[nodiscard]] scene::Vec3 in_tool_frame(const Point& x_m) const;
   [[nodiscard]] Point in_world(const scene::Vec3& p_T_m) const;
 
-  /// Where the straight way between two points of the tool frame enters the tool. Without an outside start, the place
-  /// of the surface next to the end.
+  /// Where the straight line between two points of the tool frame enters the tool. If the first point is not outside,
+  /// the point of the surface nearest to the second.
   [[nodiscard]] scene::Vec3 entry_T_m(const scene::Vec3& from_T_m, const scene::Vec3& to_T_m) const;
 
   [[nodiscard]] const scene::Vec3& mass_center_m() const noexcept { return pose_.position_m; }

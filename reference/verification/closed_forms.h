@@ -85,8 +85,8 @@ inline Indentation cone(double E_star_pa, double half_angle, double d_m) {
   return {M_2_PI * E_star_pa * std::tan(half_angle) * d_m * d_m, M_2_PI * d_m * std::tan(half_angle)};
 }
 
-/// The cone with a ball of radius rho in its tip, which the flank touches at r0 = rho cos(angle): Sneddon's integrals
-/// of f' = r / sqrt(rho^2 - r^2) up to r0 and cot(angle) from there to the contact radius a.
+/// The cone with a ball of radius rho in its tip, to which the flank is tangent at r0 = rho cos(angle): Sneddon's
+/// integrals of f' = r / sqrt(rho^2 - r^2) up to r0 and cot(angle) from there to the contact radius a.
 inline Indentation rounded_cone(double E_star_pa, double half_angle, double rho_m, double a_m, double& depth_m) {
   const double begin = std::asin(std::min(1.0, rho_m * std::cos(half_angle) / a_m)), flank = 1.0 / std::tan(half_angle);
   constexpr int intervals = 2000;

@@ -32,7 +32,7 @@ struct Punch {
 /// A cylinder's end with a fillet.
 [[nodiscard]] Punch rounded_punch(double radius_m, double edge_radius_m, double depth_m);
 /// A cone on its tip. @param half_angle from the axis [rad]
-/// @param tip_radius_m of a ball in the tip, touching the flank; 0: sharp
+/// @param tip_radius_m of a ball in the tip, tangent to the flank; 0: sharp
 [[nodiscard]] Punch cone_punch(double half_angle, double tip_radius_m, double depth_m);
 
 struct HalfSpaceProblem {

@@ -24,14 +24,14 @@ struct Check {
   [[nodiscard]] bool passes() const noexcept;
 };
 
-/// Limits that all problems share.
+/// Limits common to all problems.
 inline constexpr double limit_of_closed_form = 0.002;   ///< the model solved is the model of the closed form
 inline constexpr double limit_of_small_strain = 0.005;  ///< finite strain in its small-strain limit
 inline constexpr double limit_of_table = 0.01;          ///< singular solutions and printed tables
 /// Place of a contact's edge, where the pressure falls to zero with an infinite slope within one cell.
 inline constexpr double limit_of_edge = 0.005;
 
-/// A check of a quantity from successively finer meshes. The finest counts; the band is force_band() of all;
+/// A check of a quantity from successively finer meshes. The finest is checked; the uncertainty is force_band() of all;
 /// the order comes from their differences and is absent where they change sign or grow, as a contact force's do when
 /// the contact's edge moves by whole nodes.
 /// @param values  coarsest first, each mesh with half the cell size of the one before
@@ -41,7 +41,7 @@ inline constexpr double limit_of_edge = 0.005;
 /// Order p of an error that behaves like h^p, from meshes whose cell size halves; absent where it does not fall.
 [[nodiscard]] std::optional<double> observed_order(double coarse_error, double fine_error);
 
-/// How much is solved, and who is told.
+/// How much is solved, and who receives reports.
 struct Effort {
   bool quick = false;                                    ///< one mesh fewer, and the dearest cases left out
   std::function<void(const std::string& text)> working;  ///< called before every solve; may be empty, may throw to stop

@@ -37,7 +37,7 @@ struct ShiftedBallStep {
 [[nodiscard]] double mindlin_force(const ShiftedBall& problem, double shift_m);
 [[nodiscard]] double mindlin_stick_radius(double force);
 
-/// c / a from the share of P inside c under Hertz's pressure, 1 - (1 - (c/a)^2)^(3/2).
+/// c / a from the fraction of P inside c under Hertz's pressure, 1 - (1 - (c/a)^2)^(3/2).
 [[nodiscard]] double stick_radius_of_share(double stuck_share);
 
 }  // namespace touchstone::reference

@@ -20,7 +20,7 @@ template <int dim>
 using Nodal = Eigen::Matrix<double, dim, Eigen::Dynamic>;
 
 /// Cells in rows, columns and layers over the unit square or cube, each node at the place of its coordinates. The
-/// boundary is free until a caller says otherwise. @param place_m keeps the orientation
+/// boundary is free unless a caller prescribes it. @param place_m keeps the orientation
 template <int dim>
 [[nodiscard]] reference::Mesh<dim> lattice_mesh(const std::array<int, dim>& cells,
                                                 const std::function<Place<dim>(const Place<dim>&)>& place_m);
@@ -51,15 +51,15 @@ template <int dim>
 template <int dim>
 void advance(reference::ContactProblem<dim>& body, reference::State<dim>& state, const std::string& what);
 
-/// Solves in equal steps from rest. @param set  sets what is prescribed at a share of the load
+/// Solves in equal steps from rest. @param set  sets the prescribed values at a fraction of the load
 /// @throws reference::NotConverged naming `what`
 template <int dim>
 [[nodiscard]] reference::State<dim> solve_in_steps(reference::ContactProblem<dim>& body, int steps,
                                                    const std::string& what,
                                                    const std::function<void(double share)>& set);
 
-/// Contact pressure on the axis of a body of revolution: the force on the middle node of the touching face there, over
-/// that node's share of the area, deformed in finite strain [Pa]; not a number when nothing touches there.
+/// Contact pressure on the axis of a body of revolution: the force on the middle node of the face in contact there,
+/// over that node's part of the area, deformed in finite strain [Pa]; NaN when there is no contact there.
 [[nodiscard]] double axis_pressure_pa(const reference::ContactProblem<2>& body, const reference::State<2>& state,
                                       scene::Kinematics kinematics);
 

@@ -15,7 +15,7 @@ namespace touchstone::scene {
 void write_file(const std::filesystem::path& path, std::string_view content);
 
 /// A file written bit by bit that is whole or absent all the same: it grows under a temporary name of its own, never
-/// through a link that somebody else left there, and is removed unless it is finished.
+/// through a link that another process left there, and is removed unless it is finished.
 class UnfinishedFile {
  public:
   /// @throws std::filesystem::filesystem_error
@@ -24,11 +24,11 @@ class UnfinishedFile {
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 
-  /// @returns false once something could not be written; finish() says what
+  /// @returns false once something could not be written; finish() gives the reason
   bool append(std::string_view content) noexcept;
 
   /// Brings all to the disk and gives the file its name.
-  /// @returns false when somebody removed the temporary file
+  /// @returns false when the temporary file was removed by another process
   /// @throws std::filesystem::filesystem_error with the reason of the first failure
   [[nodiscard]] bool finish();
 
@@ -43,7 +43,7 @@ class UnfinishedFile {
 
 /// Removes the temporary files that killed runs left in a folder, not in those below it, and nothing else: regular
 /// files whose whole name is one that write_file() makes. A live run holds a lock on its own; on a file system that
-/// knows no locks it may lose it here and writes it again.
+/// without locks it may lose it here and writes it again.
 /// @throws std::filesystem::filesystem_error
 void remove_unfinished(const std::filesystem::path& folder);
 
@@ -55,7 +55,7 @@ void require_writable(const std::filesystem::path& folder, const std::string& op
 /// A folder's lock, held from a successful try_take() to the end of the object or of the process: the kernel gives it
 /// back, so a killed run leaves none. It is flock(2) on a file in the folder: between hosts it holds where the
 /// file system carries it (NFS does since Linux 2.6.12, unless mounted with local_lock or nolock; Lustre with -o
-/// flock). On a file system that knows no locks every process gets it: work is then done twice, and write_file() keeps
+/// flock). On a file system without locks every process gets it: work is then done twice, and write_file() keeps
 /// every file whole.
 class FolderLock {
  public:

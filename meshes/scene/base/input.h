@@ -1,4 +1,4 @@
-// The one way to what a user names as input: scenes, studies, gates, parameters, tables, meshes, logs.
+// Opens every file that a user names as input: scenes, studies, gates, parameters, tables, meshes, logs.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct Input {
   std::string fault;  ///< empty when all is well: "it is a folder; expected a TOML file of at most 4 MiB"
 };
 
-/// The one way to open what a user names: an ordinary file whose size is known and within its kind's limit. A folder, a
+/// Opens a file that a user names: an ordinary file whose size is known and within its kind's limit. A folder, a
 /// pipe, a device, a socket or a file such as those of /proc is refused at once; nothing waits and nothing is thrown
 /// but std::bad_alloc.
 [[nodiscard]] Input read_input(const std::filesystem::path& path, const InputKind& kind);

@@ -49,7 +49,7 @@ using Access =
 /// The key applies only where this holds; elsewhere giving it is an error.
 template <class T>
 struct Condition {
-  std::string_view key;   ///< of the value it hangs on
+  std::string_view key;   ///< of the value it depends on
   std::string_view text;  ///< in TOML: body.shape = "box"
   bool (*holds)(const T&) = nullptr;
 };

@@ -8,7 +8,7 @@
 
 namespace touchstone::scene {
 
-/// What a user says of a contact. Body and tool need their shapes and dimensions only.
+/// The data of a contact that a user gives. Body and tool need their shapes and dimensions only.
 struct NewScene {
   std::string title;
   Body body;                                          ///< shape, dimensions and material

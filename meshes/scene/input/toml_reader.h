@@ -16,16 +16,17 @@ namespace touchstone::scene {
 /// One value of one key of the scene.
 struct Setting {
   std::string key, value;  ///< value as TOML
-  Fault place;             ///< where it stands in the file; its message is empty
+  Fault place;             ///< its position in the file; its message is empty
 };
 
-/// What a TOML file of ours is for, told by the tables it has.
+/// The kind of a TOML file of ours, determined by its tables.
 enum class FileKind { scene, sweep, tuning, gates };
 
 /// @throws InputError when the document is clearly of another kind than wanted, with the verb that takes it
 void require_kind(const toml::table& document, const std::filesystem::path& file, FileKind wanted);
 
-/// The text's document: the one way to the parser. @param file  for messages. @throws InputError when it is no TOML
+/// The text's document; every TOML file is parsed here. @param file  for messages. @throws InputError when it is no
+/// TOML
 [[nodiscard]] toml::table parse_document(std::string_view text, const std::string& file);
 
 /// The file's document. @param what  for messages: "the study". @throws InputError when it cannot be read or is no TOML

@@ -32,10 +32,10 @@ struct MeshPiece {
 
 struct TooManyPairs {};
 
-/// Whether the mesh bounds one convex solid but for dents no deeper than the tolerance: of every triangle some plane
-/// leaves all vertices on its inner side, or no further out than the tolerance, and no corner of the triangle further
-/// in than that. So no place of the surface lies deeper than the tolerance below the convex hull. Numbers rounded by up
-/// to a quarter of the tolerance never make a convex mesh fail.
+/// Whether the mesh bounds one convex solid, except for dents no deeper than the tolerance: of every triangle some
+/// plane leaves all vertices on its inner side, or no further out than the tolerance, and no corner of the triangle
+/// further in than that. So no place of the surface lies deeper than the tolerance below the convex hull. Numbers
+/// rounded by up to a quarter of the tolerance never make a convex mesh fail.
 /// @param mesh closed, turned outwards; @param tolerance above zero, in the mesh's unit
 [[nodiscard]] bool convex(const RawMesh& mesh, double tolerance);
 

@@ -17,8 +17,8 @@ inline constexpr double mesh_reach_max_m = 10.0;  ///< of every coordinate
 inline constexpr std::size_t mesh_triangles_max = 500'000, mesh_pieces_max = 1000;
 
 /// Reads STL (text or binary), OBJ or PLY (text or binary), by the file's ending; multiplies coordinates by unit_m,
-/// welds duplicate vertices, drops triangles without area, turns every piece outwards, tells whether it is convex. A
-/// mesh that is open, has an edge with more than two triangles, cuts itself or holds a number that is not finite is
+/// welds duplicate vertices, drops triangles without area, turns every piece outwards, determines whether it is convex.
+/// A mesh that is open, has an edge with more than two triangles, cuts itself or holds a number that is not finite is
 /// refused.
 /// @param faults takes what is wrong, with the file, the line or byte, and the place in the mesh
 /// @returns nothing when there were faults

@@ -1,4 +1,4 @@
-// Triangles as they stand in a file: STL, OBJ, PLY.
+// Triangles as read from a file, unchecked: STL, OBJ, PLY.
 #pragma once
 
 #include "scene/base/frames.h"

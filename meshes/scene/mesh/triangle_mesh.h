@@ -15,7 +15,7 @@ struct TriangleMesh {
   Eigen::Matrix3Xd points_m;  ///< one column per vertex
   std::vector<std::array<std::int32_t, 3>> triangles;
   /// One piece without a dent deeper than convex_tolerance_rel of the bounding box's diagonal. Found when read from a
-  /// file; a mesh made otherwise is taken for not convex unless its maker says so.
+  /// file; any other mesh counts as not convex unless this is set.
   bool convex = false;
 
   [[nodiscard]] double area_m2() const;

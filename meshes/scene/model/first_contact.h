@@ -15,7 +15,7 @@ namespace touchstone::scene {
 /// How far the tool, at the pose's orientation, is to be moved from the pose along a direction to stand where it first
 /// touches the body on its way in from far off [m]; negative when it is past that place. Nothing when it passes by.
 /// By the bodies' exact shapes rather than by FCL on their triangles: this layer is below FCL, and triangles of a round
-/// shape meet some micrometres late. Exact but for rounding for a ball or capsule, else to about
+/// shape meet some micrometres late. Exact to rounding for a ball or capsule, else to about
 /// 1e-10 of the body's size.
 /// @param direction  of any length above zero
 [[nodiscard]] std::optional<double> first_contact_m(const Shape& body, const Tool& tool, const Pose& pose,

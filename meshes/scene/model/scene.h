@@ -1,5 +1,5 @@
 // What a scene is: one elastic body, one rigid tool, its track, the contact law, and each solver's
-// own settings. Both solvers take the same object. Every key, unit, range and default: scene_fields.cc.
+// own settings. Both solvers take the same object. Every key, unit, range and default: scene/input/fields.cc.
 #pragma once
 
 #include "scene/base/frames.h"
@@ -40,7 +40,7 @@ struct Material {
   }
 };
 
-/// A convex solid; which members count, its shape says.
+/// A convex solid; its shape determines which members are used.
 struct Solid {
   BodyShape shape = BodyShape::box;
   Vec3 size_m = Vec3::Zero();       ///< box: edge lengths
@@ -81,7 +81,7 @@ struct Tool {
   /// Mass centre, from the shape's centre or in the mesh's own coordinates; absent: the centre of a uniform solid.
   std::optional<Vec3> mass_center_m;
 
-  /// In one piece without dents: it touches a convex body in one region. For a mesh: TriangleMesh::convex.
+  /// Convex and in one piece: it has one contact region on a convex body. For a mesh: TriangleMesh::convex.
   [[nodiscard]] bool convex() const noexcept { return shape != ToolShape::mesh || (mesh && mesh->convex); }
 };
 
@@ -91,12 +91,12 @@ struct Waypoint {
   Pose pose;
 };
 
-/// Friction limits of the contact (section IV-B): stuck up to f_max = K F_n^beta, sliding at mu_D F_n.
+/// Friction limits of the contact (section IV-B): sticking up to f_max = K F_n^beta, slipping at mu_D F_n.
 struct Friction {
   double K = 0.0;                ///< [N^(1 - beta)]
   double beta = 0.0;             ///< 2/3 to 1
   double mu_D = 0.0;             ///< dynamic friction coefficient
-  double stiffness_ratio = 1.0;  ///< kappa = (F_t / D_t) / (F_n / D_n) of the stuck contact; corrected formulation
+  double stiffness_ratio = 1.0;  ///< kappa = (F_t / D_t) / (F_n / D_n) of the sticking contact; corrected formulation
 };
 
 /// Contact force law in identifiable constants: F = k1 D + k3 D^3, where k1 = m w0^2 and k3 = (3/4) m b0^2 eps keeps
@@ -125,13 +125,13 @@ struct FastSettings {
 
 struct ReferenceSettings {
   Kinematics kinematics = Kinematics::finite;
-  double error = 0.01;                   ///< refine until force and shape are known to that
-  std::optional<int> levels;             ///< in place of that: so many meshes, at least 3 for an uncertainty
+  double error = 0.01;                   ///< refine until the uncertainty of force and shape is this
+  std::optional<int> levels;             ///< in place of `error`: number of meshes, at least 3 for an uncertainty
   std::optional<double> element_size_m;  ///< cells under the tool on the coarsest level; automatic when absent
 };
 
 struct CompareSettings {
-  int instants = 0;  ///< evenly spaced track instants recorded by both sides, first and last included
+  int instants = 0;  ///< evenly spaced track instants recorded by both solvers, first and last included
 };
 
 /// Limits of the device loop, and the virtual hand that can take the place of a device.
@@ -172,20 +172,21 @@ struct Scene {
 /// The tool's pose at a time; held at the ends outside the track.
 [[nodiscard]] Pose pose_at(const std::vector<Waypoint>& track, double time_s);
 
-/// The instants at which both sides record: compare.instants times, evenly spaced over the track [s].
+/// The instants at which both solvers record: compare.instants times, evenly spaced over the track [s].
 [[nodiscard]] std::vector<double> instants_s(const Scene& scene);
 
 /// How far the tool reaches below the rest surface [m]: the largest -signed_distance over the tool, to 1e-7 of the
-/// body's size; zero when apart. A ball counts from its centre, and a capsule from its axis: the radius less the signed
-/// distance there, which is the way to part them; it differs from the former only across an edge of the body, where it
-/// is measured along the diagonal. Of a mesh the surface counts, not the space within. The one depth both sides quote.
+/// body's size; zero when apart. A ball counts from its centre, and a capsule from its axis: the radius minus the
+/// signed distance there, which is the shortest displacement that separates them. It differs from the former only
+/// across an edge of the body, where it is measured along the diagonal. For a mesh only the surface is used, not the
+/// space inside. Both solvers report this depth.
 /// Not for a real-time step: 2 to 80 us, for a mesh of 6000 triangles up to 3 ms.
 [[nodiscard]] double rest_depth_m(const Shape& body, const Tool& tool, const Pose& pose);
 
-/// Edge of the cube that holds as much as the body's bounding box [m]: what lengths without a value are fractions of.
+/// Edge of the cube that holds as much as the body's bounding box [m]: default lengths are fractions of it.
 [[nodiscard]] double body_size_m(const Body& body);
 
-/// Any tool's surface in the tool frame. @param triangles wished number; a mesh tool keeps its own
+/// Any tool's surface in the tool frame. @param triangles requested number; a mesh tool keeps its own
 [[nodiscard]] Surface tool_surface(const Tool& tool, int triangles);
 
 }  // namespace touchstone::scene

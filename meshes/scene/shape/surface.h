@@ -27,7 +27,7 @@ struct Surface {
 /// (box: two per cell of a grid on each face; sphere and ellipsoid: n^2 per octant; revolution: bands between rings of
 /// vertices, whose number follows the radius). Where patches meet, their vertices coincide. Vertices run row by row, so
 /// that along a row the neighbours stand at equal distances in the order.
-/// @param triangles wished number, at least 8
+/// @param triangles requested number, at least 8
 [[nodiscard]] Surface tessellate(const Shape& shape, int triangles);
 
 /// A mesh as a surface of one patch, for drawing: every triangle has three vertices of its own with the triangle's
