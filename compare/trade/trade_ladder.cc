@@ -1,17 +1,17 @@
 // The rungs: what is built, judged and measured.
-#include "compare/trade/linear_contact.h"
-#include "compare/report/model_table.h"
 #include "compare/format/text.h"
+#include "compare/report/model_table.h"
+#include "compare/trade/linear_contact.h"
 #include "compare/trade/trade.h"
-#include "fast/step/step.h"
 #include "fast/run/ticks.h"
+#include "fast/step/engine.h"
 #include "reference/run/cost.h"
 #include "reference/solver.h"
 #include "scene/input/fields.h"
 
 #ifdef TOUCHSTONE_BULLET
-#include "fast/bench/bullet_peer.h"
 #include "compare/errors/compute_errors.h"
+#include "fast/bench/bullet_peer.h"
 #endif
 
 #include <fmt/format.h>
@@ -209,11 +209,10 @@ class Ladder {
     Scene scene = change(scene_);
     if (triangles) scene.fast.triangles = *triangles;
     const Clock::time_point begin = Clock::now();
-    const auto model = std::make_shared<const fast::FastModel>(scene);
-    const auto state = std::make_shared<fast::FastState>(*model);
+    const auto engine = std::make_shared<fast::Engine>(scene);
     row.setup_s = seconds_since(begin);
-    row.memory_bytes = static_cast<double>(model->memory_bytes() + state->memory_bytes());
-    row.size = model->surface.triangle_count();
+    row.memory_bytes = static_cast<double>(engine->memory_bytes());
+    row.size = engine->model().surface.triangle_count();
     std::uint32_t status = 0;
     judge(row, triangles, true, [&](const TuningData& data) {
       fast::Run run = fast::run(change(data.contact.scene));
@@ -223,8 +222,7 @@ class Ladder {
     });
     if (status != 0) row.note = "status of its steps: " + fast::status_text(status);
     add(std::move(row));
-    timed_.push_back(
-        {trade_.rows.size() - 1, [model, state](const scene::Pose& pose) { fast::step(*model, pose, *state); }});
+    timed_.push_back({trade_.rows.size() - 1, [engine](const scene::Pose& pose) { engine->step(pose); }});
   }
 
   void skeletons() {
