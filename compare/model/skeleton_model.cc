@@ -3,7 +3,7 @@
 #include "compare/format/text.h"
 #include "compare/input/tuning_study.h"
 #include "fast/run/run.h"
-#include "fast/step/step.h"
+#include "fast/step/engine.h"
 #include "scene/model/area_law.h"
 
 #include <fmt/format.h>
@@ -18,9 +18,9 @@ using Change = std::function<Scene(Scene)>;
 
 class SkeletonModel final : public ContactModel {
  public:
-  explicit SkeletonModel(Scene scene) : scene_(std::move(scene)), model_(scene_), state_(model_) {}
+  explicit SkeletonModel(Scene scene) : scene_(std::move(scene)), engine_(scene_) {}
 
-  void step(const scene::Pose& pose) override { fast::step(model_, pose, state_); }
+  void step(const scene::Pose& pose) override { engine_.step(pose); }
 
   void answer(scene::Answer& asked) override {
     fast::Run run = fast::run(scene_);
@@ -34,9 +34,9 @@ class SkeletonModel final : public ContactModel {
     asked.surface = std::move(run.surface);
   }
 
-  [[nodiscard]] int size() const override { return model_.surface.triangle_count(); }
+  [[nodiscard]] int size() const override { return engine_.model().surface.triangle_count(); }
   [[nodiscard]] std::optional<double> memory_bytes() const override {
-    return static_cast<double>(model_.memory_bytes() + state_.memory_bytes());
+    return static_cast<double>(engine_.memory_bytes());
   }
   [[nodiscard]] std::string trouble() const override {
     return status_ == 0 ? "" : "status of its steps: " + fast::status_text(status_);
@@ -44,8 +44,7 @@ class SkeletonModel final : public ContactModel {
 
  private:
   Scene scene_;
-  fast::FastModel model_;
-  fast::FastState state_;
+  fast::Engine engine_;
   std::uint32_t status_ = 0;
 };
 

@@ -2,7 +2,7 @@
 
 #include "fast/bench/floor.h"
 #include "fast/bench/statistics.h"
-#include "fast/step/step.h"
+#include "fast/step/engine.h"
 
 #include <algorithm>
 #include <chrono>
@@ -32,39 +32,32 @@ struct Samples {
 
 class Measurement {
  public:
-  Measurement(const Case& which, const fast::FastModel& model, HardwareCounters& counters)
-      : which_(which), model_(model), state_(model), floor_(model.rest), counters_(counters) {}
+  Measurement(const Case& which, fast::Engine& engine, HardwareCounters& counters)
+      : which_(which), engine_(engine), floor_(engine.model().rest), counters_(counters) {}
 
   /// Presses the tool in, and says what a step takes [us].
   double approach() {
-    while (tick_ < approach_ticks) fast::step(model_, next_pose(), state_);
+    while (tick_ < approach_ticks) engine_.step(next_pose());
     constexpr int trial = 9;
     std::vector<double> step_us;
     for (int i = 0; i < trial; ++i) {
-      const scene::Pose pose = next_pose();
-      const Clock::time_point begin = Clock::now();
-      fast::step(model_, pose, state_);
-      step_us.push_back(us_between(begin, Clock::now()));
+      step_us.push_back(1e-3 * static_cast<double>(engine_.step_timed(next_pose()).step_ns));
     }
     return fast::percentile_us(std::move(step_us), 0.5);
   }
 
   void step_block(int ticks, CaseResult& result) {
-    for (int i = 0; i < warming_ticks; ++i) fast::step(model_, next_pose(), state_);
+    for (int i = 0; i < warming_ticks; ++i) engine_.step(next_pose());
     // Poses are made outside: a sine is none of the step's business.
     poses_.clear();
     for (int i = 0; i < ticks; ++i) poses_.push_back(next_pose());
     counters_.start();
     const double cpu_begin_us = thread_cpu_us();
     for (const scene::Pose& pose : poses_) {
-      const Clock::time_point begin = Clock::now();
-      fast::StepStatus status = fast::step_force(model_, pose, state_);
-      const Clock::time_point published = Clock::now();
-      status |= fast::step_shape(model_, state_);
-      const Clock::time_point end = Clock::now();
-      samples_.step_us.push_back(us_between(begin, end));
-      samples_.force_us.push_back(us_between(begin, published));
-      result.status |= static_cast<std::uint32_t>(status);
+      const fast::TimedStep timed = engine_.step_timed(pose);
+      samples_.step_us.push_back(1e-3 * static_cast<double>(timed.step_ns));
+      samples_.force_us.push_back(1e-3 * static_cast<double>(timed.force_ns));
+      result.status |= static_cast<std::uint32_t>(timed.status);
       count_regions(result);
     }
     const double cpu_us = thread_cpu_us() - cpu_begin_us;
@@ -88,18 +81,15 @@ class Measurement {
   }
 
   void stage_block(int ticks) {
-    for (int i = 0; i < warming_ticks; ++i) fast::step(model_, next_pose(), state_);
-    fast::StageClock clock;
-    state_.clock = &clock;
+    for (int i = 0; i < warming_ticks; ++i) engine_.step(next_pose());
+    engine_.time_stages(true);
     for (int i = 0; i < ticks; ++i) {
-      const scene::Pose pose = next_pose();
-      clock.start();
-      fast::step(model_, pose, state_);
+      engine_.step(next_pose());
       for (std::size_t s = 0; s < fast::stage_count; ++s) {
-        samples_.stage_us[s].push_back(clock.spent_us(static_cast<fast::Stage>(s)));
+        samples_.stage_us[s].push_back(engine_.stages().spent_us(static_cast<fast::Stage>(s)));
       }
     }
-    state_.clock = nullptr;
+    engine_.time_stages(false);
   }
 
   void reserve(int ticks) {
@@ -119,25 +109,25 @@ class Measurement {
     }
     result.instructions = median(std::move(samples_.instructions));
     result.cycles = median(std::move(samples_.cycles));
-    for (int i = 0; i < state_.region_count; ++i) {
-      result.points += state_.regions[static_cast<std::size_t>(i)].points.count;
-    }
+    const fast::FastState& state = engine_.state();
+    for (int i = 0; i < state.region_count; ++i)
+      result.points += state.regions[static_cast<std::size_t>(i)].points.count;
   }
 
  private:
   scene::Pose next_pose() { return pose_at_tick(which_, tick_++); }
 
   void count_regions(CaseResult& result) const {
-    const auto end = state_.regions.begin() + state_.region_count;
-    const auto pressing = static_cast<int>(
-        std::count_if(state_.regions.begin(), end, [](const fast::ContactRegion& r) { return r.pressing(); }));
+    const fast::FastState& state = engine_.state();
+    const auto pressing =
+        static_cast<int>(std::count_if(state.regions.begin(), state.regions.begin() + state.region_count,
+                                       [](const fast::ContactRegion& r) { return r.pressing(); }));
     result.regions_least = std::min(result.regions_least, pressing);
     result.regions_most = std::max(result.regions_most, pressing);
   }
 
   const Case& which_;
-  const fast::FastModel& model_;
-  fast::FastState state_;
+  fast::Engine& engine_;
   CopyFloor floor_;
   HardwareCounters& counters_;
   Samples samples_;
@@ -180,7 +170,8 @@ CaseResult measure(const Case& which, const Effort& effort, HardwareCounters& co
   result.which = which;
   const scene::Scene scene = scene_of(which);
   const Clock::time_point start = Clock::now();
-  const fast::FastModel model(scene);
+  fast::Engine engine(scene);
+  const fast::FastModel& model = engine.model();
   result.setup_s = 1e-6 * us_between(start, Clock::now());
   result.triangles = model.surface.triangle_count();
   result.vertices = model.surface.vertex_count();
@@ -189,7 +180,7 @@ CaseResult measure(const Case& which, const Effort& effort, HardwareCounters& co
     result.why = "not available in this build: the tool has no samples";
     return result;
   }
-  Measurement measurement(which, model, counters);
+  Measurement measurement(which, engine, counters);
   const double step_us = measurement.approach();
   // Two steps a tick, and a floor that takes a part of one.
   const double wished = 1e6 * effort.seconds_per_case / (2.3 * std::max(step_us, 0.1));

@@ -4,7 +4,7 @@
 
 #ifdef TOUCHSTONE_BULLET
 #include "fast/bench/bullet_peer.h"
-#include "fast/step/step.h"
+#include "fast/step/engine.h"
 
 #include <algorithm>
 #include <chrono>
@@ -44,26 +44,25 @@ double us_since(Clock::time_point begin) {
 /// Our step on the same box, some ticks after each of the peer's.
 class OurStep {
  public:
-  explicit OurStep(const Case& which) : which_(which), model_(scene_of(which)), state_(model_) {
-    while (tick_ < approach_ticks) fast::step(model_, pose_at_tick(which_, tick_++), state_);
+  explicit OurStep(const Case& which) : which_(which), engine_(scene_of(which)) {
+    while (tick_ < approach_ticks) engine_.step(next_pose());
   }
   void run() {
     // The first ones find their data gone from the caches.
     constexpr int warming = 4, measured = 16;
     for (int i = 0; i < warming + measured; ++i) {
-      const scene::Pose pose = pose_at_tick(which_, tick_++);
-      const Clock::time_point begin = Clock::now();
-      fast::step(model_, pose, state_);
-      if (i >= warming) step_us_.push_back(us_since(begin));
+      const double step_us = 1e-3 * static_cast<double>(engine_.step_timed(next_pose()).step_ns);
+      if (i >= warming) step_us_.push_back(step_us);
     }
   }
   [[nodiscard]] double median_us() const { return median(step_us_); }
-  [[nodiscard]] int triangles() const { return model_.surface.triangle_count(); }
+  [[nodiscard]] int triangles() const { return engine_.model().surface.triangle_count(); }
 
  private:
+  scene::Pose next_pose() { return pose_at_tick(which_, tick_++); }
+
   Case which_;
-  fast::FastModel model_;
-  fast::FastState state_;
+  fast::Engine engine_;
   std::vector<double> step_us_;
   std::int64_t tick_ = 0;
 };

@@ -2,10 +2,13 @@
 #pragma once
 
 #include "scene/base/frames.h"
+#include "scene/base/wrench.h"
 
 #include <cstdint>
 
 namespace touchstone::live {
+
+using scene::Wrench;
 
 /// A grid point of the loop's time.
 struct Tick {
@@ -25,12 +28,6 @@ struct DeviceSample {
   Twist twist;                 ///< zero where not measured
   std::uint32_t buttons = 0;   ///< one bit each, set while pressed
   std::int64_t stamp_ns = -1;  ///< of the measurement, since tick 0; -1: not known
-};
-
-/// On the tool, world frame.
-struct Wrench {
-  scene::Vec3 force_n = scene::Vec3::Zero();
-  scene::Vec3 torque_nm = scene::Vec3::Zero();  ///< about the tool's mass centre
 };
 
 /// What a device can do: bits.

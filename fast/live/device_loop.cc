@@ -105,6 +105,7 @@ void fade_out(const LoopTime& time, const LoopPorts& ports) noexcept {
 
 void run_device_loop(const LoopTime& time, const LoopPorts& ports, Ledger& ledger) noexcept {
   [[maybe_unused]] const fast::FlushTinyNumbers flush;
+  ports.engine.time_stages(true);
   // One period to be on time for the first.
   const std::int64_t start_ns = ports.clock.now_ns() + time.time_ns(1);
   for (std::int64_t index = 0; index < time.grid_points && ledger.ticks < time.ticks;) {

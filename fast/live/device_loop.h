@@ -3,12 +3,12 @@
 
 #include "fast/live/clock.h"
 #include "fast/live/device.h"
-#include "fast/live/engine.h"
 #include "fast/live/ledger.h"
 #include "fast/live/record_ring.h"
 #include "fast/live/safety.h"
 #include "fast/live/tick_record.h"
 #include "fast/live/triple_buffer.h"
+#include "fast/step/engine.h"
 
 #include <atomic>
 #include <cstdint>
@@ -53,7 +53,7 @@ struct LoopTime {
 /// Whom the loop connects; what is null is left out.
 struct LoopPorts {
   Device& device;
-  Engine& engine;
+  fast::Engine& engine;
   WrenchLimiter& limiter;
   Clock& clock;
   TripleBuffer<ShapeFrame>* shapes = nullptr;

@@ -158,7 +158,7 @@ LiveResult run_live(const scene::Scene& scene, const LiveOptions& options, const
                     const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell,
                     const std::function<void(const std::string&)>& warn) {
   Setup setup = set_up(scene, options);
-  Engine engine(scene);
+  fast::Engine engine(scene);
   WrenchLimiter limiter(WrenchLimits::of(scene.live, engine.tool_reach_m()), setup.time.period_s());
   TripleBuffer<ShapeFrame> shapes(ShapeFrame{-1, 0, engine.field()});
   RecordRing<TickRecord> ring(options.ring_records);

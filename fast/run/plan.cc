@@ -1,5 +1,5 @@
 #include "fast/run/run.h"
-#include "fast/step/step.h"
+#include "fast/step/engine.h"
 #include "scene/model/rest_depth.h"
 
 #include <algorithm>
@@ -38,42 +38,38 @@ double median(std::vector<double>& sample) {
   return *middle;
 }
 
-Measured measure(const scene::Scene& scene, const FastModel& model) {
+Measured measure(const scene::Scene& scene, Engine& engine) {
   const std::vector<double> times_s = scene::instants_s(scene);
-  const scene::RestDepth depth(*model.body, scene.tool);
-  const auto depth_m = [&](double t) { return depth.depth_m(scene::pose_at(scene.track, t)); };
-  FastState state(model);
+  const scene::RestDepth depth(*engine.model().body, scene.tool);
+  const FastState& state = engine.state();
   // Up to there along the track, so that regions and friction are those of the scene.
-  double deepest_s = times_s.front(), deepest_m = 0.0;
+  double deepest_s = times_s.front();
   Measured measured;
   for (const double time_s : times_s) {
-    step(model, scene::pose_at(scene.track, time_s), state);
+    const scene::Pose pose = scene::pose_at(scene.track, time_s);
+    engine.step(pose);
     measured.regions = std::max(measured.regions, state.region_count);
-    if (const double here_m = depth_m(time_s); here_m > deepest_m) {
-      deepest_m = here_m;
+    if (const double here_m = depth.depth_m(pose); here_m > measured.deepest_m) {
+      measured.deepest_m = here_m;
       deepest_s = time_s;
     }
   }
   const scene::Pose pose = scene::pose_at(scene.track, deepest_s);
-  StageClock clock;
-  state.clock = &clock;
+  engine.time_stages(true);
   constexpr int ticks = 201;
   std::array<std::vector<double>, stage_count> stage_us;
   std::vector<double> step_us;
   for (int i = 0; i < ticks; ++i) {
-    clock.start();
-    step(model, pose, state);
-    double sum_us = 0.0;
+    engine.step(pose);
+    double& sum_us = step_us.emplace_back(0.0);
     for (std::size_t s = 0; s < stage_count; ++s) {
-      stage_us[s].push_back(clock.spent_us(static_cast<Stage>(s)));
+      stage_us[s].push_back(engine.stages().spent_us(static_cast<Stage>(s)));
       sum_us += stage_us[s].back();
     }
-    step_us.push_back(sum_us);
   }
   for (std::size_t s = 0; s < stage_count; ++s) measured.stage_us[s] = median(stage_us[s]);
   measured.step_us = median(step_us);
   measured.contact = state.in_contact();
-  measured.deepest_m = deepest_m;
   for (int i = 0; i < state.region_count; ++i)
     measured.points += state.regions[static_cast<std::size_t>(i)].points.count;
   return measured;
@@ -104,9 +100,9 @@ std::string one_region_text(const scene::Tool& tool) {
 }  // namespace
 
 scene::Plan plan(const scene::Scene& scene) {
-  const FastModel model(scene);
-  const FastState state(model);
-  const Measured measured = measure(scene, model);
+  Engine engine(scene);
+  const FastModel& model = engine.model();
+  const Measured measured = measure(scene, engine);
   const bool published = scene.fast.formulation == scene::Formulation::published;
   const std::string printed = published ? "as printed" : "corrected", elements = published ? "samples" : "cells";
   const auto held = std::count(model.skeleton.held.begin(), model.skeleton.held.end(), true);
@@ -182,7 +178,7 @@ scene::Plan plan(const scene::Scene& scene) {
   models("normals", "of the deformed surface", measured.cost({Stage::normals}));
   models("whole step", "all of it", text("%.1f us a tick, measured", measured.step_us));
   models("memory", "model and state, taken before the first tick",
-         text("%.1f MB", static_cast<double>(model.memory_bytes() + state.memory_bytes()) / 1e6));
+         text("%.1f MB", static_cast<double>(engine.memory_bytes()) / 1e6));
   leaves_out("time dependence", "the paper's law is the static force; the track's speed does not enter");
   return plan;
 }

@@ -1,6 +1,8 @@
 #include "fast/run/recording.h"
 
-#include "fast/step/several_regions.h"
+#include "fast/run/ticks.h"
+#include "fast/step/stages.h"
+#include "fast/step/step.h"
 
 #include <algorithm>
 #include <array>
@@ -18,12 +20,14 @@ std::array<double**, 7> columns_of(RegionPoints& p) noexcept {
   return {&p.x_T_m, &p.y_T_m, &p.z_T_m, &p.depth_m, &p.rise1_m, &p.rise2_m, &p.share};
 }
 
-RecordedTick record(const ContactRegion& region, const Motion& motion, bool created, int instant) {
+RecordedTick record(const FastState& state, int instant) {
   RecordedTick tick;
   tick.instant = instant;
-  tick.in_region = true;
-  tick.created = created;
-  tick.motion = motion;
+  tick.in_region = state.region_count > 0;
+  if (!tick.in_region) return tick;
+  const ContactRegion& region = state.regions[0];
+  tick.created = region.created;
+  tick.motion = state.motion;
   tick.d = region.d;
   tick.extent = region.extent;
   tick.origin = region.origin;
@@ -41,9 +45,9 @@ class OneRegion {
       : model_(model), cells_(model.tool.count()), scratch_(*model.clusters, model.max_points()), was_(samples(), 0) {}
 
   /// Asks about the tick whose points, if any, are in the state's region, found but not measured.
-  [[nodiscard]] bool holds(const Motion& motion, FastState& state) {
+  [[nodiscard]] bool holds(FastState& state) {
     RegionPoints reach = state.probe.window();
-    find_points(model_, motion.at, bulge_m_, reach, cells_);
+    find_points(model_, state.motion.at, bulge_m_, reach, cells_);
     if (state.region_count == 0) {
       last_.clear();
       return reach.count == 0;
@@ -101,26 +105,18 @@ std::optional<std::vector<RecordedTick>> record_one_region(const FastModel& mode
     if (friction) return std::nullopt;
     one.emplace(model);
   }
-  FastState state(model);
+  FastState state(model, 1);
   std::vector<RecordedTick> recorded;
-  std::optional<scene::Pose> before;
   std::size_t bytes = 0;
   Ticks ticks(scene);
   while (const std::optional<Tick> tick = ticks.next()) {
-    scene::Pose pose = scene::pose_at(scene.track, tick->time_s);
-    pose.orientation.normalize();
-    const Motion motion{pose, placement(pose), before.value_or(pose), !before};
-    before = pose;
-    const bool created = find_one_region(model, motion, state);
-    if (one && !one->holds(motion, state)) return std::nullopt;
-    if (state.region_count > 0) measure(model, motion, state.regions[0], state);
+    const scene::Pose pose = scene::pose_at(scene.track, tick->time_s);
+    step(model, pose, state, Parts::find);
+    if (one && !one->holds(state)) return std::nullopt;
+    step(model, pose, state, Parts::measure);
     if (one) one->remember(state);
     if (!friction && tick->instant < 0) continue;
-    if (state.region_count > 0) {
-      recorded.push_back(record(state.regions[0], motion, created, tick->instant));
-    } else {
-      recorded.emplace_back().instant = tick->instant;
-    }
+    recorded.push_back(record(state, tick->instant));
     bytes += sizeof(RecordedTick) + recorded.back().numbers.size() * sizeof(double);
     if (bytes > bytes_max) return std::nullopt;
   }
@@ -134,7 +130,9 @@ void recall(const RecordedTick& tick, FastState& state) noexcept {
     if (region.active) region.clear();
     return;
   }
+  state.motion = tick.motion;
   region.active = true;
+  region.created = tick.created;
   region.d = tick.d;
   region.extent = tick.extent;
   region.origin = tick.origin;

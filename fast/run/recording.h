@@ -2,8 +2,9 @@
 // that a fit runs the same track with other constants.
 #pragma once
 
-#include "fast/step/press.h"
-#include "fast/run/ticks.h"
+#include "fast/step/model.h"
+#include "fast/step/state.h"
+#include "scene/model/scene.h"
 
 #include <optional>
 #include <vector>
@@ -37,8 +38,8 @@ struct RecordedTick {
                                                                          const scene::Scene& scene,
                                                                          std::size_t bytes_max);
 
-/// Puts the tick into the first region of a state, as find_one_region() and measure() leave it. The state borrows the
-/// tick's points.
+/// Puts the tick into a state with one region, as Parts::find and Parts::measure leave it. The state borrows the tick's
+/// points.
 void recall(const RecordedTick& tick, FastState& state) noexcept;
 
 }  // namespace touchstone::fast

@@ -1,8 +1,8 @@
 // The real-time pipeline over a scene's track in virtual time: what `touchstone fast` does.
 #pragma once
 
-#include "fast/skeleton/beam_stress.h"
 #include "fast/run/percentiles.h"
+#include "fast/skeleton/beam_stress.h"
 #include "scene/model/plan.h"
 #include "scene/model/answer.h"
 #include "scene/model/scene.h"
@@ -41,7 +41,7 @@ struct Run : scene::Answer {
   /// where no instant had several.
   std::optional<double> order_spread_rel, equilibrium_rel;
   std::uint32_t status = 0;      ///< OR of all StepStatus bits
-  std::uint64_t state_hash = 0;  ///< over every tick's force and final shape; equal on replay
+  std::uint64_t state_hash = 0;  ///< Engine::answer_hash(); equal on replay
 };
 
 /// What the fast model computes for this scene and what it leaves out.

@@ -1,20 +1,20 @@
 // The constant data of the real-time step, built once from a scene.
 #pragma once
 
-#include "fast/skeleton/anchor_points.h"
-#include "fast/skeleton/beam_skeleton.h"
 #include "fast/contact/contact_detection.h"
 #include "fast/contact/contact_law.h"
 #include "fast/contact/contact_regions.h"
 #include "fast/contact/find_cells.h"
 #include "fast/contact/friction.h"
+#include "fast/contact/mass_distribution.h"
+#include "fast/contact/tool_samples.h"
+#include "fast/skeleton/anchor_points.h"
+#include "fast/skeleton/beam_skeleton.h"
 #include "fast/surface/interpolation.h"
 #include "fast/surface/local_factor.h"
-#include "fast/contact/mass_distribution.h"
 #include "fast/surface/normals.h"
 #include "fast/surface/region_shapes.h"
 #include "fast/surface/surface_patches.h"
-#include "fast/contact/tool_samples.h"
 #include "scene/model/scene.h"
 #include "scene/shape/surface.h"
 

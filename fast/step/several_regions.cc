@@ -8,13 +8,8 @@ namespace {
 
 using scene::Vec3;
 
-/// Clusters beyond the regions are told apart before the smallest are given up.
-constexpr int clusters_per_region = 2;
-
 /// How far a region's centre may travel in a tick without sharing a sample with its last place, in units of r_th.
 constexpr double reach_over_r_th = 2.0;
-
-std::size_t capacity(const FastModel& model) { return static_cast<std::size_t>(model.max_regions); }
 
 int smallest_free_id(const FastState& state) noexcept {
   for (int id = 0;; ++id) {
@@ -75,62 +70,68 @@ class StackedSurface final : public DisplacedSurface {
   ShapeStack& shapes_;
 };
 
-/// Presses one region on the shape of those already in the stack, and adds it to the stack.
-StepStatus press_next(const FastModel& model, const Motion& motion, bool alone, ContactRegion& region,
-                      std::span<BeamStress> stress, FastState& state) noexcept {
+/// Null where the scene has no local factor.
+const LocalConstants* local_constants(const FastModel& model) noexcept {
+  return model.formulas.local_factor() ? &model.local : nullptr;
+}
+
+/// A deformation origin on the shape of the regions in the stack.
+Vec3 displaced(const FastModel& model, const DeformationOrigin& origin, const ShapeStack& shapes) noexcept {
+  if (shapes.count == 0) return origin.p0_W_m;
+  return origin.p0_W_m + model.formulas.several.displacement_at(model.rest, *model.anchors, shapes,
+                                                                local_constants(model),
+                                                                {0.0, origin.p0_W_m, origin.normal, origin.patch});
+}
+
+}  // namespace
+
+StepStatus track_regions(const FastModel& model, RegionPoints& points, FastState& state) noexcept {
   SeveralRegionsState& several = *state.several;
-  ShapeStack& shapes = several.shapes;
-  const LocalConstants* local = model.formulas.local_factor() ? &model.local : nullptr;
-  InsideSummary inside;
-  if (shapes.count > 0) {
-    inside =
-        model.detection.pull_back(*model.body, StackedSurface(model, local, shapes), region.points, several.pull_back);
+  const ClusterCount found = cluster(*model.clusters, points, several.scratch, several.clusters);
+  const Tracking tracking =
+      several.tracker.track(points, {several.clusters.data(), static_cast<std::size_t>(found.count)},
+                            reach_over_r_th * model.clusters->r_th_m, several.tracked);
+  take_over(points, tracking.count, state);
+  std::iota(several.order.begin(), several.order.end(), 0);
+  state.lap(Stage::regions);
+  return found.dropped + tracking.dropped > 0 ? StepStatus::regions_full : StepStatus::ok;
+}
+
+void meet_deformed_body(const FastModel& model, ContactRegion& region, FastState& state) noexcept {
+  SeveralRegionsState& several = *state.several;
+  if (several.shapes.count > 0) {
+    const StackedSurface surface(model, local_constants(model), several.shapes);
+    region.inside = model.detection.pull_back(*model.body, surface, region.points, several.pull_back);
   } else {
     keep_inside(region.points);
-    inside = model.detection.summarise(*model.body, region.points);
+    region.inside = model.detection.summarise(*model.body, region.points);
   }
-  state.lap(Stage::regions);
-  StepStatus status = StepStatus::ok;
-  region.force = RegionForce{};
-  region.displacement_m.setZero();
   region.ends.clear();
-  if (region.points.count > 0) {
-    if (region.met) {
-      region.d = next_direction(region, inside);
-    } else if (alone) {
-      region.d = entry_direction(model, motion, inside, state);
-    } else {
-      region.d = direction_from(inside, -model.body->query(motion.pose.position_m).normal);
-    }
-    status |= press(model, motion, !region.met, region, state);
-    region.met = true;
-  }
-  const SkeletonView skeleton = shapes.count > 0 ? several.ends.view(model.skeleton) : SkeletonView(model.skeleton);
-  if (region.pressing()) {
-    const Vec3 p0_current_m =
-        shapes.count > 0
-            ? Vec3(region.origin.p0_W_m + model.formulas.several.displacement_at(
-                                              model.rest, *model.anchors, shapes, local,
-                                              {0.0, region.origin.p0_W_m, region.origin.normal, region.origin.patch}))
-            : region.origin.p0_W_m;
-    model.formulas.split_force(skeleton, p0_current_m, -region.force.force_n, region.displacement_m, region.ends);
-    if (region.ends.limited) status |= StepStatus::anchors_limited;
-  }
+  state.lap(Stage::regions);
+}
+
+StepStatus deform_body(const FastModel& model, std::size_t k, FastState& state) noexcept {
+  SeveralRegionsState& several = *state.several;
+  ContactRegion& region = state.regions[k];
+  ShapeStack& shapes = several.shapes;
+  const bool first = shapes.count == 0;
+  const SkeletonView skeleton = first ? SkeletonView(model.skeleton) : several.ends.view(model.skeleton);
+  StepStatus status = StepStatus::ok;
+  if (region.pressing()) status = load_beams(model, skeleton, displaced(model, region.origin, shapes), region);
   // Only earlier regions feel them.
-  if (shapes.count > 0) beam_stresses(skeleton, region.ends, stress);
+  if (!first) beam_stresses(skeleton, region.ends, several.stress_pa[k]);
   RegionShape shape;
   shape.anchor_displacement_m = region.ends.displacement_m;
   shape.contact = contact_point(model, region);
   shape.p0_W_m = region.origin.p0_W_m;
   shape.size = {region.points.count, region.extent.area_m2};
-  model.formulas.several.add(model.rest, local, shape, shapes);
+  model.formulas.several.add(model.rest, local_constants(model), shape, shapes);
   const bool last = static_cast<int>(shapes.count) == state.region_count;
   if (!last) several.ends.update(model.skeleton, shapes.anchor_total_m);
   state.lap(Stage::skeleton);
   return status;
 }
 
-/// F_ji on region i of every region j pressed after it, section VI-A.
 void add_later_forces(const FastModel& model, FastState& state) noexcept {
   SeveralRegionsState& several = *state.several;
   const std::span<const int> order(several.order.data(), static_cast<std::size_t>(state.region_count));
@@ -150,125 +151,9 @@ void add_later_forces(const FastModel& model, FastState& state) noexcept {
     region.force.torque_nm += region.force.load_center_m.cross(later_n);
     region.force.magnitude_n = region.force.force_n.norm();
   }
-}
-
-StepStatus press_in_order(const FastModel& model, const Motion& motion, FastState& state) noexcept {
-  SeveralRegionsState& several = *state.several;
-  StepStatus status = StepStatus::ok;
-  several.shapes.clear();
-  for (int i = 0; i < state.region_count; ++i) {
-    const auto k = static_cast<std::size_t>(several.order[static_cast<std::size_t>(i)]);
-    const bool alone = state.region_count == 1;
-    status |= press_next(model, motion, alone, state.regions[k], several.stress_pa[k], state);
-  }
-  add_later_forces(model, state);
   several.bulge_m = 0.0;
   for (const Vec3& u_m : several.shapes.anchor_total_m) several.bulge_m = std::max(several.bulge_m, u_m.norm());
   state.lap(Stage::regions);
-  return status;
-}
-
-}  // namespace
-
-SeveralRegionsState::SeveralRegionsState(const FastModel& model)
-    : scratch(*model.clusters, model.max_points()),
-      tracker(model.tool.count(), clusters_per_region * model.max_regions, model.max_regions),
-      clusters(clusters_per_region * capacity(model)),
-      tracked(capacity(model)),
-      pull_back(model.max_points()),
-      ends(model.skeleton),
-      shapes(model.rest, *model.anchors, model.max_regions),
-      stress_pa(capacity(model), std::vector<BeamStress>(model.skeleton.anchor_m.size())),
-      order(capacity(model)) {}
-
-std::size_t SeveralRegionsState::memory_bytes() const noexcept {
-  return sizeof(SeveralRegionsState) + scratch.memory_bytes() + tracker.memory_bytes() + pull_back.memory_bytes() +
-         shapes.memory_bytes() + clusters.size() * sizeof(Cluster) +
-         stress_pa.size() * stress_pa[0].size() * sizeof(BeamStress);
-}
-
-StepStatus press_several_regions(const FastModel& model, const Motion& motion, FastState& state) noexcept {
-  SeveralRegionsState& several = *state.several;
-  RegionPoints all = state.store.window();
-  find_points(model, motion.at, several.bulge_m, all, state.cells);
-  state.lap(Stage::detection);
-  const ClusterCount found = cluster(*model.clusters, all, several.scratch, several.clusters);
-  const Tracking tracking = several.tracker.track(all, {several.clusters.data(), static_cast<std::size_t>(found.count)},
-                                                  reach_over_r_th * model.clusters->r_th_m, several.tracked);
-  take_over(all, tracking.count, state);
-  std::iota(several.order.begin(), several.order.end(), 0);
-  state.lap(Stage::regions);
-  StepStatus status = press_in_order(model, motion, state);
-  if (found.dropped + tracking.dropped > 0) status |= StepStatus::regions_full;
-  return status;
-}
-
-StepStatus shape_several_regions(const FastModel& model, FastState& state) noexcept {
-  SeveralRegionsState& several = *state.several;
-  model.formulas.several.interpolate(model.rest, several.shapes, state.field);
-  state.lap(Stage::interpolation);
-  if (model.formulas.local_factor()) {
-    model.formulas.several.apply_local_factors(model.rest, model.local, several.shapes, state.field);
-    state.lap(Stage::local_factor);
-  }
-  update_normals(model.normals, state.field);
-  state.lap(Stage::normals);
-  return StepStatus::ok;
-}
-
-OrderSpread order_spread(const FastModel& model, FastState& state) {
-  OrderSpread spread;
-  if (state.several == nullptr || state.region_count < 2) return spread;
-  SeveralRegionsState& several = *state.several;
-  const Vec3 total_n = total_force_n(state);
-  const double size_n = total_n.norm();
-  if (!(size_n > 0.0)) return spread;
-  spread.equilibrium_rel = (total_n - support_force_n(state)).norm() / size_n;
-
-  // Everything is put back afterwards.
-  const std::vector<ContactRegion> regions = state.regions;
-  const ShapeStack shapes = several.shapes;
-  const std::vector<std::vector<BeamStress>> stress_pa = several.stress_pa;
-  const Motion still{state.pose, placement(state.pose), state.pose, true};
-  const auto count = static_cast<std::size_t>(state.region_count);
-  // No region is new any more: directions and friction stay as they are.
-  for (TrackedRegion& region : several.tracked) region.was = 0;
-  const auto press_again = [&] {
-    RegionPoints all = state.store.window();
-    find_points(model, still.at, several.bulge_m, all, state.cells);
-    cluster(*model.clusters, all, several.scratch, several.clusters);
-    for (std::size_t k = 0; k < count; ++k) {
-      const PointRange range = several.clusters[static_cast<std::size_t>(several.tracked[k].cluster)].points;
-      state.regions[k].points = all.slice(range.begin, range.size);
-    }
-    press_in_order(model, still, state);
-    return total_force_n(state);
-  };
-  const double bulge_m = several.bulge_m;
-  std::vector<int> order(count);
-  std::iota(order.begin(), order.end(), 0);
-  const std::vector<int> created = order;
-  std::vector<std::vector<int>> orders;
-  if (count <= 4) {
-    while (std::next_permutation(order.begin(), order.end())) orders.push_back(order);
-  } else {
-    orders.emplace_back(created.rbegin(), created.rend());
-    for (std::size_t k = 1; k < count; ++k) {
-      std::rotate(order.begin(), order.begin() + 1, order.end());
-      orders.push_back(order);
-    }
-  }
-  for (const std::vector<int>& other : orders) {
-    several.bulge_m = bulge_m;
-    std::copy(other.begin(), other.end(), several.order.begin());
-    spread.spread_rel = std::max(spread.spread_rel, (press_again() - total_n).norm() / size_n);
-  }
-  several.bulge_m = bulge_m;
-  std::copy(created.begin(), created.end(), several.order.begin());
-  std::copy(regions.begin(), regions.end(), state.regions.begin());
-  several.shapes = shapes;
-  several.stress_pa = stress_pa;
-  return spread;
 }
 
 }  // namespace touchstone::fast

@@ -1,7 +1,5 @@
 #include "fast/step/state.h"
 
-#include "fast/step/several_regions.h"
-
 #include <algorithm>
 
 namespace touchstone::fast {
@@ -25,11 +23,12 @@ std::string status_text(std::uint32_t status) {
 }
 
 void ContactRegion::clear() noexcept {
-  active = met = false;
+  active = met = created = false;
   id = 0;
   d = -Vec3::UnitZ();
   depth_rel = 0.0;
   points.count = 0;
+  inside = {};
   extent = {};
   origin = {};
   force = {};
@@ -38,15 +37,33 @@ void ContactRegion::clear() noexcept {
   ends.clear();
 }
 
-FastState::FastState(const FastModel& model)
+/// Clusters beyond the regions are told apart before the smallest are given up.
+constexpr int clusters_per_region = 2;
+
+SeveralRegionsState::SeveralRegionsState(const FastModel& model)
+    : scratch(*model.clusters, model.max_points()),
+      tracker(model.tool.count(), clusters_per_region * model.max_regions, model.max_regions),
+      clusters(clusters_per_region * static_cast<std::size_t>(model.max_regions)),
+      tracked(static_cast<std::size_t>(model.max_regions)),
+      pull_back(model.max_points()),
+      ends(model.skeleton),
+      shapes(model.rest, *model.anchors, model.max_regions),
+      stress_pa(static_cast<std::size_t>(model.max_regions), std::vector<BeamStress>(model.skeleton.anchor_m.size())),
+      order(static_cast<std::size_t>(model.max_regions)) {}
+
+std::size_t SeveralRegionsState::memory_bytes() const noexcept {
+  return sizeof(SeveralRegionsState) + scratch.memory_bytes() + tracker.memory_bytes() + pull_back.memory_bytes() +
+         shapes.memory_bytes() + clusters.size() * sizeof(Cluster) +
+         stress_pa.size() * stress_pa[0].size() * sizeof(BeamStress);
+}
+
+FastState::FastState(const FastModel& model, int max_regions)
     : store(model.max_points()),
       cells(model.formulas.cells ? model.tool.count() : 0),
       probe(model.max_points()),
-      regions(static_cast<std::size_t>(model.max_regions), ContactRegion(model.skeleton.anchor_m.size())),
+      regions(static_cast<std::size_t>(max_regions), ContactRegion(model.skeleton.anchor_m.size())),
       field(model.rest),
-      several(model.max_regions > 1 ? std::make_unique<SeveralRegionsState>(model) : nullptr) {}
-
-FastState::~FastState() = default;
+      several(max_regions > 1 ? std::make_unique<SeveralRegionsState>(model) : nullptr) {}
 
 bool FastState::in_contact() const noexcept {
   return std::any_of(regions.begin(), regions.begin() + region_count,

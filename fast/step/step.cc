@@ -1,75 +1,118 @@
 #include "fast/step/step.h"
 
 #include "fast/realtime/flush_tiny_numbers.h"
-#include "fast/step/press.h"
 #include "fast/step/several_regions.h"
-#include "scene/base/range.h"
+#include "fast/step/stages.h"
 
 namespace touchstone::fast {
 namespace {
 
-using scene::Pose;
-using scene::Vec3;
-
-bool is_placement(const Pose& pose) noexcept {
-  return pose.position_m.allFinite() && scene::orientation_norm.contains(pose.orientation.norm());
-}
-
-/// The whole tool in one region.
-StepStatus press_one_region(const FastModel& model, const Motion& motion, FastState& state) noexcept {
-  const bool created = find_one_region(model, motion, state);
-  return state.region_count == 0 ? StepStatus::ok : press(model, motion, created, state.regions[0], state);
+/// Nothing touches the body.
+void return_to_rest(const FastModel& model, FastState& state) noexcept {
+  if (!state.deformed) return;
+  state.field.reset(model.rest);
+  for (ContactRegion& region : state.regions) region.ends.clear();
+  state.deformed = false;
 }
 
 }  // namespace
 
-StepStatus step_force(const FastModel& model, const Pose& pose_asked, FastState& state) noexcept {
-  if (!is_placement(pose_asked)) return StepStatus::not_finite;
-  const Pose pose{pose_asked.position_m, pose_asked.orientation.normalized()};
-  const Motion motion{pose, placement(pose), state.placed ? state.pose : pose, !state.placed};
-  const StepStatus status =
-      state.several == nullptr ? press_one_region(model, motion, state) : press_several_regions(model, motion, state);
-  state.pose = pose;
-  state.placed = true;
-  return status;
-}
+StepStatus step(const FastModel& model, const scene::Pose& pose, FastState& state, Parts parts) noexcept {
+  const Formulas& formulas = model.formulas;
+  SeveralRegionsState* const several = state.several.get();
+  StepStatus status = StepStatus::ok;
 
-void displace(const FastModel& model, FastState& state) noexcept {
-  ContactRegion& region = state.regions[0];
-  const Vec3 force_on_body_n = -region.force.force_n;
-  model.formulas.split_force(model.skeleton, region.origin.p0_W_m, force_on_body_n, region.displacement_m, region.ends);
-  state.lap(Stage::skeleton);
-  model.formulas.interpolate(model.rest, region.ends.displacement_m, contact_point(model, region), state.field);
-  state.lap(Stage::interpolation);
-  if (model.formulas.apply_local_factor != nullptr) {
-    model.formulas.apply_local_factor(model.rest, model.local, {region.points.count, region.extent.area_m2},
-                                      region.origin.p0_W_m, state.field);
-    state.lap(Stage::local_factor);
-  }
-}
+  if (has(parts, Parts::find)) {
+    // Pose check: without a placement the last good answer is held.
+    if (!move_to(pose, state)) return StepStatus::not_finite;
 
-StepStatus step_shape(const FastModel& model, FastState& state) noexcept {
-  if (!state.in_contact()) {
-    if (state.deformed) {
-      state.field.reset(model.rest);
-      for (ContactRegion& region : state.regions) region.ends.clear();
-      state.deformed = false;
+    // Contact detection: the points of the tool inside the rest shape or, with several regions, near it.
+    RegionPoints points = state.store.window();
+    const double margin_m = several != nullptr ? several->bulge_m : 0.0;
+    const InsideSummary inside = find_points(model, state.motion.at, margin_m, points, state.cells);
+    state.lap(Stage::detection);
+
+    // Contact regions: one, or clusters of points that are followed from tick to tick.
+    if (several == nullptr) {
+      keep_one_region(points, inside, state);
+    } else {
+      status |= track_regions(model, points, state);
     }
-    return StepStatus::ok;
   }
-  [[maybe_unused]] const FlushTinyNumbers flush;
-  state.deformed = true;
-  if (state.several != nullptr) return shape_several_regions(model, state);
-  displace(model, state);
-  update_normals(model.normals, state.field);
-  state.lap(Stage::normals);
-  return state.regions[0].ends.limited ? StepStatus::anchors_limited : StepStatus::ok;
-}
 
-StepStatus step(const FastModel& model, const Pose& pose, FastState& state) noexcept {
-  const StepStatus force = step_force(model, pose, state);
-  if (force == StepStatus::not_finite) return force;
-  return force | step_shape(model, state);
+  if (has(parts, Parts::press)) {
+    if (several != nullptr) several->shapes.clear();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(state.region_count); ++i) {
+      const std::size_t k = several != nullptr ? static_cast<std::size_t>(several->order[i]) : i;
+      ContactRegion& region = state.regions[k];
+      if (has(parts, Parts::measure)) {
+        // Section VI: each region meets the body that the earlier ones have deformed.
+        if (several != nullptr) meet_deformed_body(model, region, state);
+
+        // Direction of deformation, depths along it from the origin of deformation.
+        find_direction(model, region, state);
+        status |= measure_depths(model, region, state);
+
+        // Mass shares of the points.
+        if (region.pressing())
+          formulas.distribute_mass(state.motion.at.R_WT.transpose() * region.d, model.tool.groups, region.points);
+      }
+      if (has(parts, Parts::load)) {
+        // Contact force by the law at the region's size.
+        const DuffingLaw law = model.law.at(contact_radius_m(region.extent.area_m2));
+        status |= contact_force(law, region, state);
+
+        // Friction, where the scene has it, and the equivalent point contact that stands for the region.
+        friction_and_point_contact(model, law, region, state);
+
+        // Section VI: beam skeleton and shape that a later region meets.
+        if (several != nullptr) status |= deform_body(model, k, state);
+      }
+    }
+    if (several != nullptr) add_later_forces(model, state);
+  }
+
+  if (has(parts, Parts::shape)) {
+    if (!state.in_contact()) {
+      return_to_rest(model, state);
+      return status;
+    }
+    [[maybe_unused]] const FlushTinyNumbers flush;
+    state.deformed = true;
+    ContactRegion& region = state.regions[0];
+
+    // Beam skeleton: the force splits over the beams and moves the anchor points.
+    if (several == nullptr) {
+      status |= load_beams(model, model.skeleton, region.origin.p0_W_m, region);
+      state.lap(Stage::skeleton);
+    }
+
+    // Interpolation of the surface between anchor points and contact.
+    if (several == nullptr) {
+      formulas.interpolate(model.rest, region.ends.displacement_m, contact_point(model, region), state.field);
+    } else {
+      formulas.several.interpolate(model.rest, several->shapes, state.field);
+    }
+    state.lap(Stage::interpolation);
+
+    // Local factor around the contact, where the scene has it.
+    if (formulas.local_factor()) {
+      if (several == nullptr) {
+        formulas.apply_local_factor(model.rest, model.local, {region.points.count, region.extent.area_m2},
+                                    region.origin.p0_W_m, state.field);
+      } else {
+        formulas.several.apply_local_factors(model.rest, model.local, several->shapes, state.field);
+      }
+      state.lap(Stage::local_factor);
+    }
+
+    // Normals of the deformed surface.
+    if (has(parts, Parts::normals)) {
+      update_normals(model.normals, state.field);
+      state.lap(Stage::normals);
+    }
+  }
+  return status;
 }
 
 }  // namespace touchstone::fast

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "fast/contact/equivalent_point.h"
-#include "fast/step/several_regions.h"
+#include "fast/step/stages.h"
 #include "fast/step/step.h"
 #include "support/press.h"
 
@@ -163,8 +163,8 @@ class Rig {
     const auto mix = [&](const void* data, std::size_t bytes) {
       sum = 31 * sum + std::hash<std::string_view>{}({static_cast<const char*>(data), bytes});
     };
-    mix(state.pose.position_m.data(), 3 * sizeof(double));
-    mix(state.pose.orientation.coeffs().data(), 4 * sizeof(double));
+    mix(state.motion.pose.position_m.data(), 3 * sizeof(double));
+    mix(state.motion.pose.orientation.coeffs().data(), 4 * sizeof(double));
     mix(&state.region_count, sizeof state.region_count);
     for (int i = 0; i < state.region_count; ++i) {
       const ContactRegion& r = region(static_cast<std::size_t>(i));

@@ -1,8 +1,7 @@
 #include "soak/watch.h"
 
 #include "fast/contact/equivalent_point.h"
-#include "fast/step/press.h"
-#include "fast/step/several_regions.h"
+#include "fast/step/stages.h"
 
 #include <unistd.h>
 
@@ -82,7 +81,7 @@ void Watch::check(Property property, bool holds, const std::string& otherwise) {
 
 void Watch::before_step() noexcept {
   force_n_ = total_force_n(state_);
-  position_m_ = state_.pose.position_m;
+  position_m_ = state_.motion.pose.position_m;
   if (state_.several) bulge_m_ = state_.several->bulge_m;
 }
 
@@ -97,7 +96,7 @@ void Watch::after_step(const scene::Pose& asked, StepStatus status) {
   if (!placement || has(status, StepStatus::not_finite)) {
     ++figures_.looked[static_cast<std::size_t>(Property::bad_pose_held)].times;
     check(Property::bad_pose_held, !placement && status == StepStatus::not_finite, "a bad pose and its bit disagree");
-    check(Property::bad_pose_held, total_force_n(state_) == force_n_ && state_.pose.position_m == position_m_,
+    check(Property::bad_pose_held, total_force_n(state_) == force_n_ && state_.motion.pose.position_m == position_m_,
           "a bad pose changed the force or the last good pose");
     return;
   }

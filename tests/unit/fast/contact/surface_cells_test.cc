@@ -1,6 +1,6 @@
 #include "fast/contact/surface_cells.h"
 
-#include "fast/step/press.h"
+#include "fast/step/stages.h"
 #include "fast/step/step.h"
 #include "fast/contact/tool_samples.h"
 #include "scene/shape/surface.h"

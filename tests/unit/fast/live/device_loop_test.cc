@@ -44,7 +44,7 @@ TEST(DeviceLoop, ScriptedGivesTheModelsOwnAnswerAtThePosesOfTheTrack) {
   ScriptedDevice device(scene.track, 1e-3);
   const LockStep run = lock_step(scene, device, 501);
   ASSERT_EQ(run.records.size(), 501u);
-  Engine engine(scene);
+  fast::Engine engine(scene);
   double largest_n = 0.0;
   for (std::int64_t k = 0; k < 501; ++k) {
     const TickRecord& record = run.records[static_cast<std::size_t>(k)];
@@ -151,7 +151,7 @@ TEST(DeviceLoop, MissedTicksAreSkippedAndCounted) {
 
 TEST(DeviceLoop, PublishesForceBeforeShape) {
   const scene::Scene scene = live_scene();
-  Engine engine(scene);
+  fast::Engine engine(scene);
   const LoopTime time{1000, 300};
   WrenchLimiter limiter(WrenchLimits::of(scene.live, engine.tool_reach_m()), time.period_s());
   VirtualClock clock;
@@ -159,7 +159,7 @@ TEST(DeviceLoop, PublishesForceBeforeShape) {
   /// At each write the engine's shape must still be that of the tick before.
   class Watch final : public Device {
    public:
-    explicit Watch(const Engine& watched) : engine(watched) {}
+    explicit Watch(const fast::Engine& watched) : engine(watched) {}
     [[nodiscard]] std::uint32_t capabilities() const noexcept override { return 0; }
     [[nodiscard]] bool read(const Tick& tick, DeviceSample& sample) noexcept override {
       sample.pose = test::pressed(1e-5 * static_cast<double>(tick.index));
@@ -172,7 +172,7 @@ TEST(DeviceLoop, PublishesForceBeforeShape) {
       jump_n = std::max(jump_n, (wrench.force_n - last.force_n).norm());
       last = wrench;
     }
-    const Engine& engine;
+    const fast::Engine& engine;
     fast::Columns3 before;
     int writes = 0, moved = 0;
     double jump_n = 0.0;
@@ -196,7 +196,7 @@ TEST(DeviceLoop, PublishesForceBeforeShape) {
 
 TEST(DeviceLoop, AFullRingDropsAndCounts) {
   const scene::Scene scene = live_scene();
-  Engine engine(scene);
+  fast::Engine engine(scene);
   const LoopTime time{1000, 100};
   WrenchLimiter limiter(WrenchLimits::of(scene.live, engine.tool_reach_m()), time.period_s());
   VirtualClock clock;
@@ -215,7 +215,7 @@ TEST(DeviceLoop, AFullRingDropsAndCounts) {
 
 TEST(DeviceLoop, StopsWhenAsked) {
   const scene::Scene scene = live_scene();
-  Engine engine(scene);
+  fast::Engine engine(scene);
   const LoopTime time{1000, 1000};
   WrenchLimiter limiter(WrenchLimits::of(scene.live, engine.tool_reach_m()), time.period_s());
   VirtualClock clock;

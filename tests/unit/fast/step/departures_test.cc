@@ -5,7 +5,7 @@
 #include "fast/contact/friction.h"
 #include "fast/run/run.h"
 #include "fast/contact/separation.h"
-#include "fast/step/several_regions.h"
+#include "fast/step/stages.h"
 #include "fast/step/step.h"
 #include "scene/model/rules.h"
 #include "support/points.h"
@@ -175,7 +175,7 @@ Onset onset_of_sliding(Formulation formulation, double K) {
   Walk walk(scene);
   Onset onset;
   onset.stuck_n = drag_until_it_slides(walk);
-  onset.travel_m = walk.state.pose.position_m.x() - walk.scene.track.front().pose.position_m.x();
+  onset.travel_m = walk.state.motion.pose.position_m.x() - walk.scene.track.front().pose.position_m.x();
   onset.sliding_n = walk.region().force.tangential_n.norm();
   return onset;
 }
@@ -205,7 +205,7 @@ struct TurnBack {
     drag_until_it_slides(walk);
     walk.go(0.8, 4);
     const Vec3 before_n = walk.force_n();
-    scene::Pose pose = walk.state.pose;
+    scene::Pose pose = walk.state.motion.pose;
     for (int i = 0; i < 100; ++i) {
       pose.position_m.x() -= 5e-5;
       walk.step_to(pose);
@@ -231,7 +231,7 @@ TEST(Departures, E5_RoundingTurnsNoRestingToolRound) {
     drag_until_it_slides(walk);
     walk.go(1.0, 5);
     const double before_n = walk.force_n().x();
-    scene::Pose pose = walk.state.pose;
+    scene::Pose pose = walk.state.motion.pose;
     pose.position_m.x() = std::nextafter(pose.position_m.x(), -1.0);
     walk.step_to(pose);
     EXPECT_LT(before_n, 0.0);
@@ -703,7 +703,7 @@ TEST(Departures, RollingBallFeelsNoFriction) {
   const auto tangential_n = [](bool roll) {
     Walk walk("ball-on-cube-slide", Formulation::corrected);
     walk.go(0.4, 4);
-    scene::Pose pose = walk.state.pose;
+    scene::Pose pose = walk.state.motion.pose;
     const Vec3 arm_m = walk.region().force.load_center_m;
     for (int i = 0; i < 100; ++i) {
       pose.position_m.x() += 5e-5;

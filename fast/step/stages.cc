@@ -1,4 +1,6 @@
-#include "fast/step/press.h"
+#include "fast/step/stages.h"
+
+#include "scene/base/range.h"
 
 #include <algorithm>
 
@@ -12,12 +14,16 @@ using scene::Vec3;
 /// region keeps its direction.
 constexpr double direction_kept_rel = 0.25;
 
-}  // namespace
+/// Into the body from the surface nearest to the tool's mass centre.
+Vec3 direction_to_centre(const FastModel& model, const Motion& motion) noexcept {
+  return -model.body->query(motion.pose.position_m).normal;
+}
 
-Placement placement(const Pose& pose) noexcept { return {pose.orientation.toRotationMatrix(), pose.position_m}; }
-
-Vec3 entry_direction(const FastModel& model, const Motion& motion, const InsideSummary& inside,
-                     FastState& state) noexcept {
+/// Direction of deformation of a region that has just come into being in a tick that began apart. Where one tick has
+/// brought the tool further in than its samples lie apart, the pose a spacing behind first touch is looked for, or a
+/// fast tool would be taken to have come from the nearest side of the body.
+Vec3 entry_direction(const FastModel& model, const InsideSummary& inside, FastState& state) noexcept {
+  const Motion& motion = state.motion;
   InsideSummary first = inside;
   if (!motion.first && inside.deepest_m > model.tool.spacing_m) {
     const auto inside_at = [&](double s, int limit, RegionPoints& points) {
@@ -38,19 +44,26 @@ Vec3 entry_direction(const FastModel& model, const Motion& motion, const InsideS
       }
     }
     // The sample that is first speaks for one flank of an edge or a tip; a spacing on, all flanks have their say.
-    const double way_m =
+    const double travel_m =
         std::max(inside.deepest_m, (1.0 - touching) * (motion.pose.position_m - motion.before.position_m).norm());
     RegionPoints points = state.probe.window();
     const InsideSummary here =
-        inside_at(touching + (1.0 - touching) * model.tool.spacing_m / way_m, model.tool.count(), points);
+        inside_at(touching + (1.0 - touching) * model.tool.spacing_m / travel_m, model.tool.count(), points);
     if (points.count > 0) first = here;
   }
-  const Vec3 otherwise = -model.body->query(motion.pose.position_m).normal;
-  return direction_from(first, otherwise);
+  return direction_from(first, direction_to_centre(model, motion));
 }
 
-Vec3 next_direction(const ContactRegion& region, const InsideSummary& inside) noexcept {
-  return region.depth_rel < direction_kept_rel ? follow_direction(region.d, inside) : region.d;
+}  // namespace
+
+Placement placement(const Pose& pose) noexcept { return {pose.orientation.toRotationMatrix(), pose.position_m}; }
+
+bool move_to(const Pose& asked, FastState& state) noexcept {
+  if (!asked.position_m.allFinite() || !scene::orientation_norm.contains(asked.orientation.norm())) return false;
+  const Pose pose{asked.position_m, asked.orientation.normalized()};
+  state.motion = {pose, placement(pose), state.placed ? state.motion.pose : pose, !state.placed};
+  state.placed = true;
+  return true;
 }
 
 InsideSummary find_points(const FastModel& model, const Placement& at, double margin_m, RegionPoints& points,
@@ -61,30 +74,34 @@ InsideSummary find_points(const FastModel& model, const Placement& at, double ma
   return detection.find_inside(*model.body, model.tool, at, margin_m, model.tool.count(), points);
 }
 
-bool find_one_region(const FastModel& model, const Motion& motion, FastState& state) noexcept {
+void keep_one_region(const RegionPoints& points, const InsideSummary& inside, FastState& state) noexcept {
   ContactRegion& region = state.regions[0];
-  RegionPoints points = state.store.window();
-  const InsideSummary inside = find_points(model, motion.at, 0.0, points, state.cells);
-  const bool created = points.count > 0 && !region.active;
+  state.region_count = points.count > 0 ? 1 : 0;
   if (points.count == 0) {
     if (region.active) region.clear();
-    state.region_count = 0;
-    state.lap(Stage::detection);
-    return created;
+    return;
   }
-  if (created) {
-    region.active = true;
-    state.region_count = 1;
-    region.d = entry_direction(model, motion, inside, state);
-  } else {
-    region.d = next_direction(region, inside);
-  }
+  region.active = true;
   region.points = points;
-  return created;
+  region.inside = inside;
 }
 
-StepStatus measure(const FastModel& model, const Motion& motion, ContactRegion& region, FastState& state) noexcept {
-  region.extent = model.detection.measure_depths(*model.body, motion.at.R_WT, region.d, region.points);
+void find_direction(const FastModel& model, ContactRegion& region, FastState& state) noexcept {
+  if (region.points.count == 0) return;
+  region.created = !region.met;
+  region.met = true;
+  if (!region.created) {
+    if (region.depth_rel < direction_kept_rel) region.d = follow_direction(region.d, region.inside);
+  } else if (state.region_count == 1) {
+    region.d = entry_direction(model, region.inside, state);
+  } else {
+    region.d = direction_from(region.inside, direction_to_centre(model, state.motion));
+  }
+}
+
+StepStatus measure_depths(const FastModel& model, ContactRegion& region, FastState& state) noexcept {
+  if (region.points.count == 0) return StepStatus::ok;
+  region.extent = model.detection.measure_depths(*model.body, state.motion.at.R_WT, region.d, region.points);
   // Only the tool's back is inside: nothing pushes, but the region lives on with its direction.
   if (region.points.count == 0) return StepStatus::ok;
   // A tip of no thickness is touched without depth.
@@ -92,38 +109,40 @@ StepStatus measure(const FastModel& model, const Motion& motion, ContactRegion& 
   region.origin = deformation_origin(*model.body, model.detection.exit_distance_m, region.d, region.extent);
   const bool held = limit_depths(depth_limit_rel * region.extent.thickness_m, region.points);
   state.lap(Stage::detection);
-  model.formulas.distribute_mass(motion.at.R_WT.transpose() * region.d, model.tool.groups, region.points);
   return held ? StepStatus::depth_limited : StepStatus::ok;
 }
 
-StepStatus push(const FastModel& model, const Motion& motion, bool created, ContactRegion& region,
-                FastState& state) noexcept {
+StepStatus contact_force(const DuffingLaw& law, ContactRegion& region, FastState& state) noexcept {
   region.force = RegionForce{};
   region.displacement_m.setZero();
   if (region.points.count == 0) return StepStatus::ok;
-  const DuffingLaw law = model.law.at(contact_radius_m(region.extent.area_m2));
-  region.force = region_force(law, motion.at.R_WT, region.d, region.points);
-  const StepStatus status = region.force.saturated ? StepStatus::law_saturated : StepStatus::ok;
+  region.force = region_force(law, state.motion.at.R_WT, region.d, region.points);
+  state.lap(Stage::force);
+  return region.force.saturated ? StepStatus::law_saturated : StepStatus::ok;
+}
+
+void friction_and_point_contact(const FastModel& model, const DuffingLaw& law, ContactRegion& region,
+                                FastState& state) noexcept {
+  if (region.points.count == 0) return;
   if (model.formulas.resolve_friction == nullptr) {
     region.displacement_m = law.depth_m(region.force.magnitude_n) * region.d;
     state.lap(Stage::force);
-    return status;
+    return;
   }
-  state.lap(Stage::force);
-  const Vec3 step_m =
-      created ? Vec3(Vec3::Zero()) : material_step_m(placement(motion.before), motion.at, region.force.load_center_m);
+  const Motion& motion = state.motion;
+  const Vec3 step_m = region.created ? Vec3(Vec3::Zero())
+                                     : material_step_m(placement(motion.before), motion.at, region.force.load_center_m);
   region.displacement_m = model.formulas.resolve_friction(*model.friction, law, motion.at.R_WT, region.d, region.points,
                                                           step_m, region.force, region.friction);
   // The contact has been dragged from where it began.
   region.origin = origin_at(*model.body, region.origin.p0_W_m - region.friction.stretch_m);
   state.lap(Stage::friction);
-  return status;
 }
 
-StepStatus press(const FastModel& model, const Motion& motion, bool created, ContactRegion& region,
-                 FastState& state) noexcept {
-  const StepStatus measured = measure(model, motion, region, state);
-  return measured | push(model, motion, created, region, state);
+StepStatus load_beams(const FastModel& model, const SkeletonView& skeleton, const Vec3& p0_m,
+                      ContactRegion& region) noexcept {
+  model.formulas.split_force(skeleton, p0_m, -region.force.force_n, region.displacement_m, region.ends);
+  return region.ends.limited ? StepStatus::anchors_limited : StepStatus::ok;
 }
 
 ContactPoint contact_point(const FastModel& model, const ContactRegion& region) noexcept {
