@@ -124,7 +124,7 @@ TEST_F(SolverTest, FrictionRemembersThePress) {
     ASSERT_EQ(with.instants[i].regions.size(), 1u);
     const scene::RegionRecord& region = with.instants[i].regions[0];
     EXPECT_LT(region.friction_n.norm(), 0.5 * std::pow(region.force_n.norm(), 0.8));
-    EXPECT_LT(with.equilibrium_rel[i], 1e-6);
+    EXPECT_LT(with.instants[i].equilibrium_rel, 1e-6);
   }
   // Pressed, friction holds the ball up; taken off, it holds it down.
   for (std::size_t i = 2; i <= last / 2; ++i) {
