@@ -1,8 +1,8 @@
 #include "compare/app/export_verb.h"
 
 #include "compare/calculix/calculix.h"
-#include "compare/solve/reference_run.h"
 #include "compare/calculix/time_to_error.h"
+#include "compare/solve/reference_run.h"
 #include "reference/calculix/deck.h"
 #include "scene/output/results.h"
 

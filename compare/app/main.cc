@@ -1,7 +1,6 @@
 // touchstone: one scene in, one result folder out.
 #include "compare/app/export_verb.h"
 #include "compare/app/gate_verb.h"
-#include "compare/report/live_report.h"
 #include "compare/app/results_verb.h"
 #include "compare/app/study_verb.h"
 #include "compare/app/trade_verb.h"
@@ -9,14 +8,15 @@
 #include "compare/app/verbs.h"
 #include "compare/app/verify_verb.h"
 #include "compare/app/view_verb.h"
-#include "fast/command/command_line.h"
+#include "compare/report/live_report.h"
 #include "fast/app/completion.h"
-#include "fast/live/live_verb.h"
 #include "fast/app/new_verb.h"
+#include "fast/command/command_line.h"
+#include "fast/live/live_verb.h"
+#include "reference/contact/contact_ranks.h"
 #include "reference/linear/blas.h"
 #include "reference/linear/ranks.h"
 #include "scene/input/fields.h"
-#include "reference/contact/contact_ranks.h"
 
 #include <cstdlib>
 #include <iostream>

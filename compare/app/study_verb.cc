@@ -1,9 +1,9 @@
 #include "compare/app/study_verb.h"
 
-#include "compare/study/study_run.h"
-#include "compare/study/study_table.h"
 #include "compare/app/verbs.h"
 #include "compare/input/study_file.h"
+#include "compare/study/study_run.h"
+#include "compare/study/study_table.h"
 
 #include <fmt/format.h>
 

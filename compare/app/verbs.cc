@@ -1,15 +1,15 @@
 #include "compare/app/verbs.h"
 
 #include "compare/comparison/compare.h"
+#include "compare/input/tuning_study.h"
 #include "compare/report/fast_report.h"
 #include "compare/report/plot_files.h"
-#include "compare/solve/reference_run.h"
 #include "compare/report/vtk_out.h"
+#include "compare/solve/reference_run.h"
 #include "fast/command/results.h"
 #include "reference/solver.h"
-#include "scene/output/results.h"
 #include "scene/input/scene_io.h"
-#include "compare/input/tuning_study.h"
+#include "scene/output/results.h"
 
 #include <iostream>
 

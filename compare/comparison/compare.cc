@@ -1,14 +1,14 @@
 #include "compare/comparison/compare.h"
 
-#include "compare/report/comparison_drawings.h"
+#include "compare/errors/compute_errors.h"
 #include "compare/errors/figures.h"
+#include "compare/format/svg_plot.h"
+#include "compare/report/comparison_drawings.h"
 #include "compare/report/model_table.h"
 #include "compare/report/plot_files.h"
 #include "compare/report/report.h"
-#include "compare/format/svg_plot.h"
 #include "compare/report/verdict.h"
 #include "compare/report/vtk_out.h"
-#include "compare/errors/compute_errors.h"
 
 #include <limits>
 

@@ -4,9 +4,9 @@
 
 #include "compare/errors/errors.h"
 #include "compare/report/next_steps.h"
-#include "scene/output/results.h"
 #include "fast/run/run.h"
 #include "reference/solver.h"
+#include "scene/output/results.h"
 
 #include <filesystem>
 #include <string>

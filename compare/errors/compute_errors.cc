@@ -39,13 +39,14 @@ void require_aligned(const scene::Answer& answer, const std::vector<scene::Refer
             fmt::format("instant {} is at {} s against {} s", t, f.time_s, r.time_s));
     require((f.tool.position_m - r.tool.position_m).norm() <= same_place_m,
             fmt::format("the tool is at two places at instant {}", t));
-    require(f.displacement_m.cols() == points && r.displacement_m.cols() == points && 
+    require(f.displacement_m.cols() == points && r.displacement_m.cols() == points &&
                 r.displacement_uncertainty_m.size() == points,
             fmt::format("instant {} does not cover the {} rest points", t, points));
   }
 }
 
-void compare_forces(const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference, Errors& errors) {
+void compare_forces(const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference,
+                    Errors& errors) {
   MeanSquares squares;
   SquareSums deep;
   int deep_instants = 0;
@@ -80,7 +81,8 @@ void compare_forces(const scene::Answer& answer, const std::vector<scene::Refere
 }
 
 /// Of the rest surface: below the middle of every region, or nearest to the tool's centre where there is none.
-std::vector<scene::Vec3> contact_points_m(const scene::Shape& body, const std::vector<scene::ReferenceInstant>& reference, std::size_t t) {
+std::vector<scene::Vec3> contact_points_m(const scene::Shape& body,
+                                          const std::vector<scene::ReferenceInstant>& reference, std::size_t t) {
   std::vector<scene::Vec3> points_m = reference[t].region_middles_m;
   if (points_m.empty()) points_m.push_back(reference[t].tool.position_m);
   for (scene::Vec3& p_m : points_m) p_m = body.query(p_m).point_m;
@@ -128,7 +130,8 @@ std::vector<bool> on_side_faces(const scene::Shape& body, const scene::Surface& 
   return on_side;
 }
 
-void compare_shapes(const scene::Scene& scene, const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference, Errors& errors) {
+void compare_shapes(const scene::Scene& scene, const scene::Answer& answer,
+                    const std::vector<scene::ReferenceInstant>& reference, Errors& errors) {
   const auto body = scene::body_shape(scene.body);
   const auto tool = reference::tool_distance(scene.tool);
   const scene::Surface& surface = answer.surface;
@@ -221,7 +224,8 @@ void compare_shapes(const scene::Scene& scene, const scene::Answer& answer, cons
 
 }  // namespace
 
-Errors compute_errors(const scene::Scene& scene, const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference) {
+Errors compute_errors(const scene::Scene& scene, const scene::Answer& answer,
+                      const std::vector<scene::ReferenceInstant>& reference) {
   require_aligned(answer, reference);
   Errors errors;
   errors.instants.resize(answer.instants.size());

@@ -49,7 +49,8 @@ std::optional<std::size_t> slip_onset(const scene::Instants& records, const Erro
   return std::nullopt;
 }
 
-void compare_friction(const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference, Errors& errors) {
+void compare_friction(const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference,
+                      Errors& errors) {
   MeanSquares squares;
   double peak_n = 0.0, work_fast_j = 0.0, work_reference_j = 0.0, work_band_j = 0.0;
   const std::size_t count = errors.instants.size();
@@ -88,7 +89,8 @@ void compare_friction(const scene::Answer& answer, const std::vector<scene::Refe
                                std::max(since_before_m(*fast_at), since_before_m(*reference_at))};
 }
 
-void compare_torques(const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference, Errors& errors) {
+void compare_torques(const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference,
+                     Errors& errors) {
   MeanSquares squares;
   double scale_nm = 0.0;
   for (std::size_t t = 0; t < errors.instants.size(); ++t) {
@@ -131,7 +133,8 @@ std::vector<const RegionRecord*> partners(const InstantRecord& fast, const Insta
   return partner;
 }
 
-void compare_regions(const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference, Errors& errors) {
+void compare_regions(const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference,
+                     Errors& errors) {
   const auto several = [](const InstantRecord& record) { return record.regions.size() > 1; };
   if (std::none_of(answer.instants.begin(), answer.instants.end(), several) &&
       std::none_of(reference.begin(), reference.end(), several)) {
@@ -145,10 +148,9 @@ void compare_regions(const scene::Answer& answer, const std::vector<scene::Refer
     const scene::ReferenceInstant& instant = reference[t];
     // A tool that dips in between the nodes has a region without a middle, and no force.
     const std::size_t regions = std::min(instant.regions.size(), instant.region_middles_m.size());
-    const std::vector<const RegionRecord*> partner =
-        partners(answer.instants[t], instant,
-                 {instant.region_middles_m.begin(),
-                  instant.region_middles_m.begin() + static_cast<std::ptrdiff_t>(regions)});
+    const std::vector<const RegionRecord*> partner = partners(
+        answer.instants[t], instant,
+        {instant.region_middles_m.begin(), instant.region_middles_m.begin() + static_cast<std::ptrdiff_t>(regions)});
     for (std::size_t r = 0; r < regions; ++r) {
       const RegionRecord& region = instant.regions[r];
       const Vec3 fast_n = partner[r] != nullptr ? partner[r]->force_n : Vec3::Zero();
@@ -169,8 +171,8 @@ void compare_regions(const scene::Answer& answer, const std::vector<scene::Refer
 
 }  // namespace
 
-void compare_contacts(const scene::Scene& scene, const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference,
-                      Errors& errors) {
+void compare_contacts(const scene::Scene& scene, const scene::Answer& answer,
+                      const std::vector<scene::ReferenceInstant>& reference, Errors& errors) {
   errors.friction = scene.contact.friction.has_value();
   if (errors.friction) compare_friction(answer, reference, errors);
   compare_torques(answer, reference, errors);

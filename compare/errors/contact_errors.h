@@ -8,6 +8,7 @@
 namespace touchstone::compare {
 
 /// Fills the friction, slip, torque and region figures of errors whose forces are compared already.
-void compare_contacts(const scene::Scene& scene, const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference, Errors& errors);
+void compare_contacts(const scene::Scene& scene, const scene::Answer& answer,
+                      const std::vector<scene::ReferenceInstant>& reference, Errors& errors);
 
 }  // namespace touchstone::compare

@@ -4,8 +4,8 @@
 #include "compare/gate/stored_reference.h"
 #include "scene/base/json_text.h"
 #include "scene/base/nearest_name.h"
-#include "scene/input/scene_io.h"
 #include "scene/base/text.h"
+#include "scene/input/scene_io.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -8,8 +8,8 @@
 #pragma once
 
 #include "compare/gate/gate_figures.h"
-#include "compare/solve/reference_run.h"
 #include "compare/input/gate_file.h"
+#include "compare/solve/reference_run.h"
 #include "scene/output/results.h"
 
 #include <chrono>

@@ -1,23 +1,23 @@
 #include "compare/gate/gate_figures.h"
 
 #include "compare/calculix/calculix.h"
+#include "compare/errors/compute_errors.h"
 #include "compare/errors/errors.h"
 #include "compare/errors/figures.h"
-#include "compare/solve/reference_run.h"
 #include "compare/gate/stored_reference.h"
+#include "compare/solve/reference_run.h"
 #include "fast/command/results.h"
 #include "fast/run/run.h"
 #include "reference/verification/closed_forms.h"
 #include "scene/input/scene_io.h"
-#include "compare/errors/compute_errors.h"
 
 #include <fmt/format.h>
 
 #include <unistd.h>
 
 #include <algorithm>
-#include <iterator>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 
@@ -100,8 +100,7 @@ void add_resolved(const reference::Result& result, const reference::Result& stor
   figures.push_back({"resolved.shape_rel_l2", std::sqrt(error / scale), "", ""});
 }
 
-scene::Figures reference_side_figures(const GateFile& file, const scene::Scene& own,
-                                      const scene::Scene& changed) {
+scene::Figures reference_side_figures(const GateFile& file, const scene::Scene& own, const scene::Scene& changed) {
   const scene::Surface surface = rest_surface(own);
   std::optional<reference::Result> stored;
   if (!file.reference.empty()) stored = stored_reference(file.reference, own, surface);
@@ -115,7 +114,8 @@ scene::Figures reference_side_figures(const GateFile& file, const scene::Scene& 
   if (const auto hertz_n = half_space_force_n(own, result.instants[at].depth_m)) {
     const std::string key = "hertz.force_rel";
     figures.push_back({key, result.instants[at].force_n().norm() / *hertz_n - 1.0, "", ""});
-    figures.push_back({key + std::string(uncertainty_suffix), result.instants[at].force_uncertainty_n / *hertz_n, "", ""});
+    figures.push_back(
+        {key + std::string(uncertainty_suffix), result.instants[at].force_uncertainty_n / *hertz_n, "", ""});
   }
   if (stored) add_resolved(result, *stored, surface.vertex_area_m2, figures);
   return figures;

@@ -1,10 +1,10 @@
 // What gates hold: figures of a gate file's scene, computed anew.
 #pragma once
 
-#include "scene/base/error.h"
 #include "compare/input/gate_file.h"
-#include "scene/output/results.h"
+#include "scene/base/error.h"
 #include "scene/model/scene.h"
+#include "scene/output/results.h"
 #include "scene/shape/surface.h"
 
 #include <string>

@@ -57,8 +57,7 @@ std::string date_text(std::chrono::year_month_day day) {
 }
 
 /// Why a gate holds less than it did; empty when it does not.
-std::string loosened(const GateFile& base_file, const Gate& base, const GateFile& file,
-                     const Gate& gate) {
+std::string loosened(const GateFile& base_file, const Gate& base, const GateFile& file, const Gate& gate) {
   const auto changed = [](const char* what, const std::string& before, const std::string& now) {
     return fmt::format("{} \"{}\" instead of \"{}\"", what, now, before);
   };

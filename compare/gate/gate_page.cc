@@ -1,9 +1,9 @@
 #include "compare/gate/gate_page.h"
 
 #include "compare/errors/figures.h"
-#include "compare/gate/gate_report.h"
 #include "compare/format/page.h"
 #include "compare/format/text.h"
+#include "compare/gate/gate_report.h"
 
 #include <fmt/format.h>
 

@@ -7,9 +7,9 @@
 #include "scene/base/files.h"
 #include "scene/base/hash.h"
 #include "scene/base/json_text.h"
-#include "scene/output/results.h"
-#include "scene/input/scene_io.h"
 #include "scene/base/text.h"
+#include "scene/input/scene_io.h"
+#include "scene/output/results.h"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -191,7 +191,8 @@ std::string surface_bytes(const reference::Result& result) {
     for (int axis = 0; axis < 3; ++axis) {
       for (const double u_m : result.instants[t].displacement_m.row(axis)) numbers.push_back(static_cast<float>(u_m));
     }
-    for (const double band_m : result.instants[t].displacement_uncertainty_m) numbers.push_back(static_cast<float>(band_m));
+    for (const double band_m : result.instants[t].displacement_uncertainty_m)
+      numbers.push_back(static_cast<float>(band_m));
   }
   return compressed(shuffled(numbers));
 }
@@ -234,7 +235,8 @@ void take_curve(const Table& table, std::size_t instants, reference::Result& res
                                 vector_of("friction_", "_n"), of("sliding") != 0.0});
     }
     const std::size_t middles = table.count_at("middles", t);
-    for (std::size_t k = 0; k < middles; ++k) record.region_middles_m.push_back(table.vector_at(middle_column(k), "_m", t));
+    for (std::size_t k = 0; k < middles; ++k)
+      record.region_middles_m.push_back(table.vector_at(middle_column(k), "_m", t));
     record.force_uncertainty_n = table.band_at("force_uncertainty_n", t);
     record.residual_penetration_m = table.band_at("residual_penetration_m", t);
     record.between_nodes_penetration_m = table.band_at("between_nodes_penetration_m", t);

@@ -55,7 +55,7 @@ struct Gate {
   std::string unit;
   std::string reason;
   std::vector<std::string> red;  ///< never empty
-  scene::Fault place;                   ///< where its limit stands; its message is empty
+  scene::Fault place;            ///< where its limit stands; its message is empty
 };
 
 struct GateFile {

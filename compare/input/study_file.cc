@@ -1,8 +1,8 @@
 #include "compare/input/study_file.h"
 
+#include "scene/base/text.h"
 #include "scene/input/fields.h"
 #include "scene/input/scene_io.h"
-#include "scene/base/text.h"
 #include "scene/input/toml_reader.h"
 
 #include <algorithm>

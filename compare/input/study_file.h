@@ -26,8 +26,8 @@
 #pragma once
 
 #include "scene/base/error.h"
-#include "scene/model/scene.h"
 #include "scene/input/toml_reader.h"
+#include "scene/model/scene.h"
 
 #include <filesystem>
 #include <functional>
@@ -69,7 +69,7 @@ inline constexpr std::size_t study_cases_max = 100'000;
 /// @param check  more faults of one scene, such as what a solver cannot do; may be empty
 /// @throws InputError with the faults of all cases, each once, where the study gives the value and with the first case
 ///         it occurs in
-[[nodiscard]] std::vector<scene::Scene> load_cases(const Study& study,
-                                            const std::function<std::vector<scene::Fault>(const scene::Scene&)>& check = {});
+[[nodiscard]] std::vector<scene::Scene> load_cases(
+    const Study& study, const std::function<std::vector<scene::Fault>(const scene::Scene&)>& check = {});
 
 }  // namespace touchstone::compare

@@ -1,8 +1,8 @@
 #include "compare/input/tuning_study.h"
 
-#include "scene/input/fields.h"
 #include "scene/base/nearest_name.h"
 #include "scene/base/text.h"
+#include "scene/input/fields.h"
 #include "scene/input/toml_reader.h"
 
 #include <algorithm>

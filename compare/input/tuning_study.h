@@ -89,7 +89,7 @@ void set_parameter(scene::Scene& scene, const std::string& key, double value);
 /// @throws InputError with every fault of the file and of its contacts' scenes, each with line, column and what was
 ///         expected
 /// @param check  more faults of one scene, such as what a solver cannot do; may be empty
-[[nodiscard]] TuningStudy load_tuning_study(const std::filesystem::path& file,
-                                            const std::function<std::vector<scene::Fault>(const scene::Scene&)>& check = {});
+[[nodiscard]] TuningStudy load_tuning_study(
+    const std::filesystem::path& file, const std::function<std::vector<scene::Fault>(const scene::Scene&)>& check = {});
 
 }  // namespace touchstone::compare

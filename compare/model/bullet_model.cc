@@ -48,9 +48,10 @@ class BulletModel final : public ContactModel {
 
   [[nodiscard]] int size() const override { return body_.surface_triangles(); }
   [[nodiscard]] std::string note() const override {
-    return fmt::format("implicit steps of 1 ms with Poisson's ratio {}; it tells neither the force on the tool nor its "
-                       "memory",
-                       number_text(setting_.poissons_ratio));
+    return fmt::format(
+        "implicit steps of 1 ms with Poisson's ratio {}; it tells neither the force on the tool nor its "
+        "memory",
+        number_text(setting_.poissons_ratio));
   }
 
  private:
@@ -62,7 +63,8 @@ class BulletModel final : public ContactModel {
 /// Why Bullet's block cannot stand for a scene's body; empty when it can.
 std::string unlike_bullet(const scene::Scene& scene) {
   const scene::Body& body = scene.body;
-  if (body.shape != scene::BodyShape::box || (body.size_m.array() != body.size_m.x()).any()) return "its body is a cube";
+  if (body.shape != scene::BodyShape::box || (body.size_m.array() != body.size_m.x()).any())
+    return "its body is a cube";
   if (scene.tool.shape != scene::ToolShape::sphere) return "its tool is a ball";
   if (!body.inclusions.empty()) return "its body is of one material";
   if (scene.contact.friction) return "it runs without friction";
@@ -84,12 +86,13 @@ std::vector<ModelEntry> bullet_models(const ModelRequest& request) {
   std::vector<ModelEntry> models;
   for (const int cells : request.quick ? std::vector{4} : std::vector{6, 9}) {
     const int triangles = 12 * cells * cells;
-    models.push_back({.name = fmt::format("{}, {} triangles", name, triangles),
-                      .key = fmt::format("bullet-{}", triangles),
-                      .label = "Bullet " + thousands_text(triangles),
-                      .family = ModelFamily::peer,
-                      .set_up = [cells](const scene::Scene& scene) { return std::make_unique<BulletModel>(scene, cells); },
-                      .gives_force = false});
+    models.push_back(
+        {.name = fmt::format("{}, {} triangles", name, triangles),
+         .key = fmt::format("bullet-{}", triangles),
+         .label = "Bullet " + thousands_text(triangles),
+         .family = ModelFamily::peer,
+         .set_up = [cells](const scene::Scene& scene) { return std::make_unique<BulletModel>(scene, cells); },
+         .gives_force = false});
   }
   return models;
 }

@@ -12,7 +12,8 @@ class ComplianceModel final : public ContactModel {
  public:
   ComplianceModel(const reference::LinearResponse& response, const scene::Tool& tool)
       : contact_(response, tool), size_(response.unknowns) {
-    note_ = fmt::format("{}, {} nodes may be touched; displacements only, no normals", response.model, contact_.nodes());
+    note_ =
+        fmt::format("{}, {} nodes may be touched; displacements only, no normals", response.model, contact_.nodes());
     if (response.model.starts_with("axisymmetric")) {
       note_ += "; a tool that leaves the axis would need the whole body";
     }

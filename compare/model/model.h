@@ -68,9 +68,9 @@ struct ModelEntry {
   /// @throws Unavailable
   std::function<std::unique_ptr<ContactModel>(const scene::Scene&)> set_up{};
   bool gives_force = true;
-  bool yardstick = false;                ///< the reference's finest answer, which all are compared with
-  std::optional<int> triangles{};        ///< of the surface it is judged on; absent: the scene's
-  std::string absent{};                  ///< why there is no such model here; then set_up is not called
+  bool yardstick = false;          ///< the reference's finest answer, which all are compared with
+  std::optional<int> triangles{};  ///< of the surface it is judged on; absent: the scene's
+  std::string absent{};            ///< why there is no such model here; then set_up is not called
 };
 
 }  // namespace touchstone::compare

@@ -135,13 +135,13 @@ std::vector<ModelEntry> skeleton_meshes(const ModelRequest& request) {
       scene.fast.triangles = triangles;
       return corrected(std::move(scene));
     };
-    models.push_back(skeleton({.name = fmt::format("corrected skeleton{}, {} triangles", tuned ? ", tuned" : "",
-                                                   thousands_text(triangles)),
-                               .key = "corrected-" + thousands_text(triangles),
-                               .label = thousands_text(triangles),
-                               .family = family_of(change(request.scene)),
-                               .triangles = triangles},
-                              change));
+    models.push_back(skeleton(
+        {.name = fmt::format("corrected skeleton{}, {} triangles", tuned ? ", tuned" : "", thousands_text(triangles)),
+         .key = "corrected-" + thousands_text(triangles),
+         .label = thousands_text(triangles),
+         .family = family_of(change(request.scene)),
+         .triangles = triangles},
+        change));
   }
   return models;
 }

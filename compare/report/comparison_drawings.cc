@@ -1,7 +1,7 @@
 #include "compare/report/comparison_drawings.h"
 
-#include "compare/report/picture.h"
 #include "compare/format/text.h"
+#include "compare/report/picture.h"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "compare/errors/errors.h"
-#include "compare/report/fast_drawings.h"
 #include "compare/format/svg_plot.h"
+#include "compare/report/fast_drawings.h"
 #include "fast/run/run.h"
 #include "reference/solver.h"
 

@@ -1,8 +1,8 @@
 #include "compare/report/fast_drawings.h"
 
+#include "compare/format/text.h"
 #include "compare/report/picture.h"
 #include "compare/report/section.h"
-#include "compare/format/text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

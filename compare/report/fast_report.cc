@@ -1,9 +1,9 @@
 #include "compare/report/fast_report.h"
 
-#include "compare/report/fast_drawings.h"
 #include "compare/errors/figures.h"
 #include "compare/format/page.h"
 #include "compare/format/text.h"
+#include "compare/report/fast_drawings.h"
 #include "fast/command/results.h"
 #include "fast/step/state.h"
 

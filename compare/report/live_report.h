@@ -2,8 +2,8 @@
 #pragma once
 
 #include "fast/live/live.h"
-#include "scene/output/results.h"
 #include "scene/model/scene.h"
+#include "scene/output/results.h"
 
 #include <filesystem>
 #include <string>

@@ -1,10 +1,10 @@
 #include "compare/report/model_table.h"
 
+#include "compare/errors/compute_errors.h"
 #include "compare/format/page.h"
 #include "compare/format/text.h"
-#include "fast/step/state.h"
 #include "compare/model/skeleton_model.h"
-#include "compare/errors/compute_errors.h"
+#include "fast/step/state.h"
 
 #include <fmt/format.h>
 
@@ -83,7 +83,8 @@ std::vector<JudgedModel> judge_models(const scene::Scene& given, const scene::Sc
       continue;
     }
     const fast::Run other = fast::run(one->scene);
-    models.push_back(judged_model(one->key, one->name, one->scene, other, compute_errors(one->scene, other, result.instants)));
+    models.push_back(
+        judged_model(one->key, one->name, one->scene, other, compute_errors(one->scene, other, result.instants)));
   }
   return models;
 }

@@ -1,14 +1,14 @@
 #include "compare/report/next_steps.h"
 
-#include "compare/report/comparison_drawings.h"
 #include "compare/errors/measure.h"
-#include "compare/report/model_table.h"
 #include "compare/format/text.h"
+#include "compare/input/tuning_study.h"
+#include "compare/model/skeleton_model.h"
+#include "compare/report/comparison_drawings.h"
+#include "compare/report/model_table.h"
 #include "fast/command/command_line.h"
 #include "fast/step/state.h"
 #include "scene/base/error.h"
-#include "compare/input/tuning_study.h"
-#include "compare/model/skeleton_model.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "compare/report/picture.h"
 
-#include "compare/report/section.h"
 #include "compare/format/text.h"
+#include "compare/report/section.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "compare/report/plot_files.h"
 
-#include "compare/report/comparison_drawings.h"
 #include "compare/format/svg_plot.h"
+#include "compare/report/comparison_drawings.h"
 #include "scene/base/files.h"
 
 #include <stdexcept>

@@ -1,15 +1,15 @@
 // The page a reader opens first: one self-contained HTML file, nothing fetched; a script only for the view in space.
 #pragma once
 
+#include "compare/errors/errors.h"
 #include "compare/report/comparison_drawings.h"
 #include "compare/report/model_table.h"
-#include "compare/report/verdict.h"
-#include "compare/errors/errors.h"
 #include "compare/report/next_steps.h"
-#include "scene/model/plan.h"
-#include "scene/output/results.h"
+#include "compare/report/verdict.h"
 #include "fast/run/run.h"
 #include "reference/solver.h"
+#include "scene/model/plan.h"
+#include "scene/output/results.h"
 
 #include <filesystem>
 

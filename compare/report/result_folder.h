@@ -1,8 +1,8 @@
 // A result folder read back: what a verb left behind, for pages and windows over finished results.
 #pragma once
 
-#include "scene/output/results.h"
 #include "scene/output/figures.h"
+#include "scene/output/results.h"
 
 #include <filesystem>
 #include <string>

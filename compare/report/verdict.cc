@@ -1,7 +1,7 @@
 #include "compare/report/verdict.h"
 
-#include "compare/report/comparison_drawings.h"
 #include "compare/format/text.h"
+#include "compare/report/comparison_drawings.h"
 #include "fast/step/state.h"
 
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 #include "compare/report/viewer.h"
 
 #include "compare/format/page.h"
-#include "compare/report/picture.h"
 #include "compare/format/svg_plot.h"
 #include "compare/format/text.h"
+#include "compare/report/picture.h"
 #include "compare/viewer/viewer_bundle.h"
 
 #include <fmt/format.h>

@@ -61,8 +61,7 @@ vtkSmartPointer<vtkPolyData> polydata_of(const scene::Surface& surface) {
 
 /// Writes <name>_0000.vtp ..., one file per instant, and the collection <name>.pvd.
 /// @param at  the surface at an instant
-void write_series(const std::filesystem::path& folder, const std::string& name,
-                  const scene::Instants& instants,
+void write_series(const std::filesystem::path& folder, const std::string& name, const scene::Instants& instants,
                   const std::function<vtkSmartPointer<vtkPolyData>(std::size_t)>& at) {
   const auto file_name = [&](std::size_t instant) { return fmt::format("{}_{:04}.vtp", name, instant); };
   std::string collection =
@@ -87,8 +86,7 @@ void write_series(const std::filesystem::path& folder, const std::string& name,
 }
 
 /// The body's rest surface with `add_arrays(instant, data)` for its point arrays.
-void write_body(const std::filesystem::path& folder, const scene::Surface& surface,
-                const scene::Instants& instants,
+void write_body(const std::filesystem::path& folder, const scene::Surface& surface, const scene::Instants& instants,
                 const std::function<void(std::size_t, vtkPolyData*)>& add_arrays) {
   const vtkSmartPointer<vtkPolyData> rest = polydata_of(surface);
   write_series(folder, "surface", instants, [&](std::size_t t) {
@@ -118,8 +116,7 @@ void write_surfaces(const std::filesystem::path& folder, const fast::Run& run, c
   });
 }
 
-void write_tool(const std::filesystem::path& folder, const scene::Tool& tool,
-                const scene::Instants& instants) {
+void write_tool(const std::filesystem::path& folder, const scene::Tool& tool, const scene::Instants& instants) {
   const scene::Surface own = scene::tool_surface(tool, tool_triangles);
   write_series(folder, "tool", instants, [&](std::size_t t) {
     const scene::Pose& pose = instants[t].tool;

@@ -1,11 +1,11 @@
 #include "compare/study/results_page.h"
 
 #include "compare/errors/errors.h"
-#include "compare/report/headline.h"
 #include "compare/format/page.h"
-#include "compare/study/study.h"
 #include "compare/format/svg_plot.h"
 #include "compare/format/text.h"
+#include "compare/report/headline.h"
+#include "compare/study/study.h"
 #include "scene/base/error.h"
 
 #include <fmt/format.h>

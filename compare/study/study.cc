@@ -3,12 +3,12 @@
 #include "reference/solver.h"
 #include "scene/base/build_info.h"
 #include "scene/base/files.h"
-#include "scene/model/first_contact.h"
 #include "scene/base/hash.h"
 #include "scene/base/json_text.h"
-#include "scene/mesh/mesh_file.h"
-#include "scene/output/results.h"
 #include "scene/input/scene_io.h"
+#include "scene/mesh/mesh_file.h"
+#include "scene/model/first_contact.h"
+#include "scene/output/results.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -102,8 +102,8 @@ std::string case_id(const std::string& run, const scene::Scene& scene) {
   return scene::hash_text(run + '\n' + scene::scene_hash(scene));
 }
 
-StudyManifest expand(const Study& study, const std::filesystem::path& folder,
-                     const std::filesystem::path& program, const std::filesystem::path& store) {
+StudyManifest expand(const Study& study, const std::filesystem::path& folder, const std::filesystem::path& program,
+                     const std::filesystem::path& store) {
   std::vector<scene::Scene> scenes = load_cases(study, [&](const scene::Scene& scene) {
     return study.run == "fast" ? std::vector<scene::Fault>{} : reference::unsupported(scene);
   });

@@ -52,8 +52,8 @@ struct StudyManifest {
 /// @param store    of the reference, for the batch script
 /// @throws scene::InputError with what is wrong in any case, before anything is written,
 ///         std::filesystem::filesystem_error
-StudyManifest expand(const Study& study, const std::filesystem::path& folder,
-                     const std::filesystem::path& program, const std::filesystem::path& store);
+StudyManifest expand(const Study& study, const std::filesystem::path& folder, const std::filesystem::path& program,
+                     const std::filesystem::path& store);
 
 /// The position of a result folder in its study.
 struct StudyPlace {

@@ -1,12 +1,12 @@
 #include "compare/study/study_page.h"
 
 #include "compare/errors/figures.h"
-#include "compare/report/headline.h"
 #include "compare/format/page.h"
-#include "compare/report/picture.h"
-#include "compare/study/study_parameters.h"
 #include "compare/format/svg_plot.h"
 #include "compare/format/text.h"
+#include "compare/report/headline.h"
+#include "compare/report/picture.h"
+#include "compare/study/study_parameters.h"
 
 #include <fmt/format.h>
 

@@ -5,8 +5,8 @@
 #include "scene/base/files.h"
 #include "scene/base/hash.h"
 #include "scene/base/json_text.h"
-#include "scene/output/results.h"
 #include "scene/input/scene_io.h"
+#include "scene/output/results.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

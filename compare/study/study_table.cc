@@ -1,11 +1,11 @@
 #include "compare/study/study_table.h"
 
 #include "compare/errors/figures.h"
+#include "compare/format/text.h"
 #include "compare/report/headline.h"
 #include "compare/report/result_folder.h"
 #include "compare/study/study_page.h"
 #include "compare/study/study_parameters.h"
-#include "compare/format/text.h"
 #include "scene/base/files.h"
 #include "scene/base/json_text.h"
 

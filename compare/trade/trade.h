@@ -3,11 +3,11 @@
 #pragma once
 
 #include "compare/errors/errors.h"
-#include "compare/tune/tune.h"
-#include "scene/output/results.h"
 #include "compare/input/tuning_study.h"
-#include "reference/solver.h"
 #include "compare/model/registry.h"
+#include "compare/tune/tune.h"
+#include "reference/solver.h"
+#include "scene/output/results.h"
 
 #include <filesystem>
 #include <functional>
@@ -54,8 +54,8 @@ using TradeError = Measure TradeRow::*;
 struct Trade {
   std::string title;
   std::vector<TuningContact> contacts;  ///< what the errors are judged on
-  bool held_out = false;                       ///< they are a study's held-out ones
-  double tick_us = 1000.0;                     ///< of the scene's device loop
+  bool held_out = false;                ///< they are a study's held-out ones
+  double tick_us = 1000.0;              ///< of the scene's device loop
   std::vector<TradeRow> rows;
 };
 

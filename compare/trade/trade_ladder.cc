@@ -7,8 +7,6 @@
 #include "fast/run/ticks.h"
 #include "reference/solver.h"
 
-
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -130,7 +128,11 @@ class Ladder {
   }
 
   Trade climb(const std::vector<ModelList>& models) {
-    ModelRequest request{scene_, {}, options_.parameters, options_.quick, [this] { return reference_levels(); },
+    ModelRequest request{scene_,
+                         {},
+                         options_.parameters,
+                         options_.quick,
+                         [this] { return reference_levels(); },
                          [this](const Scene& scene, const scene::Surface& surface, int levels) {
                            return reference_on(scene, surface, levels);
                          }};
@@ -188,8 +190,8 @@ class Ladder {
   }
 
   void add(const ModelEntry& entry) {
-    TradeRow row{.name = entry.name, .key = entry.key, .label = entry.label, .family = entry.family,
-                 .absent = entry.absent};
+    TradeRow row{
+        .name = entry.name, .key = entry.key, .label = entry.label, .family = entry.family, .absent = entry.absent};
     std::shared_ptr<ContactModel> model;
     if (row.absent.empty()) {
       tell(row.name);

@@ -1,9 +1,9 @@
 #include "compare/tune/tune.h"
 
+#include "compare/errors/compute_errors.h"
 #include "compare/format/text.h"
 #include "fast/run/replay.h"
 #include "scene/model/rules.h"
-#include "compare/errors/compute_errors.h"
 
 #include <fmt/format.h>
 
@@ -50,8 +50,7 @@ double at_least(double uncertainty, double floor) {
   return std::isfinite(uncertainty) ? std::max(uncertainty, floor) : floor;
 }
 
-void set_values(scene::Scene& scene, const std::vector<TuningParameter>& parameters,
-                const Eigen::VectorXd& values) {
+void set_values(scene::Scene& scene, const std::vector<TuningParameter>& parameters, const Eigen::VectorXd& values) {
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     if (parameters[k].key.starts_with("contact.friction.") && !scene.contact.friction) continue;
     set_parameter(scene, parameters[k].key, values[static_cast<Eigen::Index>(k)]);
@@ -99,8 +98,7 @@ class Training {
   [[nodiscard]] int observations() const noexcept { return observations_; }
 
   /// Difference of the force vectors over the band, three components an instant.
-  std::optional<Eigen::VectorXd> force(const std::vector<TuningParameter>& parameters,
-                                       const Eigen::VectorXd& values) {
+  std::optional<Eigen::VectorXd> force(const std::vector<TuningParameter>& parameters, const Eigen::VectorXd& values) {
     Eigen::VectorXd out(3 * observations_);
     Eigen::Index row = 0;
     for (Contact& one : contacts_) {
@@ -119,8 +117,7 @@ class Training {
 
   /// Difference of the displacements times sqrt(area), so scaled that the mean of an instant's sum of squares is
   /// (shape.rel_l2 / the reference's uncertainty of it)^2.
-  std::optional<Eigen::VectorXd> shape(const std::vector<TuningParameter>& parameters,
-                                       const Eigen::VectorXd& values) {
+  std::optional<Eigen::VectorXd> shape(const std::vector<TuningParameter>& parameters, const Eigen::VectorXd& values) {
     Eigen::VectorXd out(shape_rows_);
     Eigen::Index row = 0;
     for (Contact& one : contacts_) {
@@ -453,8 +450,7 @@ scene::Scene tuned_scene(const scene::Scene& scene, const TunedModel& model) {
   return out;
 }
 
-Tuning tune(const TuningStudy& study, const SolveReference& solve,
-            const std::function<void(const std::string&)>& say) {
+Tuning tune(const TuningStudy& study, const SolveReference& solve, const std::function<void(const std::string&)>& say) {
   const auto tell = [&](const std::string& line) {
     if (say) say(line);
   };

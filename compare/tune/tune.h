@@ -3,11 +3,11 @@
 #pragma once
 
 #include "compare/errors/errors.h"
-#include "compare/tune/fit.h"
-#include "scene/output/results.h"
 #include "compare/input/tuning_study.h"
+#include "compare/tune/fit.h"
 #include "fast/run/run.h"
 #include "reference/solver.h"
+#include "scene/output/results.h"
 
 #include <filesystem>
 #include <functional>

@@ -1,9 +1,9 @@
 #include "compare/tune/tune_report.h"
 
-#include "compare/report/comparison_drawings.h"
 #include "compare/format/page.h"
 #include "compare/format/svg_plot.h"
 #include "compare/format/text.h"
+#include "compare/report/comparison_drawings.h"
 #include "scene/input/fields.h"
 
 #include <fmt/format.h>
@@ -218,8 +218,7 @@ std::string profile_plots(const StageFit& stage) {
 }
 
 std::string stage_section(const StageFit& stage) {
-  std::string out =
-      tag("h3", stage.stage == TuningStage::force ? "Force" : "Shape, with the force as found") + "\n";
+  std::string out = tag("h3", stage.stage == TuningStage::force ? "Force" : "Shape, with the force as found") + "\n";
   out += parameter_table(stage) + tag("p", fit_sentence(stage)) + "\n";
   for (const std::string& note : stage.notes) out += tag("p", note) + "\n";
   return out + correlation_table(stage) + profile_plots(stage) + starts_table(stage);

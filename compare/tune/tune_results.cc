@@ -3,8 +3,8 @@
 
 #include "compare/errors/figures.h"
 #include "compare/tune/tune_report.h"
-#include "scene/input/fields.h"
 #include "scene/base/files.h"
+#include "scene/input/fields.h"
 #include "scene/output/results.h"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #include "compare/view/view.h"
 
-#include "compare/report/picture.h"
 #include "compare/format/svg_plot.h"
 #include "compare/format/text.h"
+#include "compare/report/picture.h"
 #include "scene/base/error.h"
 #include "scene/input/scene_io.h"
 

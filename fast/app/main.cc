@@ -1,10 +1,10 @@
 // touchstone-fast: the real-time side alone, for the machine with the device. Links neither deal.II, VTK nor MPI.
+#include "fast/app/completion.h"
+#include "fast/app/new_verb.h"
 #include "fast/bench/bench_verb.h"
 #include "fast/command/command_line.h"
-#include "fast/app/completion.h"
-#include "fast/live/live_verb.h"
-#include "fast/app/new_verb.h"
 #include "fast/command/results.h"
+#include "fast/live/live_verb.h"
 #include "scene/input/scene_io.h"
 
 #include <iostream>

@@ -3,8 +3,8 @@
 
 #include "fast/bench/counters.h"
 #include "fast/bench/workload.h"
-#include "fast/run/percentiles.h"
 #include "fast/realtime/stage_clock.h"
+#include "fast/run/percentiles.h"
 
 #include <array>
 #include <cstdint>

@@ -2,9 +2,9 @@
 
 #include "scene/base/build_info.h"
 #include "scene/base/error.h"
-#include "scene/model/first_contact.h"
 #include "scene/base/nearest_name.h"
 #include "scene/input/scene_io.h"
+#include "scene/model/first_contact.h"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -2,8 +2,8 @@
 // formula gives for a single point with Eigen's vectors, bit by bit.
 #pragma once
 
-#include "fast/contact/region_points.h"
 #include "fast/contact/contact_law.h"
+#include "fast/contact/region_points.h"
 #include "fast/contact/rest_distance.h"
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 #include "fast/contact/pull_back.h"
 
-#include "fast/realtime/wide_loops.h"
 #include "fast/contact/rest_distance.h"
+#include "fast/realtime/wide_loops.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // Statistics of a live run: timing, and forces sent.
 #pragma once
 
-#include "fast/run/duration_histogram.h"
 #include "fast/realtime/stage_clock.h"
+#include "fast/run/duration_histogram.h"
 
 #include <array>
 #include <cstdint>

@@ -4,8 +4,8 @@
 #include "fast/live/device_loop.h"
 #include "fast/live/history.h"
 #include "fast/live/scheduling.h"
-#include "scene/output/results.h"
 #include "scene/model/scene.h"
+#include "scene/output/results.h"
 
 #include <atomic>
 #include <cstdint>

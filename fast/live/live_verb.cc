@@ -1,8 +1,8 @@
 #include "fast/live/live_verb.h"
 
 #include "fast/command/progress_line.h"
-#include "fast/run/run.h"
 #include "fast/command/stop_signals.h"
+#include "fast/run/run.h"
 #include "scene/base/error.h"
 #include "scene/base/nearest_name.h"
 

@@ -3,8 +3,8 @@
 
 #include "fast/run/percentiles.h"
 #include "fast/skeleton/beam_stress.h"
-#include "scene/model/plan.h"
 #include "scene/model/answer.h"
+#include "scene/model/plan.h"
 #include "scene/model/scene.h"
 #include "scene/shape/surface.h"
 
@@ -29,11 +29,11 @@ struct BeamRecord {
 
 /// The answer over the whole track, with what only this model can tell.
 struct Run : scene::Answer {
-  std::vector<BeamRecord> beams;               ///< per instant, pressing region and anchor point
-  Percentiles step;                            ///< whole step, wall clock, over all ticks of the track; to 1 %
-  Percentiles force;                           ///< detection to published force, ticks in contact only; to 1 %
-  double setup_s = 0.0;                        ///< building the model
-  std::size_t memory_bytes = 0;                ///< model and state
+  std::vector<BeamRecord> beams;  ///< per instant, pressing region and anchor point
+  Percentiles step;               ///< whole step, wall clock, over all ticks of the track; to 1 %
+  Percentiles force;              ///< detection to published force, ticks in contact only; to 1 %
+  double setup_s = 0.0;           ///< building the model
+  std::size_t memory_bytes = 0;   ///< model and state
   std::int64_t ticks = 0;
   int regions_max = 0;
   std::optional<double> first_contact_s;  ///< by Separation; absent where the tool stays apart

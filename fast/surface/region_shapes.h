@@ -2,10 +2,10 @@
 // contact of a later region needs.
 #pragma once
 
+#include "fast/contact/pull_back.h"
 #include "fast/surface/hat.h"
 #include "fast/surface/interpolation.h"
 #include "fast/surface/local_factor.h"
-#include "fast/contact/pull_back.h"
 #include "scene/shape/shape.h"
 
 #include <array>

@@ -1,8 +1,8 @@
 // Writes the mesh tools of the shipped scenes and of the tutorial: mallet.stl, compass.obj, stylus.stl.
 #include "scene/mesh/mesh_checks.h"
-#include "scene/shape/surface_builder.h"
-#include "scene/mesh/triangle_mesh.h"
 #include "scene/mesh/mesh_formats.h"
+#include "scene/mesh/triangle_mesh.h"
+#include "scene/shape/surface_builder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -22,9 +22,9 @@
 // increment.
 #pragma once
 
-#include "reference/fe/element.h"
 #include "reference/contact/friction.h"
 #include "reference/contact/regions.h"
+#include "reference/fe/element.h"
 #include "reference/linear/linear_solver.h"
 #include "reference/linear/ranks.h"
 #include "reference/mesh/mesh.h"

@@ -2,8 +2,8 @@
 
 #include "reference/contact/contact_problem.h"
 #include "reference/linear/distributed_solver.h"
-#include "reference/linear/tangent_solver.h"
 #include "reference/linear/record.h"
+#include "reference/linear/tangent_solver.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,9 +1,9 @@
 // Converts a level's solved instants to the records of a result.
 #pragma once
 
-#include "reference/run/step_record.h"
 #include "reference/run/options.h"
 #include "reference/run/result.h"
+#include "reference/run/step_record.h"
 
 #include <Eigen/Core>
 

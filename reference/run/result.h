@@ -56,9 +56,9 @@ struct Result {
   std::string key;            ///< content address in the store
   std::string linear_solver;  ///< with the BLAS it ran on
   std::vector<scene::ReferenceInstant> instants;
-  std::optional<double> force_uncertainty_rel;      ///< largest band / |F| over the instants with a deep contact
-  std::optional<double> shape_uncertainty_rel;      ///< band over displacement, both root mean square by area over all
-                                                    ///< points and instants
+  std::optional<double> force_uncertainty_rel;  ///< largest band / |F| over the instants with a deep contact
+  std::optional<double> shape_uncertainty_rel;  ///< band over displacement, both root mean square by area over all
+                                                ///< points and instants
   std::vector<LevelRecord> levels;
   std::vector<Sensitivity> sensitivities;  ///< all, or empty: with fewer than three levels, or for want of time
   Refinement refinement;

@@ -2,10 +2,10 @@
 
 #include "reference/contact/contact_problem.h"
 #include "reference/contact/load_path.h"
+#include "reference/contact/prolongation.h"
 #include "reference/contact/stuck_contact.h"
 #include "reference/mesh/boundary_surface.h"
 #include "reference/mesh/mesh_limit.h"
-#include "reference/contact/prolongation.h"
 #include "reference/mesh/sampling.h"
 #include "reference/run/cost.h"
 #include "reference/run/identity.h"

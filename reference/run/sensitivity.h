@@ -4,9 +4,9 @@
 #include "reference/contact/load_path.h"
 #include "reference/run/cost.h"
 #include "reference/run/model_choice.h"
-#include "reference/run/store.h"
 #include "reference/run/options.h"
 #include "reference/run/result.h"
+#include "reference/run/store.h"
 
 #include <functional>
 #include <string>

@@ -154,8 +154,10 @@ RigidTool<dim> ball_tool(double radius_m, const Eigen::Matrix<double, dim, 1>& c
   scene::Tool tool;
   tool.radius_m = radius_m;
   scene::Pose pose;
-  if constexpr (dim == 3) pose.position_m = center_m;
-  else pose.position_m = {center_m.x(), 0.0, center_m.y()};
+  if constexpr (dim == 3)
+    pose.position_m = center_m;
+  else
+    pose.position_m = {center_m.x(), 0.0, center_m.y()};
   return {tool_distance(tool), pose};
 }
 

@@ -1,6 +1,5 @@
 #include "reference/tool/tool_gap.h"
 
-
 #include <algorithm>
 #include <cmath>
 

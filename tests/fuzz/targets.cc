@@ -2,23 +2,23 @@
 // of a file; `--kind=NAME` on the command line says of which kind, and `--seed=FILE` writes there what the fuzzer would
 // not find by itself: a valid file of a kind that has checksums. A reader may accept the bytes or refuse them with its
 // own error, whose text must be fit for a terminal. Anything else ends the process, and that is a finding.
-#include "compare/report/result_folder.h"
 #include "compare/gate/stored_reference.h"
+#include "compare/input/gate_file.h"
+#include "compare/input/study_file.h"
+#include "compare/input/tuning_study.h"
+#include "compare/report/result_folder.h"
 #include "fast/live/live_log.h"
 #include "reference/run/step_record.h"
 #include "scene/base/error.h"
 #include "scene/base/files.h"
-#include "compare/input/gate_file.h"
 #include "scene/base/hash.h"
-#include "scene/mesh/mesh_formats.h"
-#include "scene/input/scene_io.h"
-#include "compare/input/study_file.h"
-#include "scene/shape/surface.h"
 #include "scene/base/text.h"
+#include "scene/input/scene_io.h"
 #include "scene/input/track_csv.h"
-#include "scene/mesh/triangle_mesh.h"
-#include "compare/input/tuning_study.h"
 #include "scene/mesh/mesh_file.h"
+#include "scene/mesh/mesh_formats.h"
+#include "scene/mesh/triangle_mesh.h"
+#include "scene/shape/surface.h"
 
 #include <unistd.h>
 #include <zlib.h>

@@ -1,8 +1,8 @@
 // No heap use below step(): not on entering contact, in it, on a jump, on a bad pose, or on leaving.
 #include "support/no_heap.h"
 
-#include "fast/surface/region_shapes.h"
 #include "fast/step/step.h"
+#include "fast/surface/region_shapes.h"
 #include "support/press.h"
 #include "support/shipped_scenes.h"
 

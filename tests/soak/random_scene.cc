@@ -1,8 +1,8 @@
 #include "soak/random_scene.h"
 
 #include "scene/base/error.h"
-#include "scene/model/rules.h"
 #include "scene/mesh/mesh_file.h"
+#include "scene/model/rules.h"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 // The soak: many ticks in virtual time, with a device that moves at random over scenes made up by chance. See
 // README.md.
 #include "fast/command/command_line.h"
-#include "fast/live/safety.h"
 #include "fast/command/progress_line.h"
-#include "fast/step/step.h"
 #include "fast/command/stop_signals.h"
+#include "fast/live/safety.h"
+#include "fast/step/step.h"
 #include "soak/closed_path.h"
 #include "soak/random_device.h"
 #include "soak/random_scene.h"

@@ -1,9 +1,9 @@
 #include "support/synthetic.h"
 
+#include "compare/errors/compute_errors.h"
 #include "compare/errors/figures.h"
 #include "compare/report/report.h"
 #include "scene/input/scene_io.h"
-#include "compare/errors/compute_errors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -122,8 +122,7 @@ Sides pressed(int instants, int triangles) {
   sides.run.memory_bytes = 3'400'000;
   sides.run.ticks = 1100;
   sides.run.regions_max = 1;
-  sides.result.shape_uncertainty_rel =
-      reference::shape_uncertainty_rel(sides.result.instants, surface.vertex_area_m2);
+  sides.result.shape_uncertainty_rel = reference::shape_uncertainty_rel(sides.result.instants, surface.vertex_area_m2);
   sides.result.model = "quarter 3D u-p finite strain";
   sides.result.linear_solver = "CHOLMOD with OpenBLAS";
   sides.plans.fast = {{"contact law", true, "contact.law = \"duffing\"", "under 1 us"},

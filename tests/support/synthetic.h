@@ -48,7 +48,8 @@ void set_all(reference::Result& result, T scene::ReferenceInstant::*member, cons
   for (scene::ReferenceInstant& instant : result.instants) instant.*member = value;
 }
 template <class T>
-void set_each(reference::Result& result, T scene::ReferenceInstant::*member, const std::vector<std::type_identity_t<T>>& values) {
+void set_each(reference::Result& result, T scene::ReferenceInstant::*member,
+              const std::vector<std::type_identity_t<T>>& values) {
   for (std::size_t t = 0; t < values.size(); ++t) result.instants[t].*member = values[t];
 }
 

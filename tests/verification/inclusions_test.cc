@@ -2,8 +2,8 @@
 #include "reference/mesh/inclusions.h"
 #include "reference/contact/contact_problem.h"
 #include "reference/mesh/round_mesh.h"
-#include "reference/verification/closed_forms.h"
 #include "reference/tool/tool_distance.h"
+#include "reference/verification/closed_forms.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 // content hash and the scene reference in the documentation all read the tables below.
 #pragma once
 
-#include "scene/model/scene.h"
 #include "scene/base/range.h"
+#include "scene/model/scene.h"
 
 #include <functional>
 #include <limits>

@@ -1,8 +1,8 @@
 #include "scene/input/new_scene.h"
 
-#include "scene/model/area_law.h"
-#include "scene/input/fields.h"
 #include "scene/base/text.h"
+#include "scene/input/fields.h"
+#include "scene/model/area_law.h"
 
 #include <array>
 #include <charconv>

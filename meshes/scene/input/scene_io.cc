@@ -1,15 +1,15 @@
 #include "scene/input/scene_io.h"
 
-#include "scene/input/fields.h"
-#include "scene/model/first_contact.h"
 #include "scene/base/hash.h"
 #include "scene/base/input.h"
-#include "scene/mesh/mesh_file.h"
 #include "scene/base/nearest_name.h"
-#include "scene/model/rules.h"
 #include "scene/base/text.h"
+#include "scene/input/fields.h"
 #include "scene/input/toml_reader.h"
 #include "scene/input/track_csv.h"
+#include "scene/mesh/mesh_file.h"
+#include "scene/model/first_contact.h"
+#include "scene/model/rules.h"
 
 #include <toml++/toml.h>
 

@@ -1,9 +1,9 @@
 #include "scene/input/toml_reader.h"
 
-#include "scene/input/fields.h"
 #include "scene/base/input.h"
 #include "scene/base/nearest_name.h"
 #include "scene/base/text.h"
+#include "scene/input/fields.h"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 // Triangles as read from a file, unchecked: STL, OBJ, PLY.
 #pragma once
 
+#include "scene/base/error.h"
 #include "scene/base/frames.h"
 #include "scene/base/text.h"
-#include "scene/base/error.h"
 #include "scene/mesh/triangle_mesh.h"
 
 #include <array>

@@ -50,13 +50,13 @@ struct Answer {
 
 /// What the reference says of one instant: its answer, how far that may be off, and how well the contact is resolved.
 struct ReferenceInstant : InstantRecord {
-  std::vector<Vec3> region_middles_m;        ///< one for every region that pushes
-  double force_uncertainty_n = 0.0;          ///< conservative half width; NaN where unknown
+  std::vector<Vec3> region_middles_m;          ///< one for every region that pushes
+  double force_uncertainty_n = 0.0;            ///< conservative half width; NaN where unknown
   Eigen::VectorXd displacement_uncertainty_m;  ///< the same per rest point
-  double residual_penetration_m = 0.0;       ///< largest over contact nodes
-  double between_nodes_penetration_m = 0.0;  ///< largest over face quadrature points
-  double equilibrium_rel = 0.0;              ///< |contact + support| / |contact|
-  double volume_change_rel = 0.0;            ///< of the body
+  double residual_penetration_m = 0.0;         ///< largest over contact nodes
+  double between_nodes_penetration_m = 0.0;    ///< largest over face quadrature points
+  double equilibrium_rel = 0.0;                ///< |contact + support| / |contact|
+  double volume_change_rel = 0.0;              ///< of the body
 };
 
 /// The records of an answer in order, whatever else an answer holds beside each. Refers to the list it is made from.

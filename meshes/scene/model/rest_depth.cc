@@ -2,8 +2,8 @@
 // contact along a line, where that distance falls to zero.
 #include "scene/model/rest_depth.h"
 
-#include "scene/model/first_contact.h"
 #include "scene/base/least_value.h"
+#include "scene/model/first_contact.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "scene/base/frames.h"
+#include "scene/mesh/triangle_mesh.h"
 #include "scene/shape/revolution.h"
 #include "scene/shape/shape.h"
-#include "scene/mesh/triangle_mesh.h"
 #include "scene/shape/surface.h"
 
 #include <cstdint>

@@ -1,10 +1,10 @@
 #include "scene/output/results.h"
 
 #include "scene/base/build_info.h"
-#include "scene/model/first_contact.h"
 #include "scene/base/json_text.h"
-#include "scene/mesh/mesh_file.h"
 #include "scene/input/scene_io.h"
+#include "scene/mesh/mesh_file.h"
+#include "scene/model/first_contact.h"
 
 #include <nlohmann/json.hpp>
 

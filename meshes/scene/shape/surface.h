@@ -1,8 +1,8 @@
 // Triangulated surfaces: the rest points at which both solvers give the body's shape.
 #pragma once
 
-#include "scene/shape/shape.h"
 #include "scene/mesh/triangle_mesh.h"
+#include "scene/shape/shape.h"
 
 #include <array>
 #include <cstdint>

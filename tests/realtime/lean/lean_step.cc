@@ -56,8 +56,7 @@ void run(std::string_view how) {
       fast::step(model, pose, state);
     } else {
       bare_tick(model, pose, state);
-      if (how == "padded" && tick % 4 == 0 && state.regions[0].active)
-        fast::update_normals(model.normals, state.field);
+      if (how == "padded" && tick % 4 == 0 && state.regions[0].active) fast::update_normals(model.normals, state.field);
     }
   }
   std::printf("%.17g\n", fast::total_force_n(state).z() + state.regions[0].force.force_n.z());

@@ -1,9 +1,9 @@
 #include "compare/errors/errors.h"
 
-#include "compare/errors/figures.h"
-#include "support/synthetic.h"
-#include "support/mesh_tools.h"
 #include "compare/errors/compute_errors.h"
+#include "compare/errors/figures.h"
+#include "support/mesh_tools.h"
+#include "support/synthetic.h"
 
 #include <gtest/gtest.h>
 
@@ -94,7 +94,7 @@ TEST(Errors, EveryRegionHasALocalRadiusOfItsOwn) {
   // Below point 0 and below point 2, which lie far apart.
   const Vec3 under_m(0.0, 0.0, -1e-3);
   sides.result.instants[1].region_middles_m = {sides.run.surface.points_m.col(0) + under_m,
-                                      sides.run.surface.points_m.col(2) + under_m};
+                                               sides.run.surface.points_m.col(2) + under_m};
   const Errors e = errors_of(sides);
   EXPECT_NEAR(*e.shape_inside_r_rel_l2.value, std::sqrt(8.0 / 101.0), 1e-13);
   EXPECT_NEAR(*e.shape_outside_r_rel_l2.value, 0.0, 1e-13);
@@ -212,7 +212,8 @@ TEST(Errors, KeepANumberThatIsNotFiniteVisible) {
 
 TEST(Errors, AnUnknownBandIsNotAZeroBand) {
   Sides sides = with_forces();
-  testing::set_each(sides.result, &scene::ReferenceInstant::force_uncertainty_n, {0.1, std::numeric_limits<double>::quiet_NaN()});
+  testing::set_each(sides.result, &scene::ReferenceInstant::force_uncertainty_n,
+                    {0.1, std::numeric_limits<double>::quiet_NaN()});
   const Errors e = errors_of(sides);
   EXPECT_FALSE(e.force_nrmse.uncertainty || e.force_peak_rel.uncertainty || e.force_rel_deep.uncertainty);
   EXPECT_TRUE(e.force_nrmse.distinguishable());

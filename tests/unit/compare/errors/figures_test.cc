@@ -1,7 +1,7 @@
 #include "compare/errors/figures.h"
 
-#include "support/synthetic.h"
 #include "compare/errors/compute_errors.h"
+#include "support/synthetic.h"
 
 #include <gtest/gtest.h>
 
@@ -135,7 +135,8 @@ TEST(Figures, AreReadableByPeople) {
 
 TEST(Figures, SayWhenTheBandIsUnknown) {
   testing::Sides sides = testing::pressed(5, 200);
-  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n,
+                   std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(find(figures_of(sides), "force.nrmse_uncertainty").text, "unknown");
   EXPECT_TRUE(std::isnan(find(figures_of(sides), "force.nrmse_uncertainty").number)) << "a text among numbers";
   EXPECT_TRUE(std::isnan(find(figures_of(sides), "reference.force_uncertainty_rel").number));

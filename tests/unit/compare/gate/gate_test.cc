@@ -1,9 +1,9 @@
 // Gates: what turns them red, what a proof proves, who may widen a limit.
 #include "compare/gate/gate.h"
 
+#include "compare/app/gate_verb.h"
 #include "compare/gate/gate_limits.h"
 #include "compare/gate/gate_report.h"
-#include "compare/app/gate_verb.h"
 #include "fast/command/command_line.h"
 #include "scene/base/files.h"
 #include "support/temporary_folder.h"
@@ -32,12 +32,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const std::string scenes = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/";
 
-Gate truth(double limit) {
-  return {"g", GateKind::truth, "force.nrmse", limit, "", "because", {"a=1"}, {}};
-}
-Gate drift(double limit) {
-  return {"g", GateKind::drift, "force.peak_fast_n", limit, "N", "because", {"a=1"}, {}};
-}
+Gate truth(double limit) { return {"g", GateKind::truth, "force.nrmse", limit, "", "because", {"a=1"}, {}}; }
+Gate drift(double limit) { return {"g", GateKind::drift, "force.peak_fast_n", limit, "N", "because", {"a=1"}, {}}; }
 scene::Figures error_of(double value, double uncertainty) {
   return {{"force.nrmse", value, "", ""}, {"force.nrmse_uncertainty", uncertainty, "", ""}};
 }

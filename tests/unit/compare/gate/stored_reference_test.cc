@@ -1,13 +1,13 @@
 // Reference data comes back as it was, or says why it cannot be compared with.
 #include "compare/gate/stored_reference.h"
 
+#include "compare/errors/compute_errors.h"
 #include "compare/errors/errors.h"
 #include "scene/base/files.h"
 #include "scene/base/hash.h"
 #include "scene/base/text.h"
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
-#include "compare/errors/compute_errors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -159,7 +159,8 @@ TEST_F(StoredReferenceTest, WhatNoSolverGivesIsRefusedInPlainText) {
 TEST_F(StoredReferenceTest, AnUnknownUncertaintyIsReadBackAsUnknown) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   testing::set_all(sides_.result, &scene::ReferenceInstant::force_uncertainty_n, unknown);
-  for (scene::ReferenceInstant& instant : sides_.result.instants) instant.displacement_uncertainty_m.setConstant(unknown);
+  for (scene::ReferenceInstant& instant : sides_.result.instants)
+    instant.displacement_uncertainty_m.setConstant(unknown);
   sides_.result.force_uncertainty_rel = sides_.result.shape_uncertainty_rel = unknown;
   store_reference(folder(), sides_.scene, sides_.run.surface, sides_.result, "test");
   const reference::Result back = stored_reference(folder(), sides_.scene, sides_.run.surface);

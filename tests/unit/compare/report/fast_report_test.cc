@@ -2,9 +2,9 @@
 
 #include "compare/report/fast_drawings.h"
 #include "fast/command/results.h"
+#include "support/shipped_scenes.h"
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
-#include "support/shipped_scenes.h"
 #include "support/xml.h"
 
 #include <gtest/gtest.h>

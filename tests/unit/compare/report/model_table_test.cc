@@ -1,11 +1,11 @@
 #include "compare/report/model_table.h"
 
-#include "compare/gate/stored_reference.h"
-#include "scene/input/scene_io.h"
-#include "compare/input/tuning_study.h"
-#include "support/synthetic.h"
 #include "compare/errors/compute_errors.h"
+#include "compare/gate/stored_reference.h"
+#include "compare/input/tuning_study.h"
 #include "compare/model/skeleton_model.h"
+#include "scene/input/scene_io.h"
+#include "support/synthetic.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,8 @@ class ModelTable : public ::testing::Test {
 
   [[nodiscard]] std::vector<JudgedModel> judge(const scene::Scene& judged, const std::string& tuned = "") const {
     const fast::Run run = fast::run(judged);
-    return judge_models(sides_.scene, judged, run, compute_errors(judged, run, sides_.result.instants), sides_.result, tuned);
+    return judge_models(sides_.scene, judged, run, compute_errors(judged, run, sides_.result.instants), sides_.result,
+                        tuned);
   }
   [[nodiscard]] Errors errors_of(const scene::Scene& scene) const {
     return compute_errors(scene, fast::run(scene), sides_.result.instants);
@@ -108,9 +109,8 @@ TEST(ModelFigures, HaveAKeyPerModel) {
 
 TEST(ShippedParameters, AreTunedToTheBallOnTheCube) {
   const std::filesystem::path source = TOUCHSTONE_SOURCE_DIR;
-  const scene::Scene scene =
-      with_parameters(scene::load_scene(source / "meshes/scenes/ball-on-cube-press.toml", {}),
-                             source / "meshes/parameters/ball-on-cube.toml");
+  const scene::Scene scene = with_parameters(scene::load_scene(source / "meshes/scenes/ball-on-cube-press.toml", {}),
+                                             source / "meshes/parameters/ball-on-cube.toml");
   const fast::Run run = fast::run(scene);
   const Errors errors = compute_errors(
       scene, run, stored_reference(source / "tests/gates/reference/ball-on-cube-press", scene, run.surface).instants);

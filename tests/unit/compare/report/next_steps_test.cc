@@ -1,12 +1,12 @@
 #include "compare/report/next_steps.h"
 
+#include "compare/errors/compute_errors.h"
 #include "compare/format/text.h"
+#include "compare/input/tuning_study.h"
 #include "fast/step/state.h"
 #include "scene/base/files.h"
-#include "compare/input/tuning_study.h"
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
-#include "compare/errors/compute_errors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -94,7 +94,8 @@ TEST(NextSteps, AskForThreeMeshesWhereTheUncertaintyIsUnknown) {
   sides.scene.reference.levels = 1;
   sides.call.reference.levels = 1;
   sides.result.levels.resize(1);
-  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n,
+                   std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(find(steps_of(sides), "three meshes").command, "touchstone compare meshes/scenes/ball-on-cube-press.toml");
 }
 
@@ -103,7 +104,8 @@ TEST(NextSteps, AskForMoreOfWhatWasShort) {
   sides.scene.reference.levels.reset();
   sides.call.reference = {};
   sides.result.levels.resize(2);
-  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n,
+                   std::numeric_limits<double>::quiet_NaN());
   sides.result.refinement.ended_by = reference::EndedBy::time;
   EXPECT_THAT(find(steps_of(sides), "more time").command, HasSubstr(" --minutes 240"));
   sides.call.reference.minutes = 300.0;
@@ -117,7 +119,8 @@ TEST(NextSteps, DoNotRefineWhereNoMeshHelps) {
   testing::Sides sides = testing::pressed(5, 200);
   sides.scene.reference.levels.reset();
   sides.call.reference = {};
-  sides.run.instants.assign(sides.result.instants.begin(), sides.result.instants.end());  // no error is larger than the uncertainty
+  sides.run.instants.assign(sides.result.instants.begin(),
+                            sides.result.instants.end());  // no error is larger than the uncertainty
   EXPECT_THAT(find(steps_of(sides), "Refine the reference").command, HasSubstr(" --error "));
   sides.result.refinement.ended_by = reference::EndedBy::sensitivity;
   EXPECT_EQ(find(steps_of(sides), "Refine the reference").command, "");

@@ -1,12 +1,12 @@
 #include "compare/report/plot_files.h"
 
 #include "compare/comparison/compare.h"
+#include "compare/errors/compute_errors.h"
 #include "compare/report/comparison_drawings.h"
 #include "scene/base/files.h"
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
 #include "support/xml.h"
-#include "compare/errors/compute_errors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // What the verbs leave, read by VTK's own readers, as ParaView does: with a known uncertainty and without one.
 #include "compare/comparison/compare.h"
-#include "compare/solve/reference_run.h"
 #include "compare/report/vtk_out.h"
+#include "compare/solve/reference_run.h"
 #include "fast/command/results.h"
 #include "scene/output/results.h"
 #include "support/synthetic.h"
@@ -74,7 +74,8 @@ class Readers : public ::testing::TestWithParam<bool> {
     if (GetParam()) return;
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     testing::set_all(sides_.result, &scene::ReferenceInstant::force_uncertainty_n, unknown);
-    for (scene::ReferenceInstant& instant : sides_.result.instants) instant.displacement_uncertainty_m.setConstant(unknown);
+    for (scene::ReferenceInstant& instant : sides_.result.instants)
+      instant.displacement_uncertainty_m.setConstant(unknown);
     sides_.result.force_uncertainty_rel = sides_.result.shape_uncertainty_rel = unknown;
   }
   /// Is it as the parameter says: a number where it is known, else NaN?

@@ -1,11 +1,11 @@
 #include "compare/report/report.h"
 #include "compare/format/page.h"
 
+#include "compare/errors/compute_errors.h"
 #include "compare/errors/figures.h"
 #include "fast/step/state.h"
 #include "support/synthetic.h"
 #include "support/xml.h"
-#include "compare/errors/compute_errors.h"
 
 #include <gtest/gtest.h>
 
@@ -92,7 +92,8 @@ TEST(Report, MarksWhatCannotBeDistinguished) {
 
 TEST(Report, OfAReferenceWithoutABandIsStillWhole) {
   testing::Sides sides = testing::pressed(5, 600);
-  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n,
+                   std::numeric_limits<double>::quiet_NaN());
   for (scene::ReferenceInstant& instant : sides.result.instants) {
     Eigen::VectorXd& u = instant.displacement_uncertainty_m;
     u.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -112,7 +113,8 @@ TEST(Report, OfAReferenceWithoutABandIsStillWhole) {
 TEST(Report, OfOneMeshSaysThatAnUncertaintyNeedsThree) {
   testing::Sides sides = testing::pressed(5, 600);
   sides.result.levels.resize(1);
-  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n,
+                   std::numeric_limits<double>::quiet_NaN());
   EXPECT_TRUE(has(report_of(sides), "It was solved on one mesh, and an uncertainty needs three."));
 }
 
@@ -125,7 +127,8 @@ std::string caption_of(const std::string& html, const std::string& title) {
 TEST(Report, CaptionOfTheForceSaysWhyAnUncertaintyIsUnknown) {
   testing::Sides sides = testing::pressed(5, 600);
   sides.result.levels.resize(2);
-  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n,
+                   std::numeric_limits<double>::quiet_NaN());
   sides.result.refinement.why_ended = "there is no mesh 3: it would take about 31 GiB of memory";
   EXPECT_EQ(caption_of(report_of(sides), "Force over depth"),
             "<figcaption>The reference's uncertainty is unknown, so no band is drawn. It was solved on two meshes, and "

@@ -1,10 +1,10 @@
 #include "compare/report/result_folder.h"
 
 #include "compare/comparison/compare.h"
+#include "compare/errors/compute_errors.h"
 #include "scene/base/error.h"
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
-#include "compare/errors/compute_errors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -88,7 +88,8 @@ TEST_F(ResultFolderTest, NamesTheLineOfADamage) {
 }
 
 TEST_F(ResultFolderTest, ReadsBackWhyANumberIsNotKnown) {
-  testing::set_all(sides_.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides_.result, &scene::ReferenceInstant::force_uncertainty_n,
+                   std::numeric_limits<double>::quiet_NaN());
   (void)write_comparison(folder_.path(), sides_.scene, sides_.run, sides_.result, sides_.manifest);
   const ResultFolder read = read_result_folder(folder_.path());
   const scene::Figure* figure = read.figure("force.nrmse_uncertainty");

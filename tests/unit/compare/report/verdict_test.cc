@@ -1,8 +1,8 @@
 #include "compare/report/verdict.h"
 
+#include "compare/errors/compute_errors.h"
 #include "fast/step/state.h"
 #include "support/synthetic.h"
-#include "compare/errors/compute_errors.h"
 
 #include <gtest/gtest.h>
 
@@ -123,7 +123,8 @@ TEST(Verdict, CallsAnErrorWithinTheBandNotDistinguishable) {
 
 TEST(Verdict, DoesNotTakeAnUnknownBandForAnExcuse) {
   testing::Sides sides = testing::pressed(5, 200);
-  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n,
+                   std::numeric_limits<double>::quiet_NaN());
   for (scene::ReferenceInstant& instant : sides.result.instants) {
     Eigen::VectorXd& u = instant.displacement_uncertainty_m;
     u.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -221,7 +222,8 @@ TEST(Verdict, SaysWhyRefinementEnded) {
 TEST(Verdict, SaysOnceThatAnUncertaintyNeedsThreeMeshes) {
   testing::Sides sides = testing::pressed(5, 200);
   sides.result.levels.resize(1);
-  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n,
+                   std::numeric_limits<double>::quiet_NaN());
   sides.result.refinement.why_ended = "1 mesh was asked for; an uncertainty needs 3";
   EXPECT_TRUE(says(told(sides),
                    "Reference: The reference's uncertainty is unknown. Refinement ended: 1 mesh was asked for; an "
@@ -251,14 +253,15 @@ TEST(Verdict, IsWrappedForATerminalWithCommandsOnLinesOfTheirOwn) {
 TEST(Verdict, IsShortOnATerminal) {
   testing::Sides sides = testing::pressed(23, 200);
   sides.run.status = static_cast<std::uint32_t>(fast::StepStatus::anchors_limited);
-  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
+  testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n,
+                   std::numeric_limits<double>::quiet_NaN());
   sides.scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
   for (std::size_t t = 1; t < 23; ++t) {
     if (!sides.result.instants[t].regions.empty())
       sides.result.instants[t].regions[0].friction_n = scene::Vec3(-10.0, 0.0, 0.0);
   }
-  const Verdict all =
-      verdict(sides.scene, sides.run, sides.result, compute_errors(sides.scene, sides.run, sides.result.instants), sides.call);
+  const Verdict all = verdict(sides.scene, sides.run, sides.result,
+                              compute_errors(sides.scene, sides.run, sides.result.instants), sides.call);
   const std::string text = all.text();
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 20) << text;
   for (const char* part : {"Status: ", "Likely cause: ", "Friction: ", "Next: "}) EXPECT_TRUE(says(text, part)) << part;

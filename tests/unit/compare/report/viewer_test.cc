@@ -1,10 +1,10 @@
 #include "compare/report/viewer.h"
 
+#include "compare/errors/compute_errors.h"
 #include "compare/viewer/viewer_bundle.h"
 #include "scene/base/files.h"
 #include "support/synthetic.h"
 #include "support/xml.h"
-#include "compare/errors/compute_errors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,8 @@ using ::testing::Contains;
 using Json = nlohmann::json;
 
 std::string section_of(const testing::Sides& sides) {
-  return viewer_section(sides.scene, sides.run, sides.result, compute_errors(sides.scene, sides.run, sides.result.instants));
+  return viewer_section(sides.scene, sides.run, sides.result,
+                        compute_errors(sides.scene, sides.run, sides.result.instants));
 }
 
 std::string data_text(const std::string& section) {

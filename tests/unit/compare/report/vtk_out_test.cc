@@ -1,9 +1,9 @@
 #include "compare/report/vtk_out.h"
 
+#include "compare/errors/compute_errors.h"
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
 #include "support/xml.h"
-#include "compare/errors/compute_errors.h"
 
 #include <gtest/gtest.h>
 #include <vtkCell.h>
@@ -76,7 +76,8 @@ TEST_F(VtkOut, ReadsBackToTheSameValues) {
       ASSERT_EQ(vector("displacement_reference_m", i), scene::Vec3(reference_m.col(i)));
       ASSERT_EQ(vector("displacement_error_m", i), scene::Vec3(fast_m.col(i) - reference_m.col(i)));
       ASSERT_EQ(number("displacement_error_magnitude_m", i), (fast_m.col(i) - reference_m.col(i)).norm());
-      ASSERT_EQ(number("displacement_reference_uncertainty_m", i), sides_.result.instants[t].displacement_uncertainty_m[i]);
+      ASSERT_EQ(number("displacement_reference_uncertainty_m", i),
+                sides_.result.instants[t].displacement_uncertainty_m[i]);
       ASSERT_EQ(vector("normal_fast", i), scene::Vec3(sides_.run.instants[t].normal.col(i)));
       ASSERT_EQ(number("region_id_fast", i), errors_.instants[t].touched_fast[at] ? 0 : -1);
       ASSERT_EQ(number("region_id_reference", i), errors_.instants[t].touched_reference[at] ? 0 : -1);

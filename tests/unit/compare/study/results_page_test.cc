@@ -102,7 +102,8 @@ TEST_F(ResultsPage, SaysWhichErrorsCannotBeDistinguished) {
 
 TEST_F(ResultsPage, SaysWhereTheUncertaintyIsUnknown) {
   const ResultFolder result = make("unknown", [](testing::Sides& sides) {
-    testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, std::numeric_limits<double>::quiet_NaN());
+    testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n,
+                     std::numeric_limits<double>::quiet_NaN());
   });
   const std::string html = results_page_html({result}, folder_.path());
   EXPECT_THAT(html, HasSubstr("± unknown"));

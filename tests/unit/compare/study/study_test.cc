@@ -5,8 +5,8 @@
 #include "compare/study/study_table.h"
 #include "fast/command/command_line.h"
 #include "scene/base/files.h"
-#include "scene/output/results.h"
 #include "scene/input/scene_io.h"
+#include "scene/output/results.h"
 #include "support/temporary_folder.h"
 
 #include <gmock/gmock.h>

@@ -139,18 +139,19 @@ class TradeTest : public ::testing::Test {
   Trade run(const scene::Scene& scene, TradeOptions options = {},
             const std::vector<ModelList>& models = registered_models()) {
     options.quick = true;
-    return trade(scene, options,
-                 [&](const scene::Scene& one, const scene::Surface& surface, std::optional<int> levels) {
-                   if (one.fast.triangles != scene.fast.triangles) levels_elsewhere_.push_back(levels);
-                   scene::Scene asked = one;
-                   if (!asked.reference.levels) asked.reference.levels = 1;
-                   if (levels) asked.reference.levels = levels;
-                   reference::Options solve;
-                   solve.store = folder_.path() / "store";
-                   solve.rest_area_m2 = surface.vertex_area_m2;
-                   return reference::solve(asked, surface.points_m, solve);
-                 },
-                 {}, models);
+    return trade(
+        scene, options,
+        [&](const scene::Scene& one, const scene::Surface& surface, std::optional<int> levels) {
+          if (one.fast.triangles != scene.fast.triangles) levels_elsewhere_.push_back(levels);
+          scene::Scene asked = one;
+          if (!asked.reference.levels) asked.reference.levels = 1;
+          if (levels) asked.reference.levels = levels;
+          reference::Options solve;
+          solve.store = folder_.path() / "store";
+          solve.rest_area_m2 = surface.vertex_area_m2;
+          return reference::solve(asked, surface.points_m, solve);
+        },
+        {}, models);
   }
   static const TradeRow& find(const Trade& trade, const std::string& key) {
     const auto found =

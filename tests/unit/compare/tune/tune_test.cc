@@ -54,8 +54,7 @@ SolveReference made_with(const std::map<std::string, double>& constants) {
   };
 }
 
-TuningParameter free(const std::string& key, double low, double high,
-                            TuningStage stage = TuningStage::force) {
+TuningParameter free(const std::string& key, double low, double high, TuningStage stage = TuningStage::force) {
   return {key, "", stage, low, high, std::sqrt(low * high), true, false};
 }
 
@@ -171,8 +170,7 @@ TEST(Replay, MemoryDoesNotHangOnTheTicks) {
 TEST(Tune, BringsBackTheConstantsOfForceAndShape) {
   const Tuning tuning = tune(
       study({free("contact.k1_n_per_m", 1e1, 1e5), free("contact.k3_n_per_m3", 1e7, 1e11),
-             free("fast.s_c_m2", 1e-4, 1e-1, TuningStage::shape),
-             free("fast.C_n", 1e-2, 0.4, TuningStage::shape)}),
+             free("fast.s_c_m2", 1e-4, 1e-1, TuningStage::shape), free("fast.C_n", 1e-2, 0.4, TuningStage::shape)}),
       made_with(
           {{"contact.k1_n_per_m", 900.0}, {"contact.k3_n_per_m3", 2.0e9}, {"fast.s_c_m2", 6.0e-3}, {"fast.C_n", 0.1}}));
   const TunedModel& model = tuning.models.at(0);
@@ -203,8 +201,8 @@ TEST(Tune, JudgesOnlyTheInstantsOfTheAskedDepths) {
 
 TEST(Tune, SaysWhatTheDataCannotDetermine) {
   // A local factor of strength zero has no radius.
-  TuningStudy asked = study({free("fast.s_c_m2", 1e-2, 1.0, TuningStage::shape),
-                                    free("fast.r_R_m", 0.005, 0.03, TuningStage::shape)});
+  TuningStudy asked =
+      study({free("fast.s_c_m2", 1e-2, 1.0, TuningStage::shape), free("fast.r_R_m", 0.005, 0.03, TuningStage::shape)});
   for (auto* list : {&asked.training, &asked.held_out}) {
     for (TuningContact& contact : *list) contact.scene.fast.C_n = 0.0;
   }
@@ -274,7 +272,7 @@ TEST(Tune, RefusesAContactWithoutAnInstantThatCounts) {
 TEST(Tune, LeavesAFolderWhoseParametersASceneTakesOver) {
   const testing::TemporaryFolder folder;
   TuningStudy asked = study({free("contact.k3_n_per_m3", 1e7, 1e11), free("contact.k1_n_per_m", 1e1, 1e5),
-                                    free("fast.s_c_m2", 1e-4, 1e-1, TuningStage::shape)});
+                             free("fast.s_c_m2", 1e-4, 1e-1, TuningStage::shape)});
   asked.parameters[2].profile = true;
   asked.title = "Made & tuned";
   const Tuning tuning = tune(asked, made_with({{"contact.k1_n_per_m", 900.0}}));

@@ -1,8 +1,8 @@
 #include "fast/contact/surface_cells.h"
 
+#include "fast/contact/tool_samples.h"
 #include "fast/step/stages.h"
 #include "fast/step/step.h"
-#include "fast/contact/tool_samples.h"
 #include "scene/shape/surface.h"
 #include "support/press.h"
 

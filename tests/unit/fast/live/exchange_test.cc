@@ -1,5 +1,6 @@
 // What goes between threads. To be run under ThreadSanitizer by hand when these headers change:
-//   g++ -std=c++20 -O1 -g -fsanitize=thread -I. tests/unit/fast/live/exchange_test.cc -lgtest -lgtest_main -o /tmp/exchange
+//   g++ -std=c++20 -O1 -g -fsanitize=thread -I. tests/unit/fast/live/exchange_test.cc -lgtest -lgtest_main -o
+//   /tmp/exchange
 #include "fast/live/record_ring.h"
 #include "fast/live/triple_buffer.h"
 

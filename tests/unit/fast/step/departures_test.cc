@@ -1,10 +1,10 @@
 // The measured effects that reports/departures.md states, measured: every figure must stand in the row it belongs to
 // and be what comes out here.
+#include "fast/contact/friction.h"
+#include "fast/contact/separation.h"
+#include "fast/run/run.h"
 #include "fast/skeleton/beam.h"
 #include "fast/skeleton/beam_stress.h"
-#include "fast/contact/friction.h"
-#include "fast/run/run.h"
-#include "fast/contact/separation.h"
 #include "fast/step/stages.h"
 #include "fast/step/step.h"
 #include "scene/model/rules.h"

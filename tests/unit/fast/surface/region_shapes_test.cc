@@ -1,7 +1,7 @@
 #include "fast/surface/region_shapes.h"
 
-#include "fast/step/model.h"
 #include "fast/contact/pull_back.h"
+#include "fast/step/model.h"
 #include "support/deformed_surface.h"
 #include "support/points.h"
 #include "support/press.h"

@@ -341,7 +341,8 @@ TEST_F(RefinementTest, SensitivitiesWidenTheBand) {
   for (const Sensitivity& one : result.sensitivities) sum_rel += share_at(one, 2) * one.force_rel;
   EXPECT_GT(sum_rel, 1e-6);
   for (std::size_t i = 0; i < mesh_n.size(); ++i) {
-    EXPECT_NEAR(result.instants[i].force_uncertainty_n, mesh_n[i] + sum_rel * result.instants[i].force_n().norm(), 1e-12);
+    EXPECT_NEAR(result.instants[i].force_uncertainty_n, mesh_n[i] + sum_rel * result.instants[i].force_n().norm(),
+                1e-12);
   }
 }
 

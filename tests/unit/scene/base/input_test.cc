@@ -2,10 +2,10 @@
 #include "scene/base/input.h"
 
 #include "scene/base/error.h"
-#include "scene/input/fields.h"
 #include "scene/base/json_text.h"
-#include "scene/input/scene_io.h"
 #include "scene/base/text.h"
+#include "scene/input/fields.h"
+#include "scene/input/scene_io.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,8 +3,8 @@
 
 #include "scene/model/area_law.h"
 
-#include "scene/model/first_contact.h"
 #include "scene/input/scene_io.h"
+#include "scene/model/first_contact.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

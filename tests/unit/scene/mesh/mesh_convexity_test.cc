@@ -1,10 +1,10 @@
 // Which meshes count as convex: those of convex solids, however coarse, rounded or placed; none with a dent.
 #include "scene/input/scene_io.h"
-#include "scene/shape/surface.h"
-#include "scene/mesh/triangle_mesh.h"
-#include "support/shapes.h"
 #include "scene/mesh/mesh_file.h"
 #include "scene/mesh/mesh_formats.h"
+#include "scene/mesh/triangle_mesh.h"
+#include "scene/shape/surface.h"
+#include "support/shapes.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
+#include "scene/mesh/mesh_file.h"
 #include "scene/mesh/mesh_formats.h"
 #include "scene/mesh/triangle_mesh.h"
-#include "scene/mesh/mesh_file.h"
 
 #include <gmock/gmock.h>
 
