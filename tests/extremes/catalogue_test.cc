@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "support/source_folder.h"
+
 namespace {
 
-const std::filesystem::path source = TOUCHSTONE_SOURCE_DIR;
+const std::filesystem::path source = touchstone::source_folder();
 const std::filesystem::path folder = source / EXTREMES_FOLDER, report_file = source / EXTREMES_REPORT;
 
 /// What stands over a test: "// extreme: what holds." and, for the fast model, "// As printed: what the published

@@ -19,6 +19,7 @@
 #include "scene/mesh/mesh_formats.h"
 #include "scene/mesh/triangle_mesh.h"
 #include "scene/shape/surface.h"
+#include "support/source_folder.h"
 
 #include <unistd.h>
 #include <zlib.h>
@@ -38,7 +39,7 @@ namespace {
 using namespace touchstone;
 using std::filesystem::path;
 
-const path source = TOUCHSTONE_SOURCE_DIR;
+const path source = source_folder();
 
 [[noreturn]] void finding(const std::string& what) {
   std::fprintf(stderr, "finding: %s\n", what.c_str());

@@ -9,6 +9,7 @@
 #include "soak/random_device.h"
 #include "soak/random_scene.h"
 #include "soak/watch.h"
+#include "support/source_folder.h"
 
 #include <fmt/format.h>
 #include <malloc.h>
@@ -263,7 +264,7 @@ void print_tables(const Run& run, double seconds) {
 int soak_all(const Options& options) {
   Run run;
   run.options = options;
-  const soak::ToolMeshes meshes = soak::tool_meshes(TOUCHSTONE_SOURCE_DIR "/meshes/tools");
+  const soak::ToolMeshes meshes = soak::tool_meshes(source_folder() + "/meshes/tools");
   const fast::StopSignals stop(fast::StopSignals::Again::end_at_once);
   fast::ProgressLine progress(options.quiet);
   const auto begin = std::chrono::steady_clock::now();

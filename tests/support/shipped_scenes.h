@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/input/scene_io.h"
+#include "support/source_folder.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -13,7 +14,7 @@ namespace touchstone::test {
 /// Their names without ".toml", sorted.
 inline std::vector<std::string> shipped_scenes() {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes")) {
+  for (const auto& entry : std::filesystem::directory_iterator(source_folder() + "/meshes/scenes")) {
     if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
@@ -21,7 +22,7 @@ inline std::vector<std::string> shipped_scenes() {
 }
 
 inline scene::Scene shipped_scene(const std::string& name, scene::Formulation formulation) {
-  scene::Scene scene = scene::load_scene(std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/" + name + ".toml", {});
+  scene::Scene scene = scene::load_scene(source_folder() + "/meshes/scenes/" + name + ".toml", {});
   scene.fast.formulation = formulation;
   return scene;
 }

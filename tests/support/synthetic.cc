@@ -4,6 +4,7 @@
 #include "compare/errors/figures.h"
 #include "compare/report/report.h"
 #include "scene/input/scene_io.h"
+#include "support/source_folder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -142,7 +143,7 @@ Sides pressed(int instants, int triangles) {
 }
 
 Sides pressed_by_mallet(const std::filesystem::path& folder, int instants) {
-  const std::filesystem::path source = TOUCHSTONE_SOURCE_DIR "/meshes";
+  const std::filesystem::path source = source_folder() + "/meshes";
   std::filesystem::create_directories(folder / "scenes");
   std::filesystem::create_directories(folder / "tools");
   std::filesystem::copy(source / "tools/mallet.stl", folder / "tools");

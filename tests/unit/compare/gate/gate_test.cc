@@ -6,6 +6,7 @@
 #include "compare/gate/gate_report.h"
 #include "fast/command/command_line.h"
 #include "scene/base/files.h"
+#include "support/source_folder.h"
 #include "support/temporary_folder.h"
 #include "support/xml.h"
 
@@ -30,7 +31,7 @@ using namespace std::chrono_literals;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
-const std::string scenes = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/";
+const std::string scenes = source_folder() + "/meshes/scenes/";
 
 Gate truth(double limit) { return {"g", GateKind::truth, "force.nrmse", limit, "", "because", {"a=1"}, {}}; }
 Gate drift(double limit) { return {"g", GateKind::drift, "force.peak_fast_n", limit, "N", "because", {"a=1"}, {}}; }

@@ -1,5 +1,6 @@
 // Gate files: what they mean, and what is said about bad ones.
 #include "compare/input/gate_file.h"
+#include "support/source_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -156,7 +157,7 @@ TEST(GateReference, NamesEveryWordOfAChoice) {
 }
 
 TEST(GateReference, IsWhatTheReportsShow) {
-  std::ifstream in(std::string(TOUCHSTONE_SOURCE_DIR) + "/reports/gate-reference.md");
+  std::ifstream in(source_folder() + "/reports/gate-reference.md");
   std::stringstream text;
   text << in.rdbuf();
   EXPECT_EQ(text.str(), gate_reference_markdown())

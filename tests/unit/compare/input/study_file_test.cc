@@ -2,6 +2,7 @@
 #include "compare/input/study_file.h"
 
 #include "scene/input/scene_io.h"
+#include "support/source_folder.h"
 #include "unit/compare/input/study_file_test.h"
 
 #include <gmock/gmock.h>
@@ -14,7 +15,7 @@ using namespace scene;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const std::string base = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/ball-on-cube-press.toml";
+const std::string base = source_folder() + "/meshes/scenes/ball-on-cube-press.toml";
 const std::string head = "scene = \"" + base + "\"\nrun = \"fast\"\n";
 
 class StudyTest : public StudyFileTest {
@@ -165,8 +166,7 @@ TEST(SceneOverride, SetsAnElementOrSaysThatThereIsNone) {
 
 TEST(ShippedStudies, HaveScenesWithoutFault) {
   int count = 0;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/studies")) {
+  for (const auto& entry : std::filesystem::directory_iterator(source_folder() + "/meshes/studies")) {
     if (entry.path().extension() != ".toml") continue;
     std::ifstream in(entry.path());
     const std::string text{std::istreambuf_iterator<char>(in), {}};

@@ -1,6 +1,7 @@
 // Tuning studies: what they mean, and what is said about bad ones.
 #include "compare/input/tuning_study.h"
 
+#include "support/source_folder.h"
 #include "unit/compare/input/study_file_test.h"
 
 #include <gmock/gmock.h>
@@ -13,7 +14,7 @@ using namespace scene;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const std::string scenes = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/";
+const std::string scenes = source_folder() + "/meshes/scenes/";
 const std::string head = "kind = \"tuning\"\n";
 const std::string training = "[[training]]\nname = \"middle\"\nscene = \"" + scenes + "ball-on-cube-press.toml\"\n";
 const std::string held_out = "[[held_out]]\nname = \"larger\"\ndiffers = \"tool\"\nscene = \"" + scenes +
@@ -111,7 +112,7 @@ TEST(TuningStudyModels, OnlyTheCorrectedOneHasFrictionsStiffnessRatio) {
 
 TEST(ShippedTuningStudies, HaveScenesWithoutFaultAndContactsHeldOut) {
   for (const char* name : {"ball-on-cube", "ellipsoid", "friction", "mallet", "inclusion"}) {
-    const TuningStudy study = load_tuning_study(TOUCHSTONE_SOURCE_DIR "/meshes/studies/" + std::string(name) + ".toml");
+    const TuningStudy study = load_tuning_study(source_folder() + "/meshes/studies/" + std::string(name) + ".toml");
     EXPECT_FALSE(study.training.empty()) << name;
     EXPECT_FALSE(study.held_out.empty()) << name;
   }

@@ -5,6 +5,7 @@
 #include "reference/solver.h"
 #include "scene/input/scene_io.h"
 #include "scene/shape/surface.h"
+#include "support/source_folder.h"
 #include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@
 namespace touchstone::compare {
 namespace {
 
-const std::string scenes = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/";
+const std::string scenes = source_folder() + "/meshes/scenes/";
 
 scene::Scene load(const std::string& name, std::vector<std::string> settings) {
   settings.insert(settings.end(), {"reference.kinematics=small", "reference.levels=1", "fast.triangles=200"});

@@ -5,6 +5,7 @@
 #include "compare/input/tuning_study.h"
 #include "compare/model/skeleton_model.h"
 #include "scene/input/scene_io.h"
+#include "support/source_folder.h"
 #include "support/synthetic.h"
 
 #include <gmock/gmock.h>
@@ -108,7 +109,7 @@ TEST(ModelFigures, HaveAKeyPerModel) {
 }
 
 TEST(ShippedParameters, AreTunedToTheBallOnTheCube) {
-  const std::filesystem::path source = TOUCHSTONE_SOURCE_DIR;
+  const std::filesystem::path source = source_folder();
   const scene::Scene scene = with_parameters(scene::load_scene(source / "meshes/scenes/ball-on-cube-press.toml", {}),
                                              source / "meshes/parameters/ball-on-cube.toml");
   const fast::Run run = fast::run(scene);

@@ -5,6 +5,7 @@
 #include "compare/input/tuning_study.h"
 #include "fast/step/state.h"
 #include "scene/base/files.h"
+#include "support/source_folder.h"
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
 
@@ -131,7 +132,7 @@ TEST(NextSteps, NameTheStudyThatTrainsOnTheScene) {
   testing::Sides sides = really_run();
   sides.call.scene_file = folder.path() / "ball-on-cube-press.toml";
   EXPECT_THAT(find(steps_of(sides), "Tune").why, HasSubstr("a study of this scene"));
-  sides.call.scene_file = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/ball-on-cube-press.toml";
+  sides.call.scene_file = source_folder() + "/meshes/scenes/ball-on-cube-press.toml";
   EXPECT_THAT(find(steps_of(sides), "Tune").command, ::testing::EndsWith("/meshes/studies/ball-on-cube.toml"));
   sides.call.parameters = "tuned.toml";
   EXPECT_EQ(find(steps_of(sides), "Tune").why, "");

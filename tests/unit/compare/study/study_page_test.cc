@@ -8,6 +8,7 @@
 #include "scene/base/files.h"
 #include "scene/input/scene_io.h"
 #include "scene/output/results.h"
+#include "support/source_folder.h"
 #include "support/temporary_folder.h"
 #include "support/xml.h"
 
@@ -31,8 +32,8 @@ class StudyPage : public ::testing::Test {
  protected:
   StudyManifest expanded(const std::string& rest) {
     const path file = folder_.path() / "study.toml";
-    std::ofstream(file) << "title = \"How deep & how soft\"\nscene = \"" TOUCHSTONE_SOURCE_DIR
-                           "/meshes/scenes/ball-on-cube-press.toml\"\nrun = \"compare\"\n"
+    std::ofstream(file) << "title = \"How deep & how soft\"\nscene = \""
+                        << source_folder() << "/meshes/scenes/ball-on-cube-press.toml\"\nrun = \"compare\"\n"
                         << rest;
     return expand(load_study(file), folder_.path() / "study", "/usr/bin/touchstone", "store");
   }

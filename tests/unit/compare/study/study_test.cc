@@ -7,6 +7,7 @@
 #include "scene/base/files.h"
 #include "scene/input/scene_io.h"
 #include "scene/output/results.h"
+#include "support/source_folder.h"
 #include "support/temporary_folder.h"
 
 #include <gmock/gmock.h>
@@ -34,7 +35,7 @@ using ::testing::Not;
 using Json = nlohmann::ordered_json;
 using std::filesystem::path;
 
-const std::string scenes = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/";
+const std::string scenes = source_folder() + "/meshes/scenes/";
 
 class StudyFolderTest : public ::testing::Test {
  protected:

@@ -3,6 +3,7 @@
 
 #include "scene/base/files.h"
 #include "scene/input/scene_io.h"
+#include "support/source_folder.h"
 #include "support/temporary_folder.h"
 #include "support/xml.h"
 
@@ -126,7 +127,7 @@ TEST(TradeSvg, NamesEveryPointThatCanBeDrawn) {
   EXPECT_THAT(svg, Not(HasSubstr(">nowhere<")));
 }
 
-const std::string scenes = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/";
+const std::string scenes = source_folder() + "/meshes/scenes/";
 
 scene::Scene ball_on_ball(int levels) {
   return scene::load_scene(

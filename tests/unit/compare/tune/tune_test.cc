@@ -6,6 +6,7 @@
 #include "scene/base/files.h"
 #include "scene/input/scene_io.h"
 #include "support/bounded_memory.h"
+#include "support/source_folder.h"
 #include "support/temporary_folder.h"
 #include "support/xml.h"
 
@@ -24,7 +25,7 @@ using scene::Vec3;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-const std::string scenes = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/";
+const std::string scenes = source_folder() + "/meshes/scenes/";
 
 scene::Scene small(const std::vector<std::string>& more = {}) {
   std::vector<std::string> settings = {"compare.instants=9", "fast.triangles=400", "fast.rate_hz=200.0",

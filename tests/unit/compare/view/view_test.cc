@@ -5,6 +5,7 @@
 #include "compare/view/virtual_display.h"
 #include "scene/base/error.h"
 #include "scene/input/scene_io.h"
+#include "support/source_folder.h"
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
 
@@ -44,7 +45,7 @@ class ViewTest : public ::testing::Test {
     testing::Sides sides = testing::pressed(4, 600);
     sides.manifest.command = "touchstone compare";
     sides.manifest.resolved_scene =
-        scene::resolved_toml(scene::load_scene(TOUCHSTONE_SOURCE_DIR "/meshes/scenes/ball-on-cube-press.toml"));
+        scene::resolved_toml(scene::load_scene(source_folder() + "/meshes/scenes/ball-on-cube-press.toml"));
     (void)write_comparison(folder_.path(), sides.scene, sides.run, sides.result, sides.manifest);
   }
 

@@ -17,6 +17,8 @@
 #include <string>
 #include <vector>
 
+#include "support/source_folder.h"
+
 namespace {
 
 using testing::HasSubstr;
@@ -42,7 +44,7 @@ std::vector<std::string> verbs() {
   return list;
 }
 
-const std::string scene = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/ball-on-cube-press.toml";
+const std::string scene = touchstone::source_folder() + "/meshes/scenes/ball-on-cube-press.toml";
 
 class Verb : public testing::TestWithParam<std::string> {
  protected:
@@ -281,7 +283,7 @@ TEST_F(NewVerb, TheWrittenSceneRunsAndItsForceIsThatOfTheHalfSpace) {
 }
 
 TEST_F(NewVerb, TakesAMeshOffCentreWithFriction) {
-  const std::string stl = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/tools/mallet.stl";
+  const std::string stl = touchstone::source_folder() + "/meshes/tools/mallet.stl";
   for (const std::string& program : programs()) {
     std::filesystem::remove_all(dir_ / "in");
     std::filesystem::create_directories(dir_ / "in/a");
@@ -313,7 +315,7 @@ TEST_F(NewVerb, RefusesInOneLineAndWritesNothing) {
           "--youngs-modulus 3: expected a number with its unit");
   refused("--body box 60x60x4mm --youngs-modulus 3MPa --poissons-ratio 0.4 --tool sphere 10mm --depth 3mm",
           "--depth: more than half of the body's height");
-  const std::string stl = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/tools/mallet.stl";
+  const std::string stl = touchstone::source_folder() + "/meshes/tools/mallet.stl";
   refused(block + "--tool mesh " + stl + " --unit m", "expected at most 10.0 m (tool.unit)");
   refused(
       "--body box 2x2x2mm --youngs-modulus 3MPa --poissons-ratio 0.4 --depth 0.2mm --tool mesh " + stl + " --unit in",
@@ -387,7 +389,7 @@ TEST(Misspelt, VerbsAndOptionsGetTheNearestName) {
 }
 
 TEST(Misspelt, AFileThatIsNotThereGetsTheNearestInItsFolder) {
-  const std::string folder = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/";
+  const std::string folder = touchstone::source_folder() + "/meshes/";
   for (const std::string& program : programs()) {
     const Answer answer = run(program + " plan " + folder + "scenes/ball-on-cube-pres.toml");
     EXPECT_EQ(answer.exit_code, 2);
@@ -404,7 +406,7 @@ TEST(Misspelt, AFileThatIsNotThereGetsTheNearestInItsFolder) {
 
 TEST(WrongFile, IsCalledWhatItIsWithTheVerbThatTakesIt) {
   if (full_program().empty()) GTEST_SKIP() << "a build without the reference";
-  const std::string source = std::string(TOUCHSTONE_SOURCE_DIR);
+  const std::string source = touchstone::source_folder();
   const std::string sweep = source + "/meshes/studies/ball-on-cube-depth-and-place.toml";
   const std::string tuning = source + "/meshes/studies/ball-on-cube.toml";
   const std::string gates = source + "/tests/gates/hertz.toml";
@@ -462,7 +464,7 @@ TEST(Completion, BashOffersVerbsOptionsKeysAndFiles) {
     EXPECT_THAT(offered(program, {"live", "--device", "h"}), ElementsAre("hand"));
     EXPECT_THAT(offered(program, {"live", "--device", "=", "h"}), ElementsAre("hand"));
     EXPECT_THAT(offered(program, {"completion", "z"}), ElementsAre("zsh"));
-    const std::string source = TOUCHSTONE_SOURCE_DIR;
+    const std::string source = touchstone::source_folder();
     EXPECT_THAT(offered(program, {"fast", "meshes/scenes/hertz"}, source),
                 ElementsAre("meshes/scenes/hertz-sphere.toml"));
     // Scenes and folders, no other files.
@@ -502,7 +504,7 @@ TEST(CompareVerb, ParametersAreTheFastSidesAlone) {
   std::ofstream(dir / "tuned.toml") << "[contact]\nk1_n_per_m = 3.0e4\n[contact.friction]\nmu_D = 0.1\nK = 0.1\n"
                                        "beta = 0.9\n";
   const auto compared = [&](const std::string& name, const std::string& more) {
-    const Answer answer = run(full_program() + " compare " + TOUCHSTONE_SOURCE_DIR +
+    const Answer answer = run(full_program() + " compare " + touchstone::source_folder() +
                               "/meshes/scenes/pin-on-cylinder.toml --quiet --level 1 --set compare.instants=3 --set "
                               "contact.friction.K=0.3 --set contact.friction.beta=1 --set contact.friction.mu_D=0.3 "
                               "--store " +

@@ -14,6 +14,8 @@
 #include <thread>
 #include <vector>
 
+#include "support/source_folder.h"
+
 namespace {
 
 using testing::HasSubstr;
@@ -48,7 +50,7 @@ class LimitsVerb : public testing::Test {
   }
 
   [[nodiscard]] Answer run(const std::string& verb, const std::string& options) const {
-    const std::string command = program_ + " " + verb + " " + TOUCHSTONE_SOURCE_DIR +
+    const std::string command = program_ + " " + verb + " " + touchstone::source_folder() +
                                 "/meshes/scenes/pin-on-cylinder.toml --quiet --set compare.instants=3 " + options +
                                 " --store " + (dir_ / "store").string() + " --out " + (dir_ / "out").string() + " >" +
                                 (dir_ / "output").string() + " 2>" + (dir_ / "errors").string();
@@ -107,8 +109,8 @@ TEST_F(LimitsVerb, RequireErrorExitsThreeWithItsResultsWritten) {
 
 TEST_F(LimitsVerb, PlanEstimatesEveryMesh) {
   const Answer plan = [&] {
-    const std::string command = program_ + " plan " + TOUCHSTONE_SOURCE_DIR + "/meshes/scenes/pin-on-cylinder.toml >" +
-                                (dir_ / "output").string();
+    const std::string command =
+        program_ + " plan " + touchstone::source_folder() + "/meshes/scenes/pin-on-cylinder.toml >" + (dir_ / "output").string();
     const int status = std::system(command.c_str());
     return Answer{WEXITSTATUS(status), text_of(dir_ / "output"), ""};
   }();
@@ -132,7 +134,7 @@ TEST_F(LimitsVerb, ABusyMachineGetsOneThread) {
       }
     });
   }
-  const std::string plan = " " + program_ + " plan " + TOUCHSTONE_SOURCE_DIR + "/meshes/scenes/pin-on-cylinder.toml >" +
+  const std::string plan = " " + program_ + " plan " + touchstone::source_folder() + "/meshes/scenes/pin-on-cylinder.toml >" +
                            (dir_ / "output").string();
   EXPECT_EQ(std::system(("env -u OMP_NUM_THREADS" + plan).c_str()), 0);
   EXPECT_THAT(text_of(dir_ / "output"), HasSubstr("time of 1 thread on"));

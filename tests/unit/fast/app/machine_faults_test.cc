@@ -19,6 +19,8 @@
 #include <thread>
 #include <vector>
 
+#include "support/source_folder.h"
+
 namespace {
 
 using std::filesystem::path;
@@ -27,7 +29,7 @@ using testing::ContainsRegex;
 using testing::Eq;
 using testing::HasSubstr;
 
-const std::string source = TOUCHSTONE_SOURCE_DIR;
+const std::string source = touchstone::source_folder();
 
 std::string text_of(const path& file) {
   std::stringstream text;

@@ -12,9 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "support/source_folder.h"
+
 namespace {
 
-const std::string scene = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/pin-on-cylinder.toml";
+const std::string scene = touchstone::source_folder() + "/meshes/scenes/pin-on-cylinder.toml";
 
 /// The executable of the first verb with this name, or nothing in a build without.
 std::string program_of(const std::string& verb) {

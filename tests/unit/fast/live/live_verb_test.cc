@@ -12,6 +12,8 @@
 #include <sstream>
 #include <string>
 
+#include "support/source_folder.h"
+
 namespace {
 
 using testing::HasSubstr;
@@ -21,7 +23,7 @@ struct Answer {
   std::string output;  ///< stdout and stderr
 };
 
-const std::string scene = std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/ball-on-cube-press.toml";
+const std::string scene = touchstone::source_folder() + "/meshes/scenes/ball-on-cube-press.toml";
 
 class LiveVerb : public testing::Test {
  protected:

@@ -11,6 +11,7 @@
 #include "support/points.h"
 #include "support/press.h"
 #include "support/shipped_scenes.h"
+#include "support/source_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -37,7 +38,7 @@ constexpr double rubber_pa = 3.0e6, pvc_pa = 33.77e3;
 const std::vector<std::string>& rows() {
   static const std::vector<std::string> all = [] {
     std::vector<std::string> lines;
-    std::ifstream file(std::string(TOUCHSTONE_SOURCE_DIR) + "/reports/departures.md");
+    std::ifstream file(source_folder() + "/reports/departures.md");
     for (std::string line; std::getline(file, line);) {
       if (line.starts_with("| ")) lines.push_back(line);
     }

@@ -3,6 +3,7 @@
 #include "reference/solver.h"
 #include "scene/input/scene_io.h"
 #include "scene/shape/surface.h"
+#include "support/source_folder.h"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -124,7 +125,7 @@ class Distributed : public testing::Test {
     return words;
   }
   [[nodiscard]] static std::string shipped(const std::string& file) {
-    return std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes/" + file;
+    return source_folder() + "/meshes/scenes/" + file;
   }
   [[nodiscard]] Result serial(const std::string& file, const std::vector<std::string>& overrides,
                               const std::string& store) const {

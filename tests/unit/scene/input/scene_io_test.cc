@@ -1,6 +1,7 @@
 #include "scene/input/scene_io.h"
 
 #include "scene/input/fields.h"
+#include "support/source_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -247,7 +248,7 @@ TEST(Fields, EveryDefaultIsInItsOwnRange) {
 }
 
 TEST(Documentation, SceneReferenceIsTheTable) {
-  std::ifstream in(std::string(TOUCHSTONE_SOURCE_DIR) + "/reports/scene-reference.md");
+  std::ifstream in(source_folder() + "/reports/scene-reference.md");
   std::stringstream text;
   text << in.rdbuf();
   EXPECT_THAT(text.str(), HasSubstr(scene_reference_markdown()))
@@ -303,7 +304,7 @@ TEST_F(IncludeTest, TellsAFaultInTheFileItStandsIn) {
 
 TEST(ShippedScenes, GiveTheLengthsThatHaveNoFixedDefault) {
   // So no default can move what was published of them, nor the keys of their stored references.
-  const std::string folder = std::string(TOUCHSTONE_SOURCE_DIR);
+  const std::string folder = source_folder();
   for (const char* place : {"/meshes/scenes", "/tests/gates/scenes"}) {
     for (const auto& entry : std::filesystem::directory_iterator(folder + place)) {
       if (entry.path().extension() != ".toml") continue;
@@ -318,7 +319,7 @@ TEST(ShippedScenes, GiveTheLengthsThatHaveNoFixedDefault) {
 
 TEST(ShippedScenes, AllLoad) {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(TOUCHSTONE_SOURCE_DIR) + "/meshes/scenes")) {
+  for (const auto& entry : std::filesystem::directory_iterator(source_folder() + "/meshes/scenes")) {
     if (entry.path().extension() != ".toml") continue;
     EXPECT_NO_THROW((void)load_scene(entry.path())) << entry.path();
     ++count;

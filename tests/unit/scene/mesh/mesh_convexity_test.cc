@@ -5,6 +5,7 @@
 #include "scene/mesh/triangle_mesh.h"
 #include "scene/shape/surface.h"
 #include "support/shapes.h"
+#include "support/source_folder.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -179,7 +180,7 @@ TEST_F(Convexity, NeedsOnePiece) {
 }
 
 TEST(ConvexTool, IsNoneOfTheShippedMeshes) {
-  const std::filesystem::path scenes = std::filesystem::path(TOUCHSTONE_SOURCE_DIR) / "meshes/scenes";
+  const std::filesystem::path scenes = std::filesystem::path(source_folder()) / "meshes/scenes";
   for (const char* name : {"mallet-head-on-cube.toml", "compass-two-pins.toml"}) {
     const Scene scene = load_scene(scenes / name);
     EXPECT_FALSE(scene.tool.convex()) << name;

@@ -1,6 +1,7 @@
 #include "scene/mesh/mesh_file.h"
 #include "scene/mesh/mesh_formats.h"
 #include "scene/mesh/triangle_mesh.h"
+#include "support/source_folder.h"
 
 #include <gmock/gmock.h>
 
@@ -394,7 +395,7 @@ TEST_F(MeshFile, ShippedToolsComeFromTheirGenerator) {
       std::ifstream in(file, std::ios::binary);
       return std::string(std::istreambuf_iterator<char>(in), {});
     };
-    const std::filesystem::path shipped = std::filesystem::path(TOUCHSTONE_SOURCE_DIR) / "meshes/tools" / name;
+    const std::filesystem::path shipped = std::filesystem::path(source_folder()) / "meshes/tools" / name;
     EXPECT_TRUE(bytes_of(folder_ / name) == bytes_of(shipped)) << name;
     const auto mesh = read_triangle_mesh(shipped, 1e-3, faults_);
     ASSERT_TRUE(mesh.has_value()) << faults_[0].text();

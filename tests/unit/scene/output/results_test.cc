@@ -2,6 +2,7 @@
 
 #include "scene/base/error.h"
 #include "scene/input/scene_io.h"
+#include "support/source_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -94,7 +95,7 @@ TEST_F(ResultFolder, RecordsBecomeColumnsOfEqualLength) {
 }
 
 TEST_F(ResultFolder, CarriesItsMeshToolWhereverItIsMoved) {
-  const std::filesystem::path shipped = TOUCHSTONE_SOURCE_DIR "/meshes";
+  const std::filesystem::path shipped = source_folder() + "/meshes";
   const std::filesystem::path inputs = dir_ / "inputs", made = dir_ / "made", moved = dir_ / "far" / "away";
   for (const auto& folder : {inputs / "tools", inputs / "scenes", made, moved.parent_path()}) {
     std::filesystem::create_directories(folder);
