@@ -409,7 +409,8 @@ class Run {
     for (int instant = 0; instant < count(); ++instant) {
       check_stop();
       std::optional<std::pair<Solved<dim>, Step>> found;
-      if (std::optional<Record> record = store.read(level, instant)) found = from_record<dim>(std::move(*record), mesh);
+      if (std::optional<std::string> record = store.read(level, instant))
+        found = from_record<dim>(std::move(*record), mesh);
       if (!found) {
         check_time();
         result_.from_store = false;
@@ -459,7 +460,7 @@ class Run {
   /// The coarser level's solution on this level's mesh; nothing when the tool did not touch there.
   [[nodiscard]] std::optional<State<dim>> start_state(const Prolongation<dim>& prolongation, const Store& store,
                                                       int level, int instant) const {
-    std::optional<Record> record = store.read(level - 1, instant);
+    std::optional<std::string> record = store.read(level - 1, instant);
     const auto coarse = record ? from_record<dim>(std::move(*record), *coarser_) : std::nullopt;
     if (!coarse || !coarse->first.touching) return std::nullopt;
     return prolongation(coarse->first.state);
@@ -546,7 +547,7 @@ class Run {
     const std::vector<SensitivityWork> missing = missing_sensitivities(coarsest_, store);
     if (std::optional<Limit> limit = limit_before(missing)) return limit;
     const auto stored = [&](int which) {
-      std::optional<Record> record = which < 0 ? std::nullopt : store.read(0, which);
+      std::optional<std::string> record = which < 0 ? std::nullopt : store.read(0, which);
       return record ? from_record<dim>(std::move(*record), coarsest_) : std::nullopt;
     };
     const auto at = stored(instant), before = stored(instant - 1);
