@@ -13,7 +13,6 @@
 #include "scene/base/files.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iomanip>
 #include <optional>
@@ -174,7 +173,7 @@ Result solve(const Scene& scene, const Eigen::Matrix3Xd& rest_points_m, const Op
   if (std::vector<scene::Fault> faults = unsupported(scene); !faults.empty())
     throw scene::InputError(std::move(faults));
   scene::require_writable(options.store / content_key(scene), "--store");
-  const auto begin = std::chrono::steady_clock::now();
+  const scene::Stopwatch begin;
   const ModelChoice choice = choose_model(scene);
   return run(scene, choice, rest_points_m, options, begin);
 }

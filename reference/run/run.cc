@@ -18,9 +18,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <memory>
 #include <new>
@@ -31,13 +29,8 @@ namespace touchstone::reference {
 namespace {
 
 using scene::Scene;
-using Clock = std::chrono::steady_clock;
 
 constexpr int fewest_levels = 3, most_levels = 9;
-
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-double cpu_seconds_since(std::clock_t begin) { return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC; }
 
 double physical_memory_bytes() {
   return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
@@ -53,7 +46,7 @@ template <int dim>
 class Run {
  public:
   Run(const Scene& scene, const ModelChoice& choice, const Eigen::Matrix3Xd& rest_points_m, const Options& options,
-      Clock::time_point begin)
+      const scene::Stopwatch& begin)
       : scene_(scene),
         choice_(choice),
         rest_points_m_(rest_points_m),
@@ -118,7 +111,7 @@ class Run {
     if (options_.progress) options_.progress(progress);
   }
 
-  [[nodiscard]] double seconds_to_go() const { return options_.seconds_limit - seconds_since(begin_); }
+  [[nodiscard]] double seconds_to_go() const { return options_.seconds_limit - begin_.wall_s(); }
   [[nodiscard]] bool out_of_time() const { return seconds_to_go() < 0.0; }
   void check_time() const {
     if (out_of_time()) throw TimeIsUp();
@@ -480,8 +473,7 @@ class Run {
                                              std::optional<State<dim>> start, const std::optional<Solved<dim>>& before,
                                              const std::optional<Solved<dim>>& current, const Ahead& ahead) {
     const double time_s = times_s_[instant];
-    const Clock::time_point begin = Clock::now();
-    const std::clock_t cpu_begin = std::clock();
+    const scene::Stopwatch begin;
     std::pair<Solved<dim>, Step> result{{time_s, problem.rest(), false}, {}};
     auto& [solved, step] = result;
     step.unknowns = problem.unknowns();
@@ -493,7 +485,7 @@ class Run {
     const auto watch = [&](int iteration, double residual_rel) {
       progress.newton = iteration;
       progress.residual_rel = residual_rel;
-      progress.seconds_left = seconds_left(ahead, seconds_since(begin));
+      progress.seconds_left = seconds_left(ahead, begin.wall_s());
       show(progress);
       check_stop();
       check_time();
@@ -534,8 +526,8 @@ class Run {
       step.seen = problem.observe(solved.state, scene_.fast.r_th_m);
       step.linear_solver = problem.linear_solver();
     }
-    step.wall_s = seconds_since(begin);
-    step.cpu_s = cpu_seconds_since(cpu_begin);
+    step.wall_s = begin.wall_s();
+    step.cpu_s = begin.cpu_s();
     return result;
   }
 
@@ -556,7 +548,7 @@ class Run {
     const double later_s =
         missing.empty() ? 0.0 : expected_after_s(solved_levels() - 1, *coarser_, store) - expected_s(missing, 0);
     std::size_t now = missing.size();  // the one being measured
-    Clock::time_point began;
+    scene::Stopwatch began;
     const auto watch = [&](const std::string& part, int) {
       result_.from_store = false;
       check_stop();
@@ -565,12 +557,12 @@ class Run {
       if (next) {
         now = std::find_if(missing.begin(), missing.end(), [&](const auto& one) { return one.part == part; }) -
               missing.begin();
-        began = Clock::now();
+        began = {};
       }
       const Ahead ahead{.step_s = expected_s(missing, now) - expected_s(missing, now + 1),
                         .later_s = expected_s(missing, now + 1) + later_s};
       show({.instants = count(),
-            .seconds_left = seconds_left(ahead, seconds_since(began)),
+            .seconds_left = seconds_left(ahead, began.wall_s()),
             .event = next,
             .note = "sensitivity to the " + part});
     };
@@ -651,7 +643,7 @@ class Run {
   const Options& options_;
   std::unique_ptr<const scene::Shape> body_;
   std::vector<double> times_s_;
-  Clock::time_point begin_;
+  scene::Stopwatch begin_;
   std::vector<double> depths_m_;  // of the tool in the body at rest, per instant
   Pace pace_;
   Result result_;
@@ -664,7 +656,7 @@ class Run {
 }  // namespace
 
 Result run(const Scene& scene, const ModelChoice& choice, const Eigen::Matrix3Xd& rest_points_m, const Options& options,
-           std::chrono::steady_clock::time_point begin) {
+           const scene::Stopwatch& begin) {
   if (choice.dim == 2) return Run<2>(scene, choice, rest_points_m, options, begin).answer();
   return Run<3>(scene, choice, rest_points_m, options, begin).answer();
 }
