@@ -3,19 +3,18 @@
 #include "fast/bench/statistics.h"
 #include "fast/step/state.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace touchstone::bench {
 namespace {
 
 std::string number(double value) {
   if (!std::isfinite(value)) return "-";
-  char text[32];
   const double size = std::abs(value);
-  std::snprintf(text, sizeof text, size >= 100.0 ? "%.0f" : size >= 10.0 ? "%.1f" : "%.2f", value);
-  return text;
+  return fmt::format("{:.{}f}", value, size >= 100.0 ? 0 : size >= 10.0 ? 1 : 2);
 }
 
 std::string dotted(std::string name) {
@@ -156,15 +155,13 @@ std::string where_time_goes(const CaseResult& c) {
             [&](std::size_t a, std::size_t b) { return c.stages[a].p50_us > c.stages[b].p50_us; });
   std::string text = "  " + c.which.name() + ":";
   for (const std::size_t s : order) {
-    char part[80];
-    std::snprintf(part, sizeof part, " %s %s us (%.0f %%, %s floors)", fast::stage_names[s],
-                  number(c.stages[s].p50_us).c_str(), 100.0 * c.stages[s].p50_us / sum_us,
-                  number(ratio(c.stages[s].p50_us, c.floor.wall.p50_us)).c_str());
-    text += part + std::string(s == order.back() ? "" : ",");
+    text += fmt::format(" {} {} us ({:.0f} %, {} floors){}", fast::stage_names[s], number(c.stages[s].p50_us),
+                        100.0 * c.stages[s].p50_us / sum_us, number(ratio(c.stages[s].p50_us, c.floor.wall.p50_us)),
+                        s == order.back() ? "" : ",");
   }
   if (std::isfinite(c.instructions)) {
-    text += "; " + number(c.instructions) + " instructions in " + number(c.cycles) + " cycles, " +
-            number(c.instructions / c.vertices) + " per vertex";
+    text += fmt::format("; {} instructions in {} cycles, {} per vertex", number(c.instructions), number(c.cycles),
+                        number(c.instructions / c.vertices));
   }
   return text + "\n";
 }
@@ -204,8 +201,8 @@ std::string remarks(const BenchResult& result) {
   std::string text;
   for (const CaseResult& c : result.cases) {
     if (!c.available || c.as_planned()) continue;
-    text += "  " + c.which.name() + ": " + std::to_string(c.regions_least) + " to " + std::to_string(c.regions_most) +
-            " regions pressed, " + fast::status_text(c.status) + "\n";
+    text += fmt::format("  {}: {} to {} regions pressed, {}\n", c.which.name(), c.regions_least, c.regions_most,
+                        fast::status_text(c.status));
   }
   return text.empty() ? "" : "Other than planned\n" + text;
 }

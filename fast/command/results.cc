@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 namespace touchstone::fast {
 
@@ -66,9 +65,7 @@ Run run_into_folder(const scene::Scene& scene, const std::filesystem::path& fold
   const scene::Stopwatch watch;
   ProgressLine progress(quiet);
   Run result = run(scene, [&](double fraction) {
-    char text[64];
-    std::snprintf(text, sizeof text, "fast: %3.0f %% of the track", 100.0 * fraction);
-    progress.show(text, fraction == 1.0);
+    progress.show(fmt::format("fast: {:3.0f} % of the track", 100.0 * fraction), fraction == 1.0);
   });
   progress.finish();
   manifest.times.push_back(watch.read("fast"));

@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <memory>
 #include <thread>
@@ -131,13 +130,10 @@ void read_shapes(const std::stop_token& stop, TripleBuffer<ShapeFrame>& shapes, 
 }
 
 std::string progress_text(const LoopProgress& progress, const LoopTime& time) {
-  char text[160];
   const std::int64_t ticks = progress.ticks.load(std::memory_order_relaxed);
   const std::int64_t missed = progress.missed.load(std::memory_order_relaxed);
-  std::snprintf(text, sizeof text, "live: %.1f s, %lld ticks, %lld missed, force %.3g N", time.time_s(ticks + missed),
-                static_cast<long long>(ticks), static_cast<long long>(missed),
-                progress.force_n.load(std::memory_order_relaxed));
-  return text;
+  return fmt::format("live: {:.1f} s, {} ticks, {} missed, force {:.3g} N", time.time_s(ticks + missed), ticks, missed,
+                     progress.force_n.load(std::memory_order_relaxed));
 }
 
 }  // namespace
@@ -258,9 +254,7 @@ scene::Figures figures(const LiveResult& result, const LiveOptions& options) {
       {"live.status", 0.0, fast::status_text(ledger.status), ""},
   };
   list.insert(list.end(), rest.begin(), rest.end());
-  char hash[20];
-  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(result.answer_hash));
-  list.push_back({"live.answer_hash", 0.0, hash, ""});
+  list.push_back({"live.answer_hash", 0.0, fmt::format("{:016x}", result.answer_hash), ""});
   if (result.replay) {
     list.push_back({"live.replay_compared", static_cast<double>(result.replay->compared), "", ""});
     list.push_back({"live.replay_unequal", static_cast<double>(result.replay->unequal), "", ""});

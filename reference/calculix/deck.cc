@@ -4,6 +4,8 @@
 #include "reference/run/model_choice.h"
 #include "reference/tool/tool_gap.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -461,11 +463,10 @@ std::vector<scene::Fault> unsupported_in_deck(const Scene& scene) {
   std::vector<scene::Fault> faults;
   const auto check = [&](const std::string& key, const scene::Material& material) {
     if (material.poissons_ratio <= largest_deck_poissons_ratio) return;
-    std::ostringstream text;
-    text << key << ": CalculiX needs a finite bulk modulus; expected at most " << largest_deck_poissons_ratio
-         << ", found " << material.poissons_ratio << "; --set " << key << '=' << largest_deck_poissons_ratio
-         << " writes the scene nearest to it";
-    faults.push_back({"", 0, 0, text.str()});
+    faults.push_back({"", 0, 0,
+                      fmt::format("{0}: CalculiX needs a finite bulk modulus; expected at most {1:g}, found {2:g}; "
+                                  "--set {0}={1:g} writes the scene nearest to it",
+                                  key, largest_deck_poissons_ratio, material.poissons_ratio)});
   };
   check("body.material.poissons_ratio", scene.body.material);
   for (std::size_t i = 0; i < scene.body.inclusions.size(); ++i) {

@@ -15,6 +15,7 @@
 #include "reference/run/store.h"
 #include "reference/run/uncertainty.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,7 +24,6 @@
 #include <memory>
 #include <new>
 #include <optional>
-#include <sstream>
 
 namespace touchstone::reference {
 namespace {
@@ -229,18 +229,17 @@ class Run {
     }
     result_.refinement.reached = small_enough(result_.force_uncertainty_rel) &&
                                  small_enough(result_.shape_uncertainty_rel) && solved_levels() >= fewest_levels;
-    std::ostringstream text;
     if (result_.refinement.reached) {
-      text << "force and shape are known to " << 100.0 * scene_.reference.error << " % after "
-           << meshes_text(solved_levels());
-      return stop_at(EndedBy::done, text.str());
+      return stop_at(EndedBy::done, fmt::format("force and shape are known to {:g} % after {}",
+                                                100.0 * scene_.reference.error, meshes_text(solved_levels())));
     }
     if (const Sensitivity* one = too_sensitive()) {
-      text << not_started(solved_levels()) << "finer meshes do not help, since " << one->part << ' ' << one->change
-           << " changes the force by " << number_text(100.0 * one->force_rel) << " % and the shape by "
-           << number_text(100.0 * one->shape_rel) << " %";
-      if (one->carries == Carries::first_order) text << "; more instants would";
-      return stop_at(EndedBy::sensitivity, text.str());
+      return stop_at(
+          EndedBy::sensitivity,
+          fmt::format(
+              "{}finer meshes do not help, since {} {} changes the force by {:.3g} % and the shape by {:.3g} %{}",
+              not_started(solved_levels()), one->part, one->change, 100.0 * one->force_rel, 100.0 * one->shape_rel,
+              one->carries == Carries::first_order ? "; more instants would" : ""));
     }
     return true;
   }
@@ -287,16 +286,9 @@ class Run {
     if (level == 0) {
       throw LimitReached("no answer, since mesh 1 is not finished: " + limit.why +
                          ". Allow more, or make the cells larger with reference.element_size_m (now " +
-                         number_text(element_size_m(scene_, choice_, 0)) + " m).");
+                         fmt::format("{:.3g} m).", element_size_m(scene_, choice_, 0)));
     }
     return stop_at(limit.by, not_started(level) + limit.why + (level < fewest_levels ? needs_more() : ""));
-  }
-
-  [[nodiscard]] static std::string number_text(double value) {
-    std::ostringstream text;
-    text.precision(3);
-    text << value;
-    return text.str();
   }
 
   [[nodiscard]] double memory_limit_bytes() const {
@@ -316,18 +308,18 @@ class Run {
     const int missing = missing_steps(store, level);
     if (missing == 0) return std::nullopt;
     const Cost needed = cost(unknowns_of(mesh), missing);
-    std::ostringstream text;
-    text << "its " << std::lround(unknowns_of(mesh)) << " unknowns would take about ";
+    const std::string its = fmt::format("its {} unknowns would take about ", std::lround(unknowns_of(mesh)));
     if (needed.memory_bytes > memory_limit_bytes()) {
-      text << memory_text(needed.memory_bytes) << " of memory, more than " << memory_text(memory_limit_bytes());
-      return Limit{EndedBy::memory, text.str()};
+      return Limit{EndedBy::memory, fmt::format("{}{} of memory, more than {}", its, memory_text(needed.memory_bytes),
+                                                memory_text(memory_limit_bytes()))};
     }
     const double needed_s = pace_.factor() * needed.seconds;
     if (needed_s > seconds_to_go()) {
-      text << duration_text(needed_s) << " for " << missing << (missing == 1 ? " load step" : " load steps")
-           << ", more than the " << duration_text(std::max(0.0, seconds_to_go())) << " left"
-           << all_meshes_text(level, needed_s, pace_.factor() * expected_after_s(level, mesh, store));
-      return Limit{EndedBy::time, text.str()};
+      return Limit{
+          EndedBy::time,
+          fmt::format("{}{} for {} load step{}, more than the {} left{}", its, duration_text(needed_s), missing,
+                      missing == 1 ? "" : "s", duration_text(std::max(0.0, seconds_to_go())),
+                      all_meshes_text(level, needed_s, pace_.factor() * expected_after_s(level, mesh, store)))};
     }
     return std::nullopt;
   }
@@ -335,11 +327,11 @@ class Run {
   /// That the time was up within a level, what is kept of it, and how long the rest probably takes.
   [[nodiscard]] std::string time_up_text(int level, const Mesh<dim>& mesh, const Store& store, int finished) const {
     const double mesh_s = pace_.factor() * cost(unknowns_of(mesh), missing_steps(store, level)).seconds;
-    std::ostringstream text;
-    text << "the time was up after " << finished << " of its " << count()
-         << " instants, which are kept; the next run goes on from there, and needs about " << duration_text(mesh_s)
-         << " for this mesh" << all_meshes_text(level, mesh_s, pace_.factor() * expected_after_s(level, mesh, store));
-    return text.str();
+    return fmt::format(
+        "the time was up after {} of its {} instants, which are kept; the next run goes on from there, and needs about "
+        "{} for this mesh{}",
+        finished, count(), duration_text(mesh_s),
+        all_meshes_text(level, mesh_s, pace_.factor() * expected_after_s(level, mesh, store)));
   }
 
   void take(int level, Level& answer) {
@@ -508,10 +500,8 @@ class Run {
       const Solved<dim> from = current ? *current : Solved<dim>{time_s - lead_s, problem.rest(), false};
       const AdvanceReport report =
           path.advance(before ? &*before : nullptr, from, time_s, solved, watch, [&](double failed_s) {
-            std::ostringstream note;
-            note << "load step halved at t = " << failed_s << " s";
             Progress halved = progress;
-            halved.note = note.str();
+            halved.note = fmt::format("load step halved at t = {:g} s", failed_s);
             show(halved);
           });
       step.newton_iterations += report.newton_iterations;
@@ -626,15 +616,14 @@ class Run {
 
   [[nodiscard]] std::string not_converged_text(int level, int instant, const AdvanceReport& report,
                                                const std::string& where) const {
-    std::ostringstream text;
-    text << "instant " << instant + 1 << " of " << count() << " (t = " << times_s_[instant] << " s, depth "
-         << depth_m(times_s_[instant]) << " m) did not converge on level " << level + 1 << ": " << report.last.trouble
-         << ", residual " << report.last.residual_rel
-         << " of the acting forces (asked: " << ContactProblem<dim>::force_tolerance
-         << "), stuck at t = " << report.stuck_time_s << " s after " << report.halvings << " halvings, " << where
-         << ". Finished steps are kept. Try a smaller reference.element_size_m (now "
-         << element_size_m(scene_, choice_, 0) << " m on the coarsest level), more instants, or less depth.";
-    return text.str();
+    return fmt::format(
+        "instant {} of {} (t = {:g} s, depth {:g} m) did not converge on level {}: {}, residual {:g} of the acting "
+        "forces "
+        "(asked: {:g}), stuck at t = {:g} s after {} halvings, {}. Finished steps are kept. Try a smaller "
+        "reference.element_size_m (now {:g} m on the coarsest level), more instants, or less depth.",
+        instant + 1, count(), times_s_[instant], depth_m(times_s_[instant]), level + 1, report.last.trouble,
+        report.last.residual_rel, ContactProblem<dim>::force_tolerance, report.stuck_time_s, report.halvings, where,
+        element_size_m(scene_, choice_, 0));
   }
 
   const Scene& scene_;

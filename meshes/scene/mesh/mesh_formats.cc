@@ -3,10 +3,11 @@
 #include "scene/base/error.h"
 #include "scene/mesh/triangle_mesh.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 
@@ -203,9 +204,7 @@ void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, doub
   for (Eigen::Index i = 0; i < mesh.points_m.cols(); ++i) {
     // Adding zero turns -0 into 0.
     const Vec3 p = (mesh.points_m.col(i) / unit_m * 1e5).array().round() / 1e5 + 0.0;
-    char line[120];
-    std::snprintf(line, sizeof line, "v %.10g %.10g %.10g\n", p.x(), p.y(), p.z());
-    out << line;
+    out << fmt::format("v {:.10g} {:.10g} {:.10g}\n", p.x(), p.y(), p.z());
   }
   for (const auto& [a, b, c] : mesh.triangles) out << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
   if (!out.flush()) fail(file.string(), "cannot be written");
