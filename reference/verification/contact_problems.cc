@@ -315,7 +315,7 @@ PressedBall press_half_ball(double radius_m, const Material& material, double de
 Findings pressed_ball(const Effort& effort) {
   constexpr double radius_m = 0.05, depth_m = 0.002;
   const Material material{20e9, 0.3};
-  const double E_star = contact_modulus_pa(material.youngs_modulus_pa, material.poissons_ratio);
+  const double E_star = material.contact_modulus_pa();
   const int meshes = effort.quick ? 3 : 4;
   // At the printed depth a/R is 0.2, at the others half and a quarter of it. Hertz is the limit of small load: that of
   // the parabola in a/R through the three.
