@@ -22,13 +22,6 @@ std::string dotted(std::string name) {
   return name;
 }
 
-void add_percentiles(scene::Figures& figures, const std::string& key, const fast::Percentiles& p) {
-  figures.push_back({key + ".p50", p.p50_us, "", "us"});
-  figures.push_back({key + ".p99", p.p99_us, "", "us"});
-  figures.push_back({key + ".p999", p.p999_us, "", "us"});
-  figures.push_back({key + ".max", p.max_us, "", "us"});
-}
-
 void add_case(scene::Figures& figures, const CaseResult& c) {
   const std::string key = "bench." + dotted(c.which.name());
   const auto add = [&](const char* name, double value, const char* unit) {
@@ -45,9 +38,9 @@ void add_case(scene::Figures& figures, const CaseResult& c) {
   add("regions_most", c.regions_most, "");
   add("points", c.points, "");
   add("setup_s", c.setup_s, "s");
-  add_percentiles(figures, key + ".step_us", c.step.wall);
-  add_percentiles(figures, key + ".floor_us", c.floor.wall);
-  add_percentiles(figures, key + ".force_us", c.force);
+  fast::add_figures(key + ".step_us", c.step.wall, figures);
+  fast::add_figures(key + ".floor_us", c.floor.wall, figures);
+  fast::add_figures(key + ".force_us", c.force, figures);
   add("step_cpu_us", c.step.cpu_us, "us");
   add("floor_cpu_us", c.floor.cpu_us, "us");
   add("over_floor", c.step_over_floor(), "");
@@ -55,7 +48,7 @@ void add_case(scene::Figures& figures, const CaseResult& c) {
   add("force_us_per_region", c.force_us_per_region(), "us");
   for (std::size_t s = 0; s < fast::stage_count; ++s) {
     if (c.stages[s].max_us > 0.0) {
-      add_percentiles(figures, key + ".stage." + fast::stage_names[s] + "_us", c.stages[s]);
+      fast::add_figures(key + ".stage." + fast::stage_names[s] + "_us", c.stages[s], figures);
       add(("stage." + std::string(fast::stage_names[s]) + "_over_floor").c_str(),
           ratio(c.stages[s].p50_us, c.floor.wall.p50_us), "");
     }
@@ -74,7 +67,7 @@ void add_peer(scene::Figures& figures, const PeerResult& p) {
   figures.push_back({key + ".status", 0.0, !p.sound ? "diverged" : !p.touching ? "not in contact" : "in contact", ""});
   if (!p.valid()) return;
   figures.push_back({key + ".ticks", static_cast<double>(p.ticks), "", ""});
-  add_percentiles(figures, key + ".step_us", p.step.wall);
+  fast::add_figures(key + ".step_us", p.step.wall, figures);
   figures.push_back({key + ".step_cpu_us", p.step.cpu_us, "", "us"});
   figures.push_back({key + ".over_step", p.over_step(), "", ""});
 }

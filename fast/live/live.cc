@@ -228,11 +228,7 @@ scene::Figures figures(const LiveResult& result, const LiveOptions& options) {
       {"live.missed", static_cast<double>(ledger.missed), "", ""},
   };
   const auto add = [&](const std::string& key, const fast::DurationHistogram& histogram) {
-    const fast::Percentiles p = histogram.percentiles();
-    list.push_back({key + ".p50", p.p50_us, "", "us"});
-    list.push_back({key + ".p99", p.p99_us, "", "us"});
-    list.push_back({key + ".p999", p.p999_us, "", "us"});
-    list.push_back({key + ".max", p.max_us, "", "us"});
+    fast::add_figures(key, histogram.percentiles(), list);
   };
   add("live.lateness_us", ledger.lateness);
   add("live.step_us", ledger.step);

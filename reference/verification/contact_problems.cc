@@ -61,6 +61,19 @@ double domain_part(HalfSpaceProblem problem) {
   return indent_half_space(problem).force_n / whole_n - 1.0;
 }
 
+/// Checks a quantity on successive meshes.
+void check(Findings& findings, const std::string& what, const char* unit, double exact, double limit,
+           const std::vector<HalfSpaceAnswer>& answers, const auto& value_of) {
+  findings.checks.push_back(from_levels(what, unit, exact, limit, values_of(answers, value_of)));
+}
+
+/// Checks the force and the radius of the contact's edge.
+void check_indentation(Findings& findings, const std::string& at, const Indentation& exact, double limit_of_force,
+                       double limit_of_radius, const std::vector<HalfSpaceAnswer>& answers) {
+  check(findings, "force, " + at, "N", exact.force_n, limit_of_force, answers, force_of);
+  check(findings, "contact radius, " + at, "m", exact.contact_radius_m, limit_of_radius, answers, radius_of);
+}
+
 std::string domain_note(const HalfSpaceProblem& problem, const Effort& effort, const std::string& what) {
   effort.tell(what + ", half the domain");
   return fmt::format(
@@ -136,12 +149,9 @@ Findings hertz_small(const Effort& effort) {
     const std::string at = fmt::format("nu = {:.3g}", nu);
     const auto answers = on_meshes(problem, meshes, effort, at);
     const Indentation exact = hertz(E_star_pa(nu), R_m, problem.depth_m);
-    findings.checks.push_back(
-        from_levels("force, " + at, "N", exact.force_n, limit_of_closed_form, values_of(answers, force_of)));
-    findings.checks.push_back(from_levels("contact radius, " + at, "m", exact.contact_radius_m, limit_of_edge,
-                                          values_of(answers, radius_of)));
-    findings.checks.push_back(from_levels("peak pressure, " + at, "Pa", hertz_peak_pressure_pa(exact),
-                                          limit_of_closed_form, values_of(answers, peak_of)));
+    check_indentation(findings, at, exact, limit_of_closed_form, limit_of_edge, answers);
+    check(findings, "peak pressure, " + at, "Pa", hertz_peak_pressure_pa(exact), limit_of_closed_form, answers,
+          peak_of);
     findings.notes.push_back(domain_note(problem, effort, at));
   }
   const Indentation ball = sneddon(1.0, 1.0, d_over_R), paraboloid = hertz(1.0, 1.0, d_over_R);
@@ -163,10 +173,7 @@ Findings sneddon_ball(const Effort& effort) {
       const std::string at = fmt::format("d/R = {:.3g}, nu = {:.3g}", d_over_R, nu);
       const auto answers = on_meshes(problem, meshes, effort, at);
       const Indentation exact = sneddon(E_star_pa(nu), R_m, problem.depth_m);
-      findings.checks.push_back(
-          from_levels("force, " + at, "N", exact.force_n, limit_of_closed_form, values_of(answers, force_of)));
-      findings.checks.push_back(from_levels("contact radius, " + at, "m", exact.contact_radius_m, limit_of_edge,
-                                            values_of(answers, radius_of)));
+      check_indentation(findings, at, exact, limit_of_closed_form, limit_of_edge, answers);
     }
   }
   findings.notes.push_back(mesh_note(meshes));
@@ -184,10 +191,7 @@ Findings hertz_finite(const Effort& effort) {
     const std::string at = fmt::format("nu = {:.3g}", nu);
     const auto answers = on_meshes(problem, meshes, effort, at);
     const Indentation exact = hertz(E_star_pa(nu), R_m, problem.depth_m);
-    findings.checks.push_back(
-        from_levels("force, " + at, "N", exact.force_n, limit_of_small_strain, values_of(answers, force_of)));
-    findings.checks.push_back(from_levels("contact radius, " + at, "m", exact.contact_radius_m, limit_of_edge,
-                                          values_of(answers, radius_of)));
+    check_indentation(findings, at, exact, limit_of_small_strain, limit_of_edge, answers);
     effort.tell(at + ", small strain");
     problem.kinematics = Kinematics::small;
     problem.level = meshes - 2;
@@ -208,13 +212,12 @@ Findings flat(const Effort& effort) {
     problem.radii_m = R_m * Eigen::Vector3d(1.5, 2.0, 5.0);
     const std::string at = fmt::format("nu = {:.3g}", nu);
     const auto answers = on_meshes(problem, meshes, effort, at);
-    findings.checks.push_back(from_levels("force, " + at, "N", flat_punch_force_n(E_star_pa(nu), R_m, problem.depth_m),
-                                          limit_of_table, values_of(answers, force_of)));
+    check(findings, "force, " + at, "N", flat_punch_force_n(E_star_pa(nu), R_m, problem.depth_m), limit_of_table,
+          answers, force_of);
     for (int k = 0; k < problem.radii_m.size(); ++k) {
-      findings.checks.push_back(
-          from_levels(fmt::format("settlement at r/a = {:.3g}, {}", problem.radii_m[k] / R_m, at), "m",
-                      flat_punch_settlement_m(R_m, problem.depth_m, problem.radii_m[k]), limit_of_table,
-                      values_of(answers, [k](const HalfSpaceAnswer& answer) { return answer.settlement_m[k]; })));
+      check(findings, fmt::format("settlement at r/a = {:.3g}, {}", problem.radii_m[k] / R_m, at), "m",
+            flat_punch_settlement_m(R_m, problem.depth_m, problem.radii_m[k]), limit_of_table, answers,
+            [k](const HalfSpaceAnswer& answer) { return answer.settlement_m[k]; });
     }
     findings.notes.push_back(domain_note(problem, effort, at));
   }
@@ -235,10 +238,7 @@ Findings rounded(const Effort& effort) {
       const HalfSpaceProblem problem{{E_pa, nu}, rounded_punch(R_m, fillet_m, exact.depth_m), exact.depth_m};
       const std::string at = fmt::format("a/R = {:.3g}, nu = {:.3g}", a_over_R, nu);
       const auto answers = on_meshes(problem, meshes, effort, at);
-      findings.checks.push_back(
-          from_levels("force, " + at, "N", exact.force_n, limit_of_closed_form, values_of(answers, force_of)));
-      findings.checks.push_back(
-          from_levels("contact radius, " + at, "m", a_over_R * R_m, limit_of_edge, values_of(answers, radius_of)));
+      check_indentation(findings, at, {exact.force_n, a_over_R * R_m}, limit_of_closed_form, limit_of_edge, answers);
     }
   }
   findings.notes.push_back(mesh_note(meshes) + " Finer in the fillet.");
@@ -256,18 +256,14 @@ Findings cones(const Effort& effort) {
     const HalfSpaceProblem problem{{E_pa, nu}, cone_punch(half_angle, 0.0, depth_m), depth_m};
     const auto answers = on_meshes(problem, meshes, effort, at);
     const Indentation exact = cone(E_star_pa(nu), half_angle, depth_m);
-    findings.checks.push_back(
-        from_levels("force, " + at, "N", exact.force_n, limit_of_table, values_of(answers, force_of)));
-    findings.checks.push_back(from_levels("contact radius, " + at, "m", exact.contact_radius_m, limit_of_table,
-                                          values_of(answers, radius_of)));
+    check_indentation(findings, at, exact, limit_of_table, limit_of_table, answers);
     // The same with a round tip, against its own closed form.
     const double tip_m = 0.2 * exact.contact_radius_m / std::cos(half_angle);
     double round_depth_m = 0.0;
     const Indentation round = rounded_cone(E_star_pa(nu), half_angle, tip_m, exact.contact_radius_m, round_depth_m);
     const HalfSpaceProblem blunt{{E_pa, nu}, cone_punch(half_angle, tip_m, round_depth_m), round_depth_m};
     const auto blunt_answers = on_meshes(blunt, meshes, effort, at + ", round tip");
-    findings.checks.push_back(from_levels("force, " + at + ", round tip", "N", round.force_n, limit_of_closed_form,
-                                          values_of(blunt_answers, force_of)));
+    check(findings, "force, " + at + ", round tip", "N", round.force_n, limit_of_closed_form, blunt_answers, force_of);
     findings.notes.push_back(
         fmt::format("{}: rounding the tip over a fifth of the contact's radius changes the force at that radius by "
                     "{:.3g} % and the depth by {:.3g} %.",
