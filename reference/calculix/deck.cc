@@ -3,6 +3,7 @@
 #include "reference/calculix/tool.h"
 #include "reference/run/model_choice.h"
 #include "reference/tool/tool_gap.h"
+#include "scene/base/in_space.h"
 
 #include <fmt/format.h>
 
@@ -285,12 +286,9 @@ class Writer {
     }
     set(deck_surface_set, nodes[Boundary::free]);
     deck_.surface_nodes.assign(nodes[Boundary::free].begin(), nodes[Boundary::free].end());
-    deck_.surface_points_m.setZero(3, static_cast<Eigen::Index>(deck_.surface_nodes.size()));
+    deck_.surface_points_m.resize(3, static_cast<Eigen::Index>(deck_.surface_nodes.size()));
     for (std::size_t k = 0; k < deck_.surface_nodes.size(); ++k) {
-      const Point place_m = mesh.points_m.col(deck_.surface_nodes[k] - 1);
-      deck_.surface_points_m(0, k) = place_m[0];
-      deck_.surface_points_m(2, k) = place_m[dim - 1];
-      if constexpr (dim == 3) deck_.surface_points_m(1, k) = place_m[1];
+      deck_.surface_points_m.col(k) = scene::in_space<dim>(mesh.points_m.col(deck_.surface_nodes[k] - 1));
     }
     text_ << "*BOUNDARY\n" << support_set << ", 1, " << dim << '\n';
     if (!nodes[Boundary::plane_x].empty()) text_ << "PLANE_X, 1, 1\n";
@@ -301,14 +299,6 @@ class Writer {
   void set(const std::string& name, const std::set<int>& nodes) {
     text_ << "*NSET, NSET=" << name << '\n';
     list(nodes);
-  }
-
-  [[nodiscard]] static Vec3 in_space(const Point& place_m) {
-    if constexpr (dim == 3) {
-      return place_m;
-    } else {
-      return {place_m[0], 0.0, place_m[1]};
-    }
   }
 
   /// Whether the tool ever comes as near to a place of the body at rest as it goes deep.
@@ -330,7 +320,7 @@ class Writer {
     for (const auto& face : mesh.faces) {
       if (face.boundary != Boundary::free) continue;
       if (std::none_of(face.nodes.begin(), face.nodes.end(),
-                       [&](int n) { return reached(in_space(mesh.points_m.col(n))); })) {
+                       [&](int n) { return reached(scene::in_space<dim>(mesh.points_m.col(n))); })) {
         continue;
       }
       const auto [cell, side] = sides.at(face.nodes[Mesh<dim>::nodes_per_face / 2]);

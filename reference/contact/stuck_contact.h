@@ -2,6 +2,7 @@
 #pragma once
 
 #include "reference/contact/contact_problem.h"
+#include "scene/base/in_space.h"
 
 #include <fmt/format.h>
 
@@ -32,11 +33,7 @@ std::string stuck_contact_text(const ContactProblem<dim>& problem, const State<d
   }
   const std::vector<ContactRegion> regions = problem.observe(state, region_gap_m).regions;
   if (worst < 0 || regions.empty()) return "no contact region has formed";
-  scene::Vec3 worst_m = scene::Vec3::Zero();
-  const Eigen::Matrix<double, dim, 1> place_m = mesh.points_m.col(worst) + state.u_m.col(worst);
-  worst_m[0] = place_m[0];
-  worst_m[2] = place_m[dim - 1];
-  if constexpr (dim == 3) worst_m[1] = place_m[1];
+  const scene::Vec3 worst_m = scene::in_space<dim>(mesh.points_m.col(worst) + state.u_m.col(worst));
   std::size_t nearest = 0;
   for (std::size_t r = 1; r < regions.size(); ++r) {
     if ((regions[r].center_m - worst_m).norm() < (regions[nearest].center_m - worst_m).norm()) nearest = r;
