@@ -618,8 +618,7 @@ class Run {
                                                const std::string& where) const {
     return fmt::format(
         "instant {} of {} (t = {:g} s, depth {:g} m) did not converge on level {}: {}, residual {:g} of the acting "
-        "forces "
-        "(asked: {:g}), stuck at t = {:g} s after {} halvings, {}. Finished steps are kept. Try a smaller "
+        "forces (asked: {:g}), stuck at t = {:g} s after {} halvings, {}. Finished steps are kept. Try a smaller "
         "reference.element_size_m (now {:g} m on the coarsest level), more instants, or less depth.",
         instant + 1, count(), times_s_[instant], depth_m(times_s_[instant]), level + 1, report.last.trouble,
         report.last.residual_rel, ContactProblem<dim>::force_tolerance, report.stuck_time_s, report.halvings, where,
