@@ -46,7 +46,7 @@ inline constexpr double near_the_line = -1.0;
 /// the depth what its change over that part and that of 1 / r make together.
 void set_shares(const scene::Vec3& d_T, RegionPoints& points) noexcept;
 
-/// F_i and d_i of the points [begin, begin + count). @param spread RegionPoints::spread
+/// F_i and d_i of the points [begin, begin + count). @tparam spread RegionPoints::spread
 template <bool spread>
 void point_forces(const DuffingLaw& law, const RegionPoints& points, double depth_scale, std::size_t begin,
                   std::size_t count, double* force_n, double* depth_m) noexcept;

@@ -71,7 +71,6 @@ Sides pressed(int instants, int triangles) {
                                    {}});
   }
   for (const double time_s : scene::instants_s(sides.scene)) {
-    const std::size_t t = sides.run.instants.size();
     scene::InstantRecord fast;
     scene::ReferenceInstant reference;
     fast.time_s = time_s;
