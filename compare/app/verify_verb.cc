@@ -193,13 +193,7 @@ std::string verify_html(const std::vector<ProblemRecord>& records, const scene::
     out += "</table></div>\n";
     for (const std::string& note : record.findings.notes) out += tag("p", note, "class=\"dim\"") + "\n";
   }
-  out += tag("h2", "How this was made") + "\n<div class=\"scroll\"><table>\n";
-  const auto row = [&](const std::string& name, const std::string& value) {
-    out += "<tr>" + tag("th", name) + cell(value) + "</tr>\n";
-  };
-  row("command", manifest.command);
-  for (const auto& [name, value] : manifest.entries) row(name, value);
-  for (const scene::StageTime& time : manifest.times) row("time, " + time.stage, quantity_text(time.wall_s, "s"));
+  out += tag("h2", "How this was made") + "\n<div class=\"scroll\"><table>\n" + origin_rows(manifest);
   return page(title, out + "</table></div>\n");
 }
 

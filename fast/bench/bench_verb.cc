@@ -4,6 +4,8 @@
 #include "fast/command/progress_line.h"
 #include "scene/output/results.h"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <iostream>
 
@@ -14,9 +16,7 @@ namespace {
 std::string load_average() {
   double load = 0.0;
   if (getloadavg(&load, 1) != 1) return "unknown";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f", load);
-  return text;
+  return fmt::format("{:.2f}", load);
 }
 
 }  // namespace

@@ -6,23 +6,24 @@
 #include "scene/base/error.h"
 #include "scene/base/nearest_name.h"
 
+#include <fmt/format.h>
+
 #include <iostream>
 #include <memory>
-#include <sstream>
 
 namespace touchstone::live {
 namespace {
 
 /// What to type for this run again.
 std::string command_line(const fast::VerbOptions& options, const LiveOptions& live, const std::string& command) {
-  std::ostringstream text;
-  text << command << ' ' << fast::shell_word(options.scene_file.string()) << " --device " << name_of(live.device);
-  for (const std::string& setting : options.overrides) text << " --set " << fast::shell_word(setting);
-  if (live.seconds) text << " --seconds " << *live.seconds;
-  if (live.rate_hz) text << " --rate " << *live.rate_hz;
-  if (!live.log.empty()) text << " --log " << fast::shell_word(live.log.string());
-  if (live.scheduling.processor) text << " --processor " << *live.scheduling.processor;
-  return text.str();
+  std::string text =
+      fmt::format("{} {} --device {}", command, fast::shell_word(options.scene_file.string()), name_of(live.device));
+  for (const std::string& setting : options.overrides) text += " --set " + fast::shell_word(setting);
+  if (live.seconds) text += fmt::format(" --seconds {:g}", *live.seconds);
+  if (live.rate_hz) text += fmt::format(" --rate {}", *live.rate_hz);
+  if (!live.log.empty()) text += " --log " + fast::shell_word(live.log.string());
+  if (live.scheduling.processor) text += fmt::format(" --processor {}", *live.scheduling.processor);
+  return text;
 }
 
 }  // namespace

@@ -1,10 +1,13 @@
 // Text from outside: what is UTF-8, and how it is shown in a message or written in a file without escaping from it.
-// Numbers as they are written.
+// Numbers as they are written and read.
 #pragma once
 
+#include <charconv>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace touchstone::scene {
 
@@ -36,6 +39,14 @@ inline constexpr std::size_t faults_shown_max = 40;
 
 /// Shortest text that reads back as the same double and is a TOML float.
 [[nodiscard]] std::string number_text(double value);
+
+/// The number that the whole text is, in the C locale and without blanks; nothing where it is none or out of range.
+template <class Number>
+[[nodiscard]] std::optional<Number> parsed(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
 
 /// The number that is written with so many significant digits.
 [[nodiscard]] double rounded(double value, int digits);

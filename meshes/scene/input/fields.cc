@@ -6,7 +6,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 
 namespace touchstone::scene {
@@ -52,11 +51,7 @@ std::vector<Field<T>> solid_fields(const std::array<std::string_view, 6>& keys, 
 }
 
 /// A default need not be more exact, and reads better.
-double three_digits(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return std::strtod(text.data(), nullptr);
-}
+double three_digits(double value) { return rounded(value, 3); }
 
 Solid& solid_of(Scene& scene) { return scene.body; }
 Solid& solid_of(Inclusion& inclusion) { return inclusion; }
