@@ -40,7 +40,7 @@ Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
 
 FastModel::FastModel(const scene::Scene& scene)
     : body(scene::body_shape(scene.body)),
-      detection(detection_for(scene.body.shape)),
+      detection(detection_for(*body)),
       tool(samples_of(scene)),
       law(scene.contact),
       friction(scene.contact.friction ? std::optional<FrictionLaw>(*scene.contact.friction) : std::nullopt),

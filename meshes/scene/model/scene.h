@@ -4,8 +4,7 @@
 
 #include "scene/base/frames.h"
 #include "scene/mesh/triangle_mesh.h"
-#include "scene/shape/revolution.h"
-#include "scene/shape/shape.h"
+#include "scene/shape/solids.h"
 #include "scene/shape/surface.h"
 
 #include <cstdint>
