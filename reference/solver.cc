@@ -140,7 +140,7 @@ scene::Plan plan(const Scene& scene) {
   }
   add("several contact regions", !scene.tool.convex(),
       scene.tool.convex() ? "a convex tool touches a convex body once"
-                          : "touching nodes nearer than fast.r_th_m, or of one cell face, are one region");
+                          : "touching nodes nearer than contact.r_th_m, or of one cell face, are one region");
   add_tool_line(scene, add);
   const std::size_t inclusions = scene.body.inclusions.size();
   if (inclusions == 0) {

@@ -221,17 +221,16 @@ int verify(const VerifyOptions& options, const std::string& command, const std::
   return std::ranges::all_of(records, &ProblemRecord::passes) ? fast::done : fast::answer_is_no;
 }
 
-void add_verify_verb(CLI::App& app, VerifyOptions& options, int& exit_code) {
-  const std::string program = app.get_name();
-  CLI::App* verb =
-      app.add_subcommand("verify", "the reference against closed forms and published benchmarks; exit 1 on a miss");
-  verb->add_option("NAME", options.names, "problems to run (default all)");
-  verb->add_flag("--quick", options.quick, "about a minute: one mesh fewer, and the dearest cases left out");
-  verb->add_flag("--list", options.list, "names and sources of the problems, nothing is run");
-  verb->add_option("--out", options.out, "result folder")->capture_default_str();
-  verb->add_flag("--quiet", options.quiet, "no progress, only results and errors");
-  verb->footer("Example:\n  " + program + " verify hertz sneddon --quick");
-  verb->callback([&options, &exit_code, program] { exit_code = verify(options, program + " verify"); });
+void add_verify_verb(fast::Command& program, VerifyOptions& options) {
+  fast::Command verb =
+      program.add("verify", "the reference against closed forms and published benchmarks; exit 1 on a miss");
+  verb.option("NAME", options.names, "problems to run (default all)");
+  verb.flag("--quick", options.quick, "about a minute: one mesh fewer, and the dearest cases left out");
+  verb.flag("--list", options.list, "names and sources of the problems, nothing is run");
+  verb.option("--out", options.out, "result folder").shows_default();
+  verb.flag("--quiet", options.quiet, "no progress, only results and errors");
+  verb.example("verify hertz sneddon --quick");
+  verb.action([&options, name = program.program_name()] { return verify(options, name + " verify"); });
 }
 
 }  // namespace touchstone::compare

@@ -3,13 +3,11 @@
 #include "compare/errors/contact_errors.h"
 #include "compare/errors/moved_surface.h"
 #include "reference/tool/tool_distance.h"
-#include "scene/shape/revolution.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 #include <stdexcept>
 
@@ -94,20 +92,8 @@ std::vector<scene::Vec3> contact_points_m(const scene::Shape& body,
 std::vector<int> faces_of_patches(const scene::Shape& body, const scene::Surface& surface) {
   std::vector<int> face(static_cast<std::size_t>(body.patch_count()));
   if (surface.patch_begin.size() != face.size() + 1) return {};
-  if (dynamic_cast<const scene::Box*>(&body) != nullptr) {
-    std::iota(face.begin(), face.end(), 0);
-    return face;
-  }
-  const auto* revolution = dynamic_cast<const scene::Revolution*>(&body);
-  if (revolution == nullptr) return {};
-  int faces = 1;
-  for (int piece = 0; piece < revolution->piece_count(); ++piece) {
-    const scene::RevolutionPiece& here = revolution->piece(piece);
-    constexpr double edge_rad = 1e-6;
-    if (piece > 0 && std::abs(here.start_angle - revolution->piece(piece - 1).end_angle) > edge_rad) ++faces;
-    std::fill_n(face.begin() + here.first_patch, here.patch_count(), faces - 1);
-  }
-  return faces > 1 ? face : std::vector<int>();
+  for (std::size_t patch = 0; patch < face.size(); ++patch) face[patch] = body.face_of(static_cast<int>(patch));
+  return std::any_of(face.begin(), face.end(), [](int f) { return f > 0; }) ? face : std::vector<int>();
 }
 
 /// Rest points of the faces that are nowhere touched at any instant; empty where the body has one face only.

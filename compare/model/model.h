@@ -61,9 +61,9 @@ class ContactModel {
 
 /// A model by name: what the registry holds.
 struct ModelEntry {
-  std::string name;   ///< "corrected skeleton, 4k triangles"
-  std::string key;    ///< of summary.json: "corrected-4k"
-  std::string label;  ///< short, for the plot
+  std::string name;     ///< "corrected skeleton, 4k triangles"
+  std::string key;      ///< of summary.json: "corrected-4k"
+  std::string label{};  ///< short, for the plot
   ModelFamily family = ModelFamily::other;
   /// @throws Unavailable
   std::function<std::unique_ptr<ContactModel>(const scene::Scene&)> set_up{};

@@ -13,7 +13,7 @@ namespace touchstone::compare {
 
 /// One model's row. Errors are those of Errors, with the reference's uncertainty.
 struct JudgedModel {
-  std::string key;     ///< in summary.json: model.<key>.force.nrmse and so on
+  std::string key;     ///< in summary.json: `model.<key>.force.nrmse` and so on
   std::string name;    ///< "paper as printed"
   std::string method;  ///< law and skeleton, "Duffing, published"
   Measure force_nrmse, shape_rel_l2;
@@ -38,7 +38,7 @@ struct JudgedModel {
 /// The table for a page.
 [[nodiscard]] std::string model_table_html(const std::vector<JudgedModel>& models);
 
-/// model.<key>.force.nrmse, .shape.rel_l2 with their uncertainty, .step_us.p50.
+/// `model.<key>.force.nrmse`, .shape.rel_l2 with their uncertainty, .step_us.p50.
 [[nodiscard]] scene::Figures model_figures(const std::vector<JudgedModel>& models);
 
 }  // namespace touchstone::compare

@@ -20,9 +20,9 @@ namespace touchstone::compare {
 
 /// One model at one size. NaN: not known.
 struct TradeRow {
-  std::string name;   ///< "corrected, 4k triangles"
-  std::string key;    ///< of summary.json: "corrected-4k"
-  std::string label;  ///< short, for the plot
+  std::string name;     ///< "corrected, 4k triangles"
+  std::string key;      ///< of summary.json: "corrected-4k"
+  std::string label{};  ///< short, for the plot
   ModelFamily family = ModelFamily::paper;
   std::string absent{};  ///< why there is nothing to measure; empty where there is
   std::string note{};    ///< what a reader must know to compare it
@@ -82,7 +82,7 @@ struct TradeOptions {
 /// The plot: time of a step over both errors, the fronts drawn, the points named.
 [[nodiscard]] std::string trade_svg(const Trade& trade);
 
-/// By stable dotted keys: trade.<row>.<figure>, trade.front_force and trade.front_shape.
+/// By stable dotted keys: `trade.<row>.<figure>`, trade.front_force and trade.front_shape.
 [[nodiscard]] scene::Figures trade_figures(const Trade& trade);
 
 /// trade.csv, trade.svg, summary.json, report.html, manifest.json. @throws std::filesystem::filesystem_error

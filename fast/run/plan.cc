@@ -119,9 +119,9 @@ scene::Plan plan(const scene::Scene& scene) {
            fmt::format(
                "the tool's mesh is not convex: up to {}, {} at the track's instants, told apart at {:.3g} mm; each "
                "meets the body as the earlier ones left it",
-               model.max_regions, measured.regions, scene.fast.r_th_m * 1e3) +
-               (scene.fast.r_th_m < 2.0 * model.tool.spacing_m
-                    ? "; ONE CONTACT MAY FALL INTO SEVERAL: fast.r_th_m is less than twice the distance between " +
+               model.max_regions, measured.regions, scene.contact.r_th_m * 1e3) +
+               (scene.contact.r_th_m < 2.0 * model.tool.spacing_m
+                    ? "; ONE CONTACT MAY FALL INTO SEVERAL: contact.r_th_m is less than twice the distance between " +
                           elements + "; raise fast.tool_samples"
                     : ""),
            measured.cost({Stage::regions}));

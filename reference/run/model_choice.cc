@@ -32,7 +32,7 @@ void expect_contacts(const Scene& scene, ModelChoice& choice) {
     const scene::Pose pose = scene::pose_at(scene.track, time_s);
     std::vector<ContactPatch> now;
     if (points) {
-      now = contact_patches(*body, *points, pose, scene.fast.r_th_m);
+      now = contact_patches(*body, *points, pose, scene.contact.r_th_m);
     } else if (const double depth_m = scene::rest_depth_m(*body, scene.tool, pose); depth_m > 0.0) {
       const Vec3 center_m = pose.position_m - pose.orientation * scene.tool.mass_center_m.value_or(Vec3::Zero());
       const scene::SurfaceQuery nearest = body->query(center_m);

@@ -402,7 +402,7 @@ class Run {
                                                            [](double depth_m) { return depth_m > 0.0; }));
         if (!problem) {
           problem.emplace(mesh, scene_.body.material, scene_.reference.kinematics, choice_.mirror_x, choice_.mirror_y);
-          if (scene_.contact.friction) problem->set_friction(*scene_.contact.friction, scene_.fast.r_th_m);
+          if (scene_.contact.friction) problem->set_friction(*scene_.contact.friction, scene_.contact.r_th_m);
           if (level > 0 && !scene_.contact.friction) prolongation.emplace(*coarser_, mesh);
           ahead.later_s = expected_after_s(level, mesh, store);
           show({.level = level + 1,
@@ -507,12 +507,12 @@ class Run {
       step.halvings = report.halvings;
       step.indefinite += report.indefinite;
       if (!report.converged) {
-        const std::string where = stuck_contact_text(problem, path.stuck()->state, scene_.fast.r_th_m);
+        const std::string where = stuck_contact_text(problem, path.stuck()->state, scene_.contact.r_th_m);
         throw NotConverged(not_converged_text(level, instant, report, where));
       }
     }
     if (solved.touching) {
-      step.seen = problem.observe(solved.state, scene_.fast.r_th_m);
+      step.seen = problem.observe(solved.state, scene_.contact.r_th_m);
       step.linear_solver = problem.linear_solver();
     }
     step.wall_s = begin.wall_s();

@@ -86,7 +86,7 @@ class Repeat {
     const scene::Scene& scene = given_.scene;
     ContactProblem<dim> problem(mesh, scene.body.material, scene.reference.kinematics, given_.choice.mirror_x,
                                 given_.choice.mirror_y, ranks::threads(), change.numerics);
-    if (scene.contact.friction) problem.set_friction(*scene.contact.friction, scene.fast.r_th_m);
+    if (scene.contact.friction) problem.set_friction(*scene.contact.friction, scene.contact.r_th_m);
     const auto tool = change.tool ? change.tool() : given_.choice.tool;
     const auto tool_anywhere = [&](double time_s) { return RigidTool<dim>(tool, scene::pose_at(scene.track, time_s)); };
     LoadPath<dim> path(
@@ -140,7 +140,7 @@ class Repeat {
       throw NotConverged(std::string("the sensitivity to the ") + change.part +
                          " did not converge: " + report.last.trouble);
     }
-    step.seen = problem.observe(solved.state, scene.fast.r_th_m);
+    step.seen = problem.observe(solved.state, scene.contact.r_th_m);
     step.unknowns = problem.unknowns();
     step.linear_solver = problem.linear_solver();
     step.wall_s = time.wall_s();

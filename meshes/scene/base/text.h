@@ -20,8 +20,8 @@ namespace touchstone::scene {
 /// A text that a title or a file name may be: UTF-8 without control characters but tab and line feed.
 [[nodiscard]] bool is_plain_text(std::string_view text) noexcept;
 
-/// The text with control characters and bytes that are no UTF-8 made visible, as \n, \u001b or \xff: no terminal acts
-/// on it and no line breaks.
+/// The text with control characters and bytes that are no UTF-8 made visible, as `\n`, `\u001b` or `\xff`: no terminal
+/// acts on it and no line breaks.
 [[nodiscard]] std::string visible(std::string_view text);
 
 /// Faults that one message shows at most.

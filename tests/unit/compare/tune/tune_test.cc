@@ -16,6 +16,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 #include <tuple>
 
 namespace touchstone::compare {
@@ -137,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Replay, AnotherClusterDistanceIsNotTheRecordedOne) {
   const scene::Scene scene = coarse("mallet-tail-on-cube");
   scene::Scene finer = scene;
-  finer.fast.r_th_m = 0.0005;
+  finer.contact.r_th_m = 0.0005;
   fast::Replay replay(scene);
   ASSERT_TRUE(replay.recorded());
   const std::vector<Vec3> force_n = replay.forces_n(finer);
@@ -268,6 +269,51 @@ TEST(Tune, RefusesAContactWithoutAnInstantThatCounts) {
   TuningStudy asked = study({free("contact.k1_n_per_m", 1e1, 1e5)});
   asked.held_out[0].depth_m = {0.1, 1.0};
   EXPECT_THROW((void)tune(asked, made_with({})), scene::InputError);
+}
+
+/// A model with one value found by the fit of one contact.
+std::string parameters_with(const std::string& scene, const std::string& key, double value) {
+  Tuning tuning{study({}), {}, {}};
+  for (const std::string& name : {std::string("ball-on-cube-press"), scene})
+    tuning.data.push_back({{name, "", scene::load_scene(scenes + name + ".toml"), {}}, {}, {}, {}});
+  TunedModel model;
+  StageFit& stage = model.stages.emplace_back();
+  stage.parameters = {free(key, 0.1, 10.0)};
+  stage.fit.value = Eigen::VectorXd::Constant(1, value);
+  return parameters_toml(tuning, model);
+}
+
+TEST(Parameters, HoldTheModelItsLawAndWhatWasTuned) {
+  const std::string force = parameters_with("hertz-sphere", "contact.omega0_squared_per_s2", 7.0);
+  EXPECT_THAT(force, HasSubstr("\n\n[contact]\nlaw = \"duffing\"\nk1_n_per_m = 7.0\nk3_n_per_m3 = 3e+08\n\n[fast]\n"
+                               "formulation = \"corrected\"\n"));
+  EXPECT_THAT(force, ::testing::Not(HasSubstr("reference reads")));
+  // Friction's table is whole, with the values of a contact that has it.
+  const std::string friction = parameters_with("ball-on-cube-slide", "contact.friction.stiffness_ratio", 0.5);
+  EXPECT_THAT(friction, HasSubstr("\n[contact.friction]\nK = 1.0\nbeta = 0.75\nmu_D = 0.5\nstiffness_ratio = 0.5\n"));
+  EXPECT_THAT(friction, HasSubstr("# The reference reads contact.friction.K, contact.friction.beta, "
+                                  "contact.friction.mu_D too"));
+}
+
+TEST(Parameters, TakenOverLeaveTheStoredReferenceValidButForFrictionsLimits) {
+  const testing::TemporaryFolder folder;
+  std::set<std::string_view> stale;
+  for (const char* name : {"ball-on-cube-slide", "mallet-tail-on-cube", "compass-two-pins"}) {
+    const scene::Scene scene = scene::load_scene(scenes + name + ".toml");
+    for (const auto& field : scene::scene_fields()) {
+      if (!field.tunable || field.tunable->stage == scene::TuningStage::model || !scene::applies(field, scene))
+        continue;
+      scene::Scene taken = scene;
+      set_parameter(taken, std::string(field.key), 0.9);
+      EXPECT_NE(scene::scene_hash(taken), scene::scene_hash(scene)) << field.key;
+      if (reference::content_key(taken) != reference::content_key(scene)) stale.insert(field.key);
+    }
+  }
+  EXPECT_THAT(stale, ::testing::ElementsAre("contact.friction.K", "contact.friction.beta", "contact.friction.mu_D"));
+  const scene::Scene press = scene::load_scene(scenes + "ball-on-cube-press.toml");
+  const scene::Scene tuned = with_parameters(press, source_folder() + "/meshes/parameters/ball-on-cube.toml");
+  EXPECT_NE(scene::scene_hash(tuned), scene::scene_hash(press));
+  EXPECT_EQ(reference::content_key(tuned), reference::content_key(press));
 }
 
 TEST(Tune, LeavesAFolderWhoseParametersASceneTakesOver) {
