@@ -1,5 +1,6 @@
 #include "fast/run/run.h"
 #include "fast/step/engine.h"
+#include "scene/base/index.h"
 #include "scene/model/rest_depth.h"
 
 #include <algorithm>
@@ -27,7 +28,7 @@ struct Measured {
 
   [[nodiscard]] std::string cost(std::initializer_list<Stage> stages) const {
     double sum_us = 0.0;
-    for (const Stage stage : stages) sum_us += stage_us[static_cast<std::size_t>(stage)];
+    for (const Stage stage : stages) sum_us += nth(stage_us, stage);
     return contact ? text("%.2f us a tick, measured", sum_us) : "no contact at the track's instants";
   }
 };
@@ -70,8 +71,7 @@ Measured measure(const scene::Scene& scene, Engine& engine) {
   for (std::size_t s = 0; s < stage_count; ++s) measured.stage_us[s] = median(stage_us[s]);
   measured.step_us = median(step_us);
   measured.contact = state.in_contact();
-  for (int i = 0; i < state.region_count; ++i)
-    measured.points += state.regions[static_cast<std::size_t>(i)].points.count;
+  for (int i = 0; i < state.region_count; ++i) measured.points += nth(state.regions, i).points.count;
   return measured;
 }
 
