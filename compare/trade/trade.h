@@ -5,7 +5,7 @@
 #include "compare/errors/errors.h"
 #include "compare/input/tuning_study.h"
 #include "compare/model/registry.h"
-#include "compare/tune/tune.h"
+#include "compare/tune/tuning.h"
 #include "reference/solver.h"
 #include "scene/output/results.h"
 
