@@ -97,7 +97,7 @@ std::vector<int> faces_of_patches(const scene::Shape& body, const scene::Surface
 }
 
 /// Rest points of the faces that are nowhere touched at any instant; empty where the body has one face only.
-std::vector<bool> on_side_faces(scene::BodyShape kind, const scene::Shape& body, const scene::Surface& surface,
+std::vector<bool> on_side_faces(const scene::Shape& body, const scene::Surface& surface,
                                 const std::vector<scene::ReferenceInstant>& reference, const Errors& errors) {
   const std::vector<int> face = faces_of_patches(body, surface);
   if (face.empty()) return {};
@@ -124,7 +124,7 @@ void compare_shapes(const scene::Scene& scene, const scene::Answer& answer,
   const Eigen::Index points = surface.points_m.cols();
   const double rest_m3 = enclosed_volume_m3(surface, Eigen::Matrix3Xd::Zero(3, points));
 
-  const std::vector<bool> on_side = on_side_faces(scene.body.shape, *body, surface, reference, errors);
+  const std::vector<bool> on_side = on_side_faces(*body, surface, reference, errors);
   SquareSums all, inside, outside, side;
   double normals2 = 0.0, normals_area_m2 = 0.0;
   double uncertainty_max_m = 0.0, hausdorff_max_m = 0.0, max_over_depth = 0.0, uncertainty_over_depth = 0.0;

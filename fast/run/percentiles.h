@@ -19,7 +19,7 @@ struct Percentiles {
 
 [[nodiscard]] Percentiles percentiles(std::vector<double> sample_us);
 
-/// <key>.p50, .p99, .p999 and .max.
+/// `<key>.p50`, .p99, .p999 and .max.
 void add_figures(const std::string& key, const Percentiles& percentiles, scene::Figures& figures);
 
 }  // namespace touchstone::fast

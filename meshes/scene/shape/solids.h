@@ -22,7 +22,7 @@ Result as_solid(const Shape& shape, const Use& use, SolidList<Bodies...>) {
 }
 }  // namespace detail
 
-/// What `use` gives for the class of the shape, as in use.template operator()<Box>(); Result{} for none of the list.
+/// What `use` gives for the class of the shape, as in `use.template operator()<Box>()`; Result{} for none of the list.
 template <class Result, class Use>
 [[nodiscard]] Result as_solid(const Shape& shape, const Use& use) {
   return detail::as_solid<Result>(shape, use, Solids{});
