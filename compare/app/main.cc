@@ -93,14 +93,18 @@ int run_program(int argc, char** argv) {
                       "meshes/scenes/hertz-sphere.toml --error 0.005", compare::run_reference);
   add_reference(solved);
   add_require_error(solved);
-  std::filesystem::path parameters;
-  bool plots = false;
+  compare::CompareOptions compare_options;
   CLI::App* compared = add_with_folder(
       "compare", "both sides, then force and shape errors: tables, VTK, report",
       "meshes/scenes/ball-on-cube-press.toml --set tool.radius_m=0.008 --error 0.02",
-      [&](const auto& given, const auto& asked) { return compare::run_compare(given, asked, parameters, plots); });
-  compared->add_option("--parameters", parameters, "file that tune left, for the fast side alone");
-  compared->add_flag("--plots", plots, "every plot of the report also as SVG and PDF, in the folder's plots/");
+      [&](const auto& given, const auto& asked) { return compare::run_compare(given, asked, compare_options); });
+  compared->add_option("--parameters", compare_options.parameters, "file that tune left, for the fast side alone");
+  compared
+      ->add_option("--model", compare_options.models,
+                   "another model for the table, by its key in a trade, such as compliance-1; may be repeated")
+      ->allow_extra_args(false);
+  compared->add_flag("--plots", compare_options.plots,
+                     "every plot of the report also as SVG and PDF, in the folder's plots/");
   add_reference(compared);
   add_require_error(compared);
   compare::StudyOptions study_options;

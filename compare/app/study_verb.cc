@@ -60,7 +60,7 @@ int run_verb(const StudyOptions& options) {
     reference.store = options.store;
     if (manifest.run == "fast") return run_fast(verb, reference);
     if (manifest.run == "reference") return run_reference(verb, reference);
-    return run_compare(verb, reference, {});
+    return run_compare(verb, reference);
   };
   const int count = static_cast<int>(manifest.cases.size());
   const CaseRange range =

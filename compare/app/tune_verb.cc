@@ -2,6 +2,7 @@
 
 #include "compare/format/text.h"
 #include "compare/tune/tune.h"
+#include "compare/tune/tune_results.h"
 #include "scene/output/results.h"
 
 #include <fmt/format.h>

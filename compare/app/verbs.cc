@@ -2,6 +2,7 @@
 
 #include "compare/comparison/compare.h"
 #include "compare/input/tuning_study.h"
+#include "compare/model/skeleton_model.h"
 #include "compare/report/fast_report.h"
 #include "compare/report/plot_files.h"
 #include "compare/report/vtk_out.h"
@@ -70,18 +71,20 @@ int run_reference(const fast::VerbOptions& options, const ReferenceOptions& refe
   });
 }
 
-int run_compare(const fast::VerbOptions& options, const ReferenceOptions& reference,
-                const std::filesystem::path& parameters, bool plots) {
+int run_compare(const fast::VerbOptions& options, const ReferenceOptions& reference, const CompareOptions& more) {
+  const std::filesystem::path& parameters = more.parameters;
   const scene::Scene given = asked(options.load(), reference);
   refuse(reference::unsupported(given));
   const scene::Scene scene = parameters.empty() ? given : with_parameters(given, parameters);
+  const Contenders judged = contenders(
+      given, parameters.empty() ? std::vector<std::filesystem::path>{} : std::vector{parameters}, more.models);
   const std::filesystem::path folder = options.folder(scene, "compare");
   const scene::FolderLock lock = scene::prepare_result_folder(folder);
-  const Call call{options.scene_file, options.overrides, reference, parameters, folder};
+  const Call call{options.scene_file, options.overrides, reference, parameters, folder, more.models};
   return with_reference_exits([&] {
     scene::Manifest manifest = scene::make_manifest(scene, "touchstone compare");
     const scene::Stopwatch fast_watch;
-    const fast::Run run = fast::run(scene);
+    const fast::Run run = fast_model().set_up(scene)->track().value();
     manifest.times.push_back(fast_watch.read("fast"));
     const scene::Stopwatch reference_watch;
     const reference::Result result = solve_with_progress(given, run.surface, reference, options.quiet);
@@ -90,9 +93,8 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
     manifest.entries.emplace_back("linear_solver", result.linear_solver);
     manifest.entries.emplace_back("reference_key", result.key);
     manifest.entries.emplace_back("command_line", command_text(call, ""));
-    const Comparison comparison =
-        write_comparison(folder, scene, run, result, manifest, call, plots, parameters.empty() ? nullptr : &given);
-    if (plots) {
+    const Comparison comparison = write_comparison(folder, scene, run, result, manifest, judged, call, more.plots);
+    if (more.plots) {
       std::cout << "Plots: " << (folder / "plots").string() << " (SVG"
                 << (has_pdf() ? " and PDF" : "; PDF needs a build with librsvg, Debian's librsvg2-dev") << ")\n";
     }

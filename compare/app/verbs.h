@@ -5,6 +5,8 @@
 #include "fast/command/command_line.h"
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace touchstone::compare {
 
@@ -12,9 +14,13 @@ namespace touchstone::compare {
 int plan(const fast::VerbOptions& options, const ReferenceOptions& reference);
 int run_fast(const fast::VerbOptions& options, const ReferenceOptions& reference);
 int run_reference(const fast::VerbOptions& options, const ReferenceOptions& reference);
-/// @param parameters  file that `tune` leaves, or empty; for the fast side alone, the reference keeps the scene's own
-/// @param plots  also every plot of the report as files
-int run_compare(const fast::VerbOptions& options, const ReferenceOptions& reference,
-                const std::filesystem::path& parameters, bool plots = false);
+
+struct CompareOptions {
+  std::filesystem::path
+      parameters{};                   ///< that `tune` leaves, or empty; for the models, the reference keeps the scene's
+  std::vector<std::string> models{};  ///< keys of further ones, for the table
+  bool plots = false;                 ///< also every plot of the report as files
+};
+int run_compare(const fast::VerbOptions& options, const ReferenceOptions& reference, const CompareOptions& more = {});
 
 }  // namespace touchstone::compare

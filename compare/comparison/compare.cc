@@ -3,12 +3,14 @@
 #include "compare/errors/compute_errors.h"
 #include "compare/errors/figures.h"
 #include "compare/format/svg_plot.h"
+#include "compare/model/skeleton_model.h"
 #include "compare/report/comparison_drawings.h"
 #include "compare/report/model_table.h"
 #include "compare/report/plot_files.h"
 #include "compare/report/report.h"
 #include "compare/report/verdict.h"
 #include "compare/report/vtk_out.h"
+#include "fast/command/results.h"
 
 #include <limits>
 
@@ -45,15 +47,19 @@ std::vector<scene::Column> curve_columns(const fast::Run& run, const reference::
 }
 
 Comparison write_comparison(const std::filesystem::path& folder, const scene::Scene& scene, const fast::Run& run,
-                            const reference::Result& result, const scene::Manifest& manifest, const Call& call,
-                            bool plots, const scene::Scene* given) {
+                            const reference::Result& result, const scene::Manifest& manifest,
+                            const Contenders& contenders, const Call& call, bool plots) {
   const Errors errors = compute_errors(scene, run, result.instants);
   const Plans plans{fast::plan(scene), reference::plan(scene)};
   const Verdict told = verdict(scene, run, result, errors, call);
-  const std::vector<JudgedModel> models = judge_models(given != nullptr ? *given : scene, scene, run, errors, result,
-                                                       given != nullptr ? call.parameters.filename().string() : "");
+  const std::vector<JudgedModel> models = judge_models(contenders, run.surface, result.instants,
+                                                       {.force_nrmse = errors.force_nrmse,
+                                                        .shape_rel_l2 = errors.shape_rel_l2,
+                                                        .step_p50_us = run.step.p50_us,
+                                                        .trouble = trouble_of(run)});
   const ComparisonDrawings drawings = comparison_drawings(scene, run, result, errors);
-  Comparison comparison{make_figures(errors, run, result), told.text() + model_table_text(models) + "\n"};
+  Comparison comparison{make_figures(errors, result, fast::figures(run)),
+                        told.text() + model_table_text(models) + "\n"};
   for (scene::Figure& figure : model_figures(models)) comparison.figures.push_back(std::move(figure));
   scene::write_csv(folder / "curve.csv", curve_columns(run, result, errors));
   write_surfaces(folder, run, result, errors);

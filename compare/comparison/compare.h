@@ -3,6 +3,7 @@
 #pragma once
 
 #include "compare/errors/errors.h"
+#include "compare/model/judge.h"
 #include "compare/report/next_steps.h"
 #include "fast/run/run.h"
 #include "reference/solver.h"
@@ -25,12 +26,13 @@ struct Comparison {
 };
 
 /// Compares and writes the whole folder, which must exist.
-/// @param call  for the commands to type next; without a scene file there are none
+/// @param run         of the scene, by the fast model, which the page is about
+/// @param contenders  all models that are judged by this answer of the reference
+/// @param call   for the commands to type next; without a scene file there are none
 /// @param plots  also every plot of the report as files, in plots/
-/// @param given  the scene without tuned constants, where `scene` has them
 /// @throws std::logic_error when the sides do not belong together, std::filesystem::filesystem_error
 Comparison write_comparison(const std::filesystem::path& folder, const scene::Scene& scene, const fast::Run& run,
-                            const reference::Result& result, const scene::Manifest& manifest, const Call& call = {},
-                            bool plots = false, const scene::Scene* given = nullptr);
+                            const reference::Result& result, const scene::Manifest& manifest,
+                            const Contenders& contenders, const Call& call = {}, bool plots = false);
 
 }  // namespace touchstone::compare

@@ -1,7 +1,6 @@
 #include "compare/errors/figures.h"
 
 #include "compare/format/text.h"
-#include "fast/command/results.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +15,7 @@ constexpr std::string_view region_prefix = "force.region";
 struct Meaning {
   std::string_view key, text;
   bool count = false;  ///< a number of things; other figures without a unit are ratios
+  Worst worst = Worst::largest;
 };
 
 constexpr Meaning meanings[] = {
@@ -30,15 +30,15 @@ constexpr Meaning meanings[] = {
     {"force.slip_onset_error_m",
      "Way of the tool at which the fast model begins to slide, less the reference's; known to the way between "
      "instants."},
-    {"force.slip_onset_fast_m", "That way, fast model."},
-    {"force.slip_onset_reference_m", "That way, reference."},
+    {"force.slip_onset_fast_m", "That way, fast model.", false, Worst::none},
+    {"force.slip_onset_reference_m", "That way, reference.", false, Worst::none},
     {"force.torque_nrmse",
      "Root mean square of the torque's error, relative to the reference's peak force times its distance from the mass "
      "centre."},
     {"force.region.nrmse", "As force.nrmse, of this contact region alone; regions are numbered by the reference."},
     {"force.region.peak_rel", "As force.peak_rel, of this contact region alone."},
-    {"force.peak_fast_n", "Largest force on the tool, fast model."},
-    {"force.peak_reference_n", "Largest force on the tool, reference."},
+    {"force.peak_fast_n", "Largest force on the tool, fast model.", false, Worst::none},
+    {"force.peak_reference_n", "Largest force on the tool, reference.", false, Worst::none},
     {"shape.rel_l2",
      "Displacement error over displacement, root mean square over the whole surface by area and over all instants."},
     {"shape.max_over_depth", "Largest displacement error of any point, relative to the depth at that instant."},
@@ -53,7 +53,8 @@ constexpr Meaning meanings[] = {
     {"contact.penetration_rel",
      "How far the fast model's surface is left inside the tool, relative to the depth; it should be pushed out."},
     {"contact.area_iou",
-     "Area that is at or inside the tool on both sides, over that on either, summed over the track; 100 % is equal."},
+     "Area that is at or inside the tool on both sides, over that on either, summed over the track; 100 % is equal.",
+     false, Worst::smallest},
     {"reference.force_uncertainty_rel", "Largest half width of the reference's force band, relative to its force."},
     {"reference.shape_uncertainty_rel",
      "The reference's own shape uncertainty, relative to its displacement, in the norm of shape.rel_l2."},
@@ -149,7 +150,6 @@ class Collector {
     if (measure.uncertainty) return number(key + std::string(uncertainty_suffix), *measure.uncertainty, unit);
     absent(key + std::string(uncertainty_suffix), "unknown", unit);
   }
-  void add(scene::Figure figure) { figures_.push_back(std::move(figure)); }
   /// @param why  there is no number
   void absent(std::string key, std::string why, std::string unit = "") {
     figures_.push_back({std::move(key), NAN, std::move(why), std::move(unit)});
@@ -190,7 +190,7 @@ void add_contact_figures(const Errors& errors, Collector& out) {
 
 }  // namespace
 
-scene::Figures make_figures(const Errors& errors, const fast::Run& run, const reference::Result& result) {
+scene::Figures error_figures(const Errors& errors) {
   const bool contact = errors.force_peak_reference_n > 0.0;
   const std::string apart = "undefined: the reference is never in contact";
   Collector out(contact ? "undefined: nothing to relate it to" : apart);
@@ -211,11 +211,20 @@ scene::Figures make_figures(const Errors& errors, const fast::Run& run, const re
   out.number("shape.volume_change_rel", errors.volume_change_fast_rel);
   out.number_or_absent("contact.penetration_rel", errors.penetration_fast_rel);
   out.number_or_why("contact.area_iou", errors.contact_area_iou, "undefined: neither side is ever in contact");
-
-  for (scene::Figure& figure : reference_figures(result, errors.reference)) out.add(std::move(figure));
-  out.number("reference.surface_volume_change_rel", errors.volume_change_reference_surface_rel);
-  for (scene::Figure& figure : fast::figures(run)) out.add(std::move(figure));
   return out.take();
+}
+
+scene::Figures make_figures(const Errors& errors, const reference::Result& result, scene::Figures of_model) {
+  scene::Figures out = error_figures(errors);
+  std::ranges::move(reference_figures(result, errors.reference), std::back_inserter(out));
+  out.push_back({"reference.surface_volume_change_rel", errors.volume_change_reference_surface_rel, "", ""});
+  std::ranges::move(of_model, std::back_inserter(out));
+  return out;
+}
+
+Worst worst_of(std::string_view key) {
+  const Meaning* meaning = find_meaning(key);
+  return meaning == nullptr ? Worst::largest : meaning->worst;
 }
 
 std::string_view figure_meaning(std::string_view key) {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "compare/errors/errors.h"
-#include "fast/run/run.h"
 #include "reference/solver.h"
+#include "scene/output/figures.h"
 
 #include <string>
 #include <string_view>
@@ -13,9 +13,21 @@ namespace touchstone::compare {
 /// End of the key that gives an error's uncertainty.
 inline constexpr std::string_view uncertainty_suffix = "_uncertainty";
 
-/// Every figure of a comparison in the order of the design, errors followed by "<key>_uncertainty". A figure
-/// without a meaning is a text that says why.
-[[nodiscard]] scene::Figures make_figures(const Errors& errors, const fast::Run& run, const reference::Result& result);
+/// The errors in the order of the design, each followed by "<key>_uncertainty". A figure without a meaning is a text
+/// that says why.
+[[nodiscard]] scene::Figures error_figures(const Errors& errors);
+
+/// Every figure of a comparison: the errors, the reference's, and what the model alone tells.
+[[nodiscard]] scene::Figures make_figures(const Errors& errors, const reference::Result& result,
+                                          scene::Figures of_model);
+
+/// What of several contacts is their worst figure.
+enum class Worst {
+  largest,   ///< in magnitude: an error
+  smallest,  ///< an agreement
+  none,      ///< says something of one side only
+};
+[[nodiscard]] Worst worst_of(std::string_view key);
 
 /// One line on what a key means, for people; the same for a key and its uncertainty.
 [[nodiscard]] std::string_view figure_meaning(std::string_view key);

@@ -67,19 +67,14 @@ struct Answer {
   std::string failure;
 };
 
-Answer answer(const GateFile& file, const std::vector<std::string>& change) {
+Answer answer(const GateFile& file, const std::vector<std::string>& change, const std::vector<ModelList>& models) {
   try {
-    return {gate_figures(file, change), ""};
+    return {gate_figures(file, change, models), ""};
   } catch (const reference::Interrupted&) {
     throw;
   } catch (const std::exception& error) {
     return {{}, error.what()};
   }
-}
-
-const scene::Figure* find(const scene::Figures& figures, const std::string& key) {
-  const auto found = std::ranges::find(figures, key, &scene::Figure::key);
-  return found == figures.end() ? nullptr : &*found;
 }
 
 const AcceptedValue* accepted_of(const GateFolder& folder, const std::string& name) {
@@ -102,7 +97,7 @@ void require_answerable(const GateFile& file, const GateNames& names, const Answ
   std::vector<scene::Fault> faults;
   for (const Gate& gate : file.gates) {
     if (!is_asked(file.name, gate.name, names) || !answer.failure.empty()) continue;
-    if (find(answer.figures, gate.quantity) != nullptr) continue;
+    if (scene::find_figure(answer.figures, gate.quantity) != nullptr) continue;
     std::vector<std::string> keys;
     for (const scene::Figure& figure : answer.figures) keys.push_back(figure.key);
     scene::Fault fault = gate.place;
@@ -135,12 +130,12 @@ bool is_drift(const GateFolder& folder, const std::string& name) {
 }
 
 /// What is wrong with the scenes of a file, its own and the changed ones, told with the gate they are of.
-std::vector<scene::Fault> scene_faults(const GateFile& file) {
+std::vector<scene::Fault> scene_faults(const GateFile& file, const std::vector<ModelList>& models) {
   std::vector<scene::Fault> faults;
   const auto check = [&](const std::vector<std::string>& change, const std::string& whose) {
     std::vector<scene::Fault> found;
     try {
-      found = unsupported_by_gate(file, scene_of(file, change));
+      found = unsupported_by_gate(file, scene_of(file, change), models);
     } catch (const scene::InputError& error) {
       found = error.faults();
     }
@@ -183,9 +178,10 @@ double GateRecord::held() const noexcept {
   return std::abs(value.value_or(none)) + uncertainty.value_or(none);
 }
 
-GateFolder load_gates(const path& folder) {
+GateFolder load_gates(const path& folder, const std::vector<ModelList>& models) {
   GateFolder out;
   out.folder = folder;
+  out.models = models;
   std::vector<scene::Fault> faults;
   const auto collecting = [&](const auto& load) {
     try {
@@ -200,7 +196,7 @@ GateFolder load_gates(const path& folder) {
     collecting([&] { out.files.push_back(load_gate_file(entry.path())); });
   }
   for (const GateFile& file : out.files) {
-    for (scene::Fault& fault : scene_faults(file)) faults.push_back(std::move(fault));
+    for (scene::Fault& fault : scene_faults(file, models)) faults.push_back(std::move(fault));
   }
   collecting([&] { out.waivers = load_gate_waivers(folder / waivers_name); });
   collecting([&] { out.accepted = read_accepted(accepted_file(folder)); });
@@ -216,7 +212,7 @@ GateFolder load_gates(const path& folder) {
 GateRecord judge(const std::string& file, const Gate& gate, const scene::Figures& figures,
                  const AcceptedValue* accepted, const std::string& scene_hash) {
   GateRecord record{file, gate, {}, {}, {}, ""};
-  const scene::Figure* figure = find(figures, gate.quantity);
+  const scene::Figure* figure = scene::find_figure(figures, gate.quantity);
   if (figure == nullptr) {
     record.failure = "missing: there is no figure " + gate.quantity;
     return record;
@@ -232,7 +228,7 @@ GateRecord judge(const std::string& file, const Gate& gate, const scene::Figures
   }
   if (gate.kind == GateKind::truth) {
     const std::string key = gate.quantity + std::string(uncertainty_suffix);
-    const scene::Figure* uncertainty = find(figures, key);
+    const scene::Figure* uncertainty = scene::find_figure(figures, key);
     if (uncertainty == nullptr || !uncertainty->text.empty() || !std::isfinite(uncertainty->number)) {
       record.failure = "missing: " + gate.quantity + " has no uncertainty, so it is no error against a truth";
       return record;
@@ -276,7 +272,7 @@ std::vector<GateRecord> run_gates(const GateFolder& folder, const GateNames& nam
     if (!is_asked(file, names)) continue;
     require_reference(file);
     if (working) working(file.name);
-    const Answer own = answer(file, {});
+    const Answer own = answer(file, {}, folder.models);
     require_answerable(file, names, own);
     const std::string hash = hash_of(file);
     for (const Gate& gate : file.gates) {
@@ -295,7 +291,7 @@ std::vector<GateProof> prove_gates(const GateFolder& folder, const std::vector<G
     const auto key = std::pair(record.file, record.gate.red);
     if (!answers.contains(key)) {
       if (working) working(record.file + " with " + fmt::format("{}", fmt::join(record.gate.red, " ")));
-      answers[key] = answer(file, record.gate.red);
+      answers[key] = answer(file, record.gate.red, folder.models);
     }
     GateProof proof{judged(folder, file, record.gate, answers[key], hash_of(file)), ""};
     if (!record.passes()) {

@@ -36,10 +36,12 @@ struct GateFolder {
   std::vector<GateWaiver> waivers;
   std::map<std::string, AcceptedValue> accepted;  ///< by "file.gate"
   std::vector<std::string> unused;                ///< reference data and accepted values that no gate asks for
+  std::vector<ModelList> models;                  ///< that the files may name one of
 };
 
 /// @throws scene::InputError with the faults of all files, and where there is no gate at all
-[[nodiscard]] GateFolder load_gates(const std::filesystem::path& folder);
+[[nodiscard]] GateFolder load_gates(const std::filesystem::path& folder,
+                                    const std::vector<ModelList>& models = registered_models());
 
 /// What one gate found.
 struct GateRecord {

@@ -1,13 +1,11 @@
 #include "compare/gate/gate_figures.h"
 
 #include "compare/calculix/calculix.h"
-#include "compare/errors/compute_errors.h"
-#include "compare/errors/errors.h"
 #include "compare/errors/figures.h"
 #include "compare/gate/stored_reference.h"
+#include "compare/model/judge.h"
+#include "compare/model/skeleton_model.h"
 #include "compare/solve/reference_run.h"
-#include "fast/command/results.h"
-#include "fast/run/run.h"
 #include "reference/verification/closed_forms.h"
 #include "scene/input/scene_io.h"
 
@@ -68,16 +66,24 @@ std::size_t deepest(const scene::Instants& instants) {
   return static_cast<std::size_t>(std::distance(instants.begin(), at));
 }
 
-scene::Figures fast_figures(const GateFile& file, const scene::Scene& own, const scene::Scene& changed) {
-  if (file.reference.empty()) {
-    const fast::Run run = fast::run(changed);
-    scene::Figures figures = fast::figures(run);
-    figures.push_back({"force.peak_fast_n", peak_n(run.instants), "", "N"});
-    return figures;
-  }
-  const reference::Result stored = stored_reference(file.reference, own, rest_surface(own));
-  const fast::Run run = fast::run(changed);
-  return make_figures(compute_errors(changed, run, stored.instants), run, stored);
+ModelEntry model_of(const GateFile& file, const scene::Scene& scene, const std::vector<ModelList>& models) {
+  return file.model.empty() ? fast_model() : find_model({.scene = scene}, file.model, models);
+}
+
+scene::Figures model_figures(const GateFile& file, const scene::Scene& own, const scene::Scene& changed,
+                             const std::vector<ModelList>& models) {
+  std::optional<reference::Result> stored;
+  if (!file.reference.empty()) stored = stored_reference(file.reference, own, rest_surface(own));
+  const ModelEntry entry = model_of(file, changed, models);
+  const std::unique_ptr<ContactModel> model = entry.set_up(changed);
+  scene::Answer answer = unanswered(changed);
+  model->answer(answer);
+  // The fast model's is a figure.
+  if (!entry.own && !model->trouble().empty()) throw Unavailable(model->trouble());
+  if (stored) return make_figures(errors_of(entry, changed, answer, stored->instants), *stored, model->figures());
+  scene::Figures figures = model->figures();
+  if (entry.gives_force) figures.push_back({"force.peak_fast_n", peak_n(answer.instants), "", "N"});
+  return figures;
 }
 
 /// Distance of a fresh answer from the stored one.
@@ -165,10 +171,12 @@ double peak_n(const scene::Instants& instants) {
   return peak;
 }
 
-std::vector<scene::Fault> unsupported_by_gate(const GateFile& file, const scene::Scene& scene) {
+std::vector<scene::Fault> unsupported_by_gate(const GateFile& file, const scene::Scene& scene,
+                                              const std::vector<ModelList>& models) {
   std::vector<scene::Fault> faults;
   if (file.run != GateRun::fast || !file.reference.empty()) faults = reference::unsupported(scene);
   if (file.run == GateRun::second_code && faults.empty()) faults = reference::unsupported_in_deck(scene);
+  if (faults.empty()) (void)model_of(file, scene, models);
   return faults;
 }
 
@@ -178,11 +186,12 @@ scene::Scene scene_of(const GateFile& file, const std::vector<std::string>& chan
   return scene::load_scene(file.scene_file, settings);
 }
 
-scene::Figures gate_figures(const GateFile& file, const std::vector<std::string>& change) {
+scene::Figures gate_figures(const GateFile& file, const std::vector<std::string>& change,
+                            const std::vector<ModelList>& models) {
   const scene::Scene own = scene_of(file), changed = scene_of(file, change);
   switch (file.run) {
     case GateRun::fast:
-      return fast_figures(file, own, changed);
+      return model_figures(file, own, changed, models);
     case GateRun::reference:
       return reference_side_figures(file, own, changed);
     case GateRun::second_code:

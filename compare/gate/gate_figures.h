@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compare/input/gate_file.h"
+#include "compare/model/registry.h"
 #include "scene/base/error.h"
 #include "scene/model/scene.h"
 #include "scene/output/results.h"
@@ -12,9 +13,10 @@
 
 namespace touchstone::compare {
 
-/// Figures of a gate file's scene, computed anew. The fast model's are those of `touchstone compare` against the
-/// committed reference data, where the file names them, else those of `touchstone fast` and force.peak_fast_n. The
-/// reference's, always solved from nothing, are those of `touchstone reference`, reference.force_peak_n, and
+/// Figures of a gate file's scene, computed anew. The fast model's, or another's in its place, are those of `touchstone
+/// compare` against the committed reference data, where the file names them, else those of `touchstone fast` and
+/// force.peak_fast_n. The reference's, always solved from nothing, are those of `touchstone reference`,
+/// reference.force_peak_n, and
 ///   hertz.force_rel        force over Hertz's closed form - 1 at the deepest instant, where that applies: a ball on a
 ///                          flat top in small strain; with its uncertainty
 ///   resolved.force_rel, resolved.shape_rel_l2
@@ -26,12 +28,15 @@ namespace touchstone::compare {
 ///   second_code.surface_rel  largest distance of a node of the surface over CalculiX's largest displacement
 /// What is compared with stays that of the file's own scene.
 /// @param change  values over the file's own, as for --set
-/// @throws scene::InputError, UnusableReference, reference::NotConverged, std::logic_error when `change` makes the
-///         answer incomparable
-[[nodiscard]] scene::Figures gate_figures(const GateFile& file, const std::vector<std::string>& change = {});
+/// @param models  that the file may name one of
+/// @throws scene::InputError, UnusableReference, Unavailable, reference::NotConverged, std::logic_error when `change`
+///         makes the answer incomparable
+[[nodiscard]] scene::Figures gate_figures(const GateFile& file, const std::vector<std::string>& change,
+                                          const std::vector<ModelList>& models);
 
-/// Why a file's scene cannot give its figures; none when it can.
-[[nodiscard]] std::vector<scene::Fault> unsupported_by_gate(const GateFile& file, const scene::Scene& scene);
+/// Why a file's scene cannot give its figures; none when it can. @throws scene::InputError for a model that is none
+[[nodiscard]] std::vector<scene::Fault> unsupported_by_gate(const GateFile& file, const scene::Scene& scene,
+                                                            const std::vector<ModelList>& models);
 
 /// A gate file's scene under a change.
 /// @throws scene::InputError

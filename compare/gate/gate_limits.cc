@@ -65,6 +65,7 @@ std::string loosened(const GateFile& base_file, const Gate& base, const GateFile
   if (base.kind != gate.kind) return changed("kind", name_of(base.kind), name_of(gate.kind));
   if (base.unit != gate.unit) return changed("unit", base.unit, gate.unit);
   if (base_file.run != file.run) return changed("run", name_of(base_file.run), name_of(file.run));
+  if (base_file.model != file.model) return changed("model", base_file.model, file.model);
   if (gate.limit > base.limit) return fmt::format("limit {} wider than {}", gate.limit, base.limit);
   return "";
 }

@@ -42,6 +42,10 @@ class Reader : TomlReader {
     for (const GateRun one : {GateRun::fast, GateRun::reference, GateRun::second_code}) {
       if (run == name_of(one)) out.run = one;
     }
+    if (document_.contains("model")) {
+      out.model = given_text(document_, "model");
+      if (out.run != GateRun::fast) add(document_, "model is for run = \"fast\" only; expected none");
+    }
     out.scene_file = (file_.parent_path() / given_text(document_, "scene")).lexically_normal();
     if (document_.contains("set")) out.set = given_settings(document_, "set");
     if (document_.contains("reference")) {
@@ -141,6 +145,9 @@ const std::vector<GateKey>& gate_file_keys() {
        "What is computed anew. \"fast\": the fast model, held against the reference data named by `reference`; "
        "\"reference\": the reference solve, from nothing; \"second_code\": CalculiX and the reference on the same "
        "deck."},
+      {"model", "a text", "the fast model",
+       "With `run = \"fast\"`: another model in its place, by its key in `summary.json` of `touchstone trade`, such as "
+       "\"compliance-1\". It has no `fast.` figures."},
       {"scene", "a path", "", "The scene file, relative to the gate file."},
       {"set", "a list of texts \"KEY=VALUE\"", "none",
        "Values over the scene's, as for `--set`. They belong to the scene: the reference data is of them, too."},

@@ -62,6 +62,7 @@ struct GateFile {
   std::string name;  ///< file stem
   std::string title;
   GateRun run = GateRun::fast;
+  std::string model;  ///< key of compare/model's; empty: the fast model
   std::filesystem::path scene_file;
   std::vector<std::string> set;
   std::filesystem::path reference;  ///< empty: none

@@ -2,6 +2,7 @@
 
 #include "compare/model/linear_contact.h"
 #include "reference/linear_response.h"
+#include "reference/run/model_choice.h"
 
 #include <fmt/format.h>
 
@@ -10,11 +11,11 @@ namespace {
 
 class ComplianceModel final : public ContactModel {
  public:
-  ComplianceModel(const reference::LinearResponse& response, const scene::Tool& tool)
-      : contact_(response, tool), size_(response.unknowns) {
+  ComplianceModel(const reference::LinearResponse& response, const scene::Scene& scene)
+      : contact_(response, scene.tool), size_(response.unknowns) {
     note_ =
         fmt::format("{}, {} nodes may be touched; displacements only, no normals", response.model, contact_.nodes());
-    if (response.model.starts_with("axisymmetric")) {
+    if (reference::choose_model(scene).dim == 2) {
       note_ += "; a tool that leaves the axis would need the whole body";
     }
   }
@@ -49,7 +50,7 @@ std::unique_ptr<ContactModel> set_up(const scene::Scene& scene, int level) {
   const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
   try {
     return std::make_unique<ComplianceModel>(reference::linear_response(scene, surface.points_m, {.level = level}),
-                                             scene.tool);
+                                             scene);
   } catch (const reference::Interrupted&) {
     throw;
   } catch (const std::runtime_error& error) {

@@ -1,12 +1,15 @@
 // What a contact model must offer to be judged: a step that is timed, and an answer that is compared.
 #pragma once
 
+#include "fast/run/run.h"
 #include "scene/model/answer.h"
 #include "scene/model/scene.h"
+#include "scene/output/figures.h"
 
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -22,6 +25,11 @@ enum class ModelFamily {
   reference,   ///< the reference's levels
   other,
 };
+
+/// Is it the paper's beam skeleton, whatever its law?
+[[nodiscard]] constexpr bool has_skeleton(ModelFamily family) noexcept {
+  return family == ModelFamily::paper || family == ModelFamily::area_aware;
+}
 
 /// Why a model cannot answer; what() completes "absent: ".
 class Unavailable : public std::runtime_error {
@@ -57,17 +65,43 @@ class ContactModel {
   [[nodiscard]] virtual std::string note() const { return {}; }
   /// What went wrong while it answered; empty when nothing did.
   [[nodiscard]] virtual std::string trouble() const { return {}; }
+  /// Median time of a step in the last answer() [us]; absent where it was not taken.
+  [[nodiscard]] virtual std::optional<double> step_p50_us() const { return std::nullopt; }
+  /// What of the last answer() only this model tells, by keys of summary.json.
+  [[nodiscard]] virtual scene::Figures figures() const { return {}; }
+  /// The scene's whole track with all that the fast model records beside its answer, for pages about that model.
+  /// Nothing from any other.
+  [[nodiscard]] virtual std::optional<fast::Run> track() { return std::nullopt; }
+};
+
+/// A model's forces and shapes over one scene's track, with other constants from call to call: what a fit needs.
+class ModelReplay {
+ public:
+  /// Gets a place among the instants asked for and the displacement of all rest points [m].
+  using Visit = std::function<void(std::size_t, const Eigen::Matrix3Xd&)>;
+
+  virtual ~ModelReplay() = default;
+  /// Total force on the tool at every instant of the track [N].
+  /// @param scene  that of the set-up but for the constants
+  [[nodiscard]] virtual std::vector<scene::Vec3> forces_n(const scene::Scene& scene) = 0;
+  /// @param scene     its constants of the force are those of the last call of forces_n(), which must have been one
+  /// @param instants  in rising order
+  virtual void displacements(const scene::Scene& scene, std::span<const std::size_t> instants, const Visit& visit) = 0;
 };
 
 /// A model by name: what the registry holds.
 struct ModelEntry {
-  std::string name;   ///< "corrected skeleton, 4k triangles"
-  std::string key;    ///< of summary.json: "corrected-4k"
-  std::string label;  ///< short, for the plot
+  std::string name;      ///< "corrected skeleton, 4k triangles"
+  std::string key;       ///< of summary.json: "corrected-4k"
+  std::string label{};   ///< short, for the plot
+  std::string method{};  ///< law and skeleton, "Duffing, published"; empty: the name says it
   ModelFamily family = ModelFamily::other;
   /// @throws Unavailable
   std::function<std::unique_ptr<ContactModel>(const scene::Scene&)> set_up{};
+  /// Faster than set_up() and answer() with every change of a constant. Empty: there is nothing faster.
+  std::function<std::unique_ptr<ModelReplay>(const scene::Scene&)> replay{};
   bool gives_force = true;
+  bool own = false;                ///< the model that a comparison's page is about
   bool yardstick = false;          ///< the reference's finest answer, which all are compared with
   std::optional<int> triangles{};  ///< of the surface it is judged on; absent: the scene's
   std::string absent{};            ///< why there is no such model here; then set_up is not called

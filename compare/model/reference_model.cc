@@ -1,6 +1,7 @@
 #include "compare/model/reference_model.h"
 
 #include "reference/run/cost.h"
+#include "reference/run/model_choice.h"
 #include "reference/run/uncertainty.h"
 
 #include <fmt/format.h>
@@ -13,7 +14,7 @@ namespace {
 
 class ReferenceModel final : public ContactModel {
  public:
-  explicit ReferenceModel(reference::Result result) : result_(std::move(result)) {}
+  ReferenceModel(reference::Result result, int dim) : result_(std::move(result)), dim_(dim) {}
 
   void step(const scene::Pose&) override { throw std::logic_error("the reference solves whole tracks"); }
 
@@ -31,7 +32,7 @@ class ReferenceModel final : public ContactModel {
 
   [[nodiscard]] int size() const override { return result_.levels.back().unknowns; }
   [[nodiscard]] std::optional<double> memory_bytes() const override {
-    return reference::expected_memory_bytes(result_.model.starts_with("axisymmetric") ? 2 : 3, size());
+    return reference::expected_memory_bytes(dim_, size());
   }
   [[nodiscard]] std::optional<KnownSteps> known_steps() const override { return steps_; }
   [[nodiscard]] std::string note() const override {
@@ -41,6 +42,7 @@ class ReferenceModel final : public ContactModel {
 
  private:
   reference::Result result_;
+  int dim_;
   KnownSteps steps_;
 };
 
@@ -48,7 +50,7 @@ class ReferenceModel final : public ContactModel {
 
 std::vector<ModelEntry> reference_models(const ModelRequest& request) {
   std::vector<ModelEntry> models;
-  const int levels = request.reference_levels();
+  const int levels = request.reference_levels ? request.reference_levels() : 0;
   for (int level = 1; level <= levels; ++level) {
     models.push_back({.name = fmt::format("reference, {} mesh{}", level, level == 1 ? "" : "es"),
                       .key = fmt::format("reference-{}", level),
@@ -58,7 +60,8 @@ std::vector<ModelEntry> reference_models(const ModelRequest& request) {
                           [level, solve = request.solve](const scene::Scene& scene) {
                             const scene::Surface surface =
                                 scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
-                            return std::make_unique<ReferenceModel>(solve(scene, surface, level));
+                            return std::make_unique<ReferenceModel>(solve(scene, surface, level),
+                                                                    reference::choose_model(scene).dim);
                           },
                       .yardstick = level == levels});
   }

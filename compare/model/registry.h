@@ -3,11 +3,23 @@
 
 #include "compare/model/request.h"
 
+#include <string>
 #include <vector>
 
 namespace touchstone::compare {
 
-/// Every kind, in the order in which tables list them. A new kind is a line here.
+/// Every kind, in the order in which tables list them: what `trade` judges, and what gates and `compare` know by key. A
+/// new kind is a line here.
 [[nodiscard]] const std::vector<ModelList>& registered_models();
+
+/// The kinds that every comparison judges beside each other. One that belongs there is a line here too.
+[[nodiscard]] const std::vector<ModelList>& compared_models();
+
+[[nodiscard]] std::vector<ModelEntry> list_models(const ModelRequest& request, const std::vector<ModelList>& kinds);
+
+/// The model of this key, judged on the scene's own surface.
+/// @throws scene::InputError when there is none, with the keys there are, or with why it is absent
+[[nodiscard]] ModelEntry find_model(const ModelRequest& request, const std::string& key,
+                                    const std::vector<ModelList>& kinds = registered_models());
 
 }  // namespace touchstone::compare

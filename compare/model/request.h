@@ -13,12 +13,12 @@ namespace touchstone::compare {
 /// What models are chosen by.
 struct ModelRequest {
   const scene::Scene& scene;
-  std::vector<scene::Scene> contacts;             ///< that they are judged on
-  std::vector<std::filesystem::path> parameters;  ///< files that tune left, each a model more
-  bool quick = false;                             ///< small sizes
-  std::function<int()> reference_levels;          ///< that every contact's reference has
+  std::vector<scene::Scene> contacts{};             ///< that they are judged on; empty: the scene
+  std::vector<std::filesystem::path> parameters{};  ///< files that tune left, each a model more
+  bool quick = false;                               ///< small sizes
+  std::function<int()> reference_levels{};          ///< that every contact's reference has; empty: it is no model here
   /// The reference of a contact on so many levels.
-  std::function<reference::Result(const scene::Scene&, const scene::Surface&, int levels)> solve;
+  std::function<reference::Result(const scene::Scene&, const scene::Surface&, int levels)> solve{};
 };
 
 /// Some models of one kind.

@@ -2,12 +2,16 @@
 
 #include "compare/format/text.h"
 #include "compare/input/tuning_study.h"
+#include "fast/command/results.h"
+#include "fast/run/replay.h"
 #include "fast/run/run.h"
 #include "fast/step/engine.h"
 #include "scene/model/area_law.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace touchstone::compare {
@@ -24,7 +28,9 @@ class SkeletonModel final : public ContactModel {
 
   void answer(scene::Answer& asked) override {
     fast::Run run = fast::run(scene_);
-    status_ = run.status;
+    trouble_ = trouble_of(run);
+    step_p50_us_ = run.step.p50_us;
+    figures_ = fast::figures(run);
     auto of_run = run.instants.begin();
     for (scene::InstantRecord& instant : asked.instants) {
       while (of_run != run.instants.end() && of_run->time_s != instant.time_s) ++of_run;
@@ -38,14 +44,32 @@ class SkeletonModel final : public ContactModel {
   [[nodiscard]] std::optional<double> memory_bytes() const override {
     return static_cast<double>(engine_.memory_bytes());
   }
-  [[nodiscard]] std::string trouble() const override {
-    return status_ == 0 ? "" : "status of its steps: " + fast::status_text(status_);
-  }
+  [[nodiscard]] std::string trouble() const override { return trouble_; }
+  [[nodiscard]] std::optional<double> step_p50_us() const override { return step_p50_us_; }
+  [[nodiscard]] scene::Figures figures() const override { return figures_; }
+  [[nodiscard]] std::optional<fast::Run> track() override { return fast::run(scene_); }
 
  private:
   Scene scene_;
   fast::Engine engine_;
-  std::uint32_t status_ = 0;
+  std::string trouble_;
+  std::optional<double> step_p50_us_;
+  scene::Figures figures_;
+};
+
+class SkeletonReplay final : public ModelReplay {
+ public:
+  explicit SkeletonReplay(const Scene& scene) : replay_(scene) {}
+
+  std::vector<scene::Vec3> forces_n(const Scene& scene) override { return replay_.forces_n(scene); }
+  void displacements(const Scene& scene, std::span<const std::size_t> instants, const Visit& visit) override {
+    replay_.displacements(scene, instants, [&](std::size_t k, const fast::Columns3& displacement_m) {
+      visit(k, fast::matrix_of(displacement_m));
+    });
+  }
+
+ private:
+  fast::Replay replay_;
 };
 
 ModelEntry skeleton(ModelEntry entry, const Change& change) {
@@ -60,6 +84,19 @@ ModelFamily family_of(const Scene& scene) {
 std::string name_of(scene::Formulation formulation) {
   return formulation == scene::Formulation::published ? "published" : "corrected";
 }
+
+std::string method_of(const Scene& scene) {
+  return (scene.contact.law == scene::ContactLaw::duffing ? "Duffing, " : "area-aware, ") +
+         name_of(scene.fast.formulation);
+}
+
+bool same_model(const Scene& a, const Scene& b) {
+  return a.fast.formulation == b.fast.formulation && a.contact.law == b.contact.law &&
+         a.contact.k1_n_per_m == b.contact.k1_n_per_m && a.contact.k3_n_per_m3 == b.contact.k3_n_per_m3 &&
+         a.contact.k1_per_radius_n_per_m2 == b.contact.k1_per_radius_n_per_m2 && a.fast.s_c_m2 == b.fast.s_c_m2;
+}
+
+Scene as_given(Scene scene) { return scene; }
 
 }  // namespace
 
@@ -80,6 +117,52 @@ Scene with_untuned_area_law(Scene scene) {
   scene.contact.k1_n_per_m = scene.contact.k3_n_per_m3 = 0.0;
   scene.fast.s_c_m2 = scene::stiff_beam_area_m2(scene.body);
   return scene;
+}
+
+std::string trouble_of(const fast::Run& run) {
+  return run.status == 0 ? "" : "status of its steps: " + fast::status_text(run.status);
+}
+
+ModelEntry fast_model() {
+  ModelEntry entry =
+      skeleton({.name = "fast model", .key = "fast", .family = ModelFamily::paper, .own = true}, as_given);
+  entry.replay = [](const Scene& scene) { return std::make_unique<SkeletonReplay>(scene); };
+  return entry;
+}
+
+std::vector<ModelEntry> skeleton_variants(const ModelRequest& request) {
+  const Scene& given = request.scene;
+  struct Variant {
+    std::string key, name;
+    Change change;
+    bool tuned = false;
+  };
+  std::vector<Variant> variants;
+  if (given.contact.law == scene::ContactLaw::duffing) variants.push_back({"paper", "paper as printed", as_printed});
+  variants.push_back({"area_aware", "untuned, from the material",
+                      [](Scene scene) { return with_untuned_area_law(corrected(std::move(scene))); }});
+  variants.push_back({"scene", "scene's own constants", as_given});
+  const bool tuned = !request.parameters.empty();
+  if (tuned) {
+    const std::filesystem::path& file = request.parameters.front();
+    variants.push_back({"tuned", "tuned: " + file.filename().string(),
+                        [file](Scene scene) { return with_parameters(std::move(scene), file); }, true});
+  }
+  std::vector<ModelEntry> models;
+  std::vector<Scene> scenes;
+  for (const Variant& one : variants) {
+    const Scene& scene = scenes.emplace_back(one.change(given));
+    const bool listed = std::any_of(scenes.begin(), std::prev(scenes.end()),
+                                    [&](const Scene& other) { return same_model(other, scene); });
+    if (listed && !one.tuned) continue;
+    models.push_back(skeleton({.name = one.name,
+                               .key = one.key,
+                               .method = method_of(scene),
+                               .family = family_of(scene),
+                               .own = tuned ? one.tuned : same_model(scene, given)},
+                              one.change));
+  }
+  return models;
 }
 
 std::vector<ModelEntry> skeleton_models(const ModelRequest& request) {

@@ -14,6 +14,16 @@ namespace touchstone::compare {
 /// tuned for.
 [[nodiscard]] scene::Scene with_untuned_area_law(scene::Scene scene);
 
+/// The fast model with the scene's own constants, which `fast`, `compare`, `tune` and gates are about.
+[[nodiscard]] ModelEntry fast_model();
+
+/// What the steps of a run complain about; empty when nothing.
+[[nodiscard]] std::string trouble_of(const fast::Run& run);
+
+/// Which constants to use: the paper's model as printed, the area-aware law that needs no tuning, the scene's own, and
+/// the first file of tuned ones. A model that is the same as another is listed once, but for the tuned ones.
+[[nodiscard]] std::vector<ModelEntry> skeleton_variants(const ModelRequest& request);
+
 /// Both formulations with both laws, and one model for every file of tuned constants.
 [[nodiscard]] std::vector<ModelEntry> skeleton_models(const ModelRequest& request);
 

@@ -38,7 +38,7 @@ struct Trial {
 };
 
 Trial tried(const scene::Scene& changed, const reference::Result& result, const Errors& errors) {
-  const fast::Run run = fast::run(changed);
+  const fast::Run run = fast_model().set_up(changed)->track().value();
   MeanSquares force;
   SquareSums shape;
   for (std::size_t t = 0; t < run.instants.size(); ++t) {
@@ -68,8 +68,6 @@ std::filesystem::path tuning_study_of(const std::filesystem::path& scene_file) {
     }
     std::sort(files.begin(), files.end());
     for (const std::filesystem::path& file : files) {
-      const std::string text = scene::read_file(file).value_or("");
-      if (text.find("kind = \"tuning\"") == std::string::npos) continue;
       try {
         const TuningStudy study = load_tuning_study(file, {});
         const bool trains = std::any_of(study.training.begin(), study.training.end(),
@@ -247,6 +245,7 @@ std::string command_text(const Call& call, const std::string& options) {
   std::string text = "touchstone compare " + fast::shell_word(call.scene_file.string());
   for (const std::string& setting : call.overrides) text += " --set " + fast::shell_word(setting);
   if (!call.parameters.empty()) text += " --parameters " + fast::shell_word(call.parameters.string());
+  for (const std::string& key : call.models) text += " --model " + fast::shell_word(key);
   return text + options_text(call.reference) + options;
 }
 

@@ -18,8 +18,9 @@ struct Call {
   std::filesystem::path scene_file;
   std::vector<std::string> overrides;  ///< of --set
   ReferenceOptions reference;
-  std::filesystem::path parameters;  ///< of --parameters; empty: none
-  std::filesystem::path folder;      ///< of the results
+  std::filesystem::path parameters;   ///< of --parameters; empty: none
+  std::filesystem::path folder;       ///< of the results
+  std::vector<std::string> models{};  ///< of --model
 };
 
 /// The command with its words quoted for a shell where they need it. @param options  more, with a space before

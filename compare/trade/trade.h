@@ -5,7 +5,7 @@
 #include "compare/errors/errors.h"
 #include "compare/input/tuning_study.h"
 #include "compare/model/registry.h"
-#include "compare/tune/tune.h"
+#include "compare/tune/tuning.h"
 #include "reference/solver.h"
 #include "scene/output/results.h"
 
@@ -20,9 +20,9 @@ namespace touchstone::compare {
 
 /// One model at one size. NaN: not known.
 struct TradeRow {
-  std::string name;   ///< "corrected, 4k triangles"
-  std::string key;    ///< of summary.json: "corrected-4k"
-  std::string label;  ///< short, for the plot
+  std::string name;     ///< "corrected, 4k triangles"
+  std::string key;      ///< of summary.json: "corrected-4k"
+  std::string label{};  ///< short, for the plot
   ModelFamily family = ModelFamily::paper;
   std::string absent{};  ///< why there is nothing to measure; empty where there is
   std::string note{};    ///< what a reader must know to compare it

@@ -1,10 +1,9 @@
 // Every model of the trade: set up, judged and timed.
-#include "compare/errors/compute_errors.h"
 #include "compare/format/text.h"
-#include "compare/model/registry.h"
+#include "compare/model/judge.h"
+#include "compare/trade/step_times.h"
 #include "compare/trade/trade.h"
 #include "fast/run/percentiles.h"
-#include "fast/run/ticks.h"
 #include "reference/solver.h"
 
 #include <fmt/format.h>
@@ -25,90 +24,6 @@ using scene::Scene;
 using SolveLevels = std::function<reference::Result(const Scene&, const scene::Surface&, std::optional<int>)>;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-/// Poses of the ticks in contact, there and back again without end, so that no step jumps.
-class Poses {
- public:
-  explicit Poses(const Scene& scene) {
-    const auto body = scene::body_shape(scene.body);
-    fast::Ticks ticks(scene);
-    if (ticks.count() > ticks_max) {
-      throw scene::InputError(fmt::format(
-          "the track takes {} ticks at fast.rate_hz = {} Hz, and every model steps there and back: expected "
-          "at most {}",
-          ticks.count(), scene.fast.rate_hz, ticks_max));
-    }
-    while (const std::optional<fast::Tick> tick = ticks.next()) {
-      const scene::Pose pose = scene::pose_at(scene.track, tick->time_s);
-      if (scene::rest_depth_m(*body, scene.tool, pose) > grazing_depth_m) poses_.push_back(pose);
-    }
-    if (poses_.empty()) throw scene::InputError("the tool never touches the body on this track: nothing to trade");
-  }
-  [[nodiscard]] const scene::Pose& at(std::size_t step) const {
-    const std::size_t n = poses_.size(), k = step % (2 * n);
-    return poses_[k < n ? k : 2 * n - 1 - k];
-  }
-  [[nodiscard]] std::size_t round_trip() const { return 2 * poses_.size(); }
-
- private:
-  static constexpr std::int64_t ticks_max = 1'000'000;
-  std::vector<scene::Pose> poses_;
-};
-
-/// A model whose steps are measured.
-struct Timed {
-  std::size_t row = 0;
-  std::function<void(const scene::Pose&)> step;
-  std::size_t next = 0;  ///< pose
-  std::size_t block = 32;
-  std::vector<double> step_us{};
-};
-
-/// Times the models in alternating blocks, so that clock drift affects all; each covers the track in both directions.
-/// The first steps of a block are not timed: they refill the caches.
-void measure(std::vector<Timed>& models, const Poses& poses, bool quick, std::vector<TradeRow>& rows) {
-  constexpr std::size_t warming_steps = 2;
-  constexpr double slow_us = 2000.0;
-  const std::size_t rounds = quick ? 6 : 64;
-  for (Timed& model : models) {
-    const Clock::time_point begin = Clock::now();
-    model.step(poses.at(model.next++));
-    model.step(poses.at(model.next++));
-    if (0.5e6 * seconds_since(begin) > slow_us) model.block = 2;
-  }
-  for (std::size_t round = 0; round < rounds; ++round) {
-    for (Timed& model : models) {
-      const std::size_t steps = std::max(warming_steps + model.block, poses.round_trip() / rounds + 1);
-      for (std::size_t k = model.block; k < steps; ++k) model.step(poses.at(model.next++));
-      for (std::size_t k = 0; k < model.block; ++k) {
-        const scene::Pose& pose = poses.at(model.next++);
-        const Clock::time_point begin = Clock::now();
-        model.step(pose);
-        model.step_us.push_back(1e6 * seconds_since(begin));
-      }
-    }
-  }
-  for (Timed& model : models) {
-    TradeRow& row = rows[model.row];
-    row.steps = static_cast<int>(model.step_us.size());
-    const fast::Percentiles all = fast::percentiles(std::move(model.step_us));
-    row.step_p50_us = all.p50_us;
-    row.step_p999_us = all.p999_us;
-  }
-}
-
-/// The reference's instants without an answer, to be filled by another model.
-scene::Answer unanswered(const TuningData& data) {
-  scene::Answer answer{data.surface, {}};
-  for (const scene::InstantRecord& instant : data.result.instants) {
-    scene::InstantRecord& record = answer.instants.emplace_back();
-    record.time_s = instant.time_s;
-    record.tool = instant.tool;
-    record.depth_m = instant.depth_m;
-    record.displacement_m.setZero(3, data.surface.points_m.cols());
-  }
-  return answer;
-}
 
 class Ladder {
  public:
@@ -137,11 +52,16 @@ class Ladder {
                            return reference_on(scene, surface, levels);
                          }};
     for (const TuningContact& contact : trade_.contacts) request.contacts.push_back(contact.scene);
-    for (const ModelList list : models) {
-      for (const ModelEntry& entry : list(request)) add(entry);
-    }
+    for (const ModelEntry& entry : list_models(request, models)) add(entry);
     tell("steps of every model by turns");
-    measure(timed_, poses_, options_.quick, trade_.rows);
+    measure_by_turns(timed_, poses_, options_.quick ? 6 : 64);
+    for (Timed& one : timed_) {
+      TradeRow& row = trade_.rows[one.row];
+      row.steps = static_cast<int>(one.step_us.size());
+      const fast::Percentiles all = fast::percentiles(std::move(one.step_us));
+      row.step_p50_us = all.p50_us;
+      row.step_p999_us = all.p999_us;
+    }
     return std::move(trade_);
   }
 
@@ -211,7 +131,7 @@ class Ladder {
     const bool timed = row.absent.empty() && row.steps == 0;
     trade_.rows.push_back(std::move(row));
     if (timed) {
-      timed_.push_back({trade_.rows.size() - 1, [model](const scene::Pose& pose) { model->step(pose); }});
+      timed_.push_back({trade_.rows.size() - 1, model});
     }
   }
 
@@ -223,8 +143,7 @@ class Ladder {
       const TuningData& data = data_of(c, entry.triangles.value_or(trade_.contacts[c].scene.fast.triangles));
       const std::unique_ptr<ContactModel> own = trade_.held_out ? entry.set_up(data.contact.scene) : nullptr;
       ContactModel& model = own ? *own : of_scene;
-      scene::Answer answer = unanswered(data);
-      model.answer(answer);
+      const Errors errors = compare::judge(entry, model, data.contact.scene, data.surface, data.result.instants);
       const std::string trouble = model.trouble();
       if (!trouble.empty() && std::find(troubles.begin(), troubles.end(), trouble) == troubles.end())
         troubles.push_back(trouble);
@@ -232,14 +151,13 @@ class Ladder {
         known.total_s += steps->total_s;
         known.count += steps->count;
       }
-      const Errors errors = compute_errors(data.contact.scene, answer, data.result.instants);
       const auto keep_worst = [&](const Measure& one, Measure& worst, std::string& where) {
         if (!one.value) return;
         if (worst.value && judged_error(worst).value_or(INFINITY) >= judged_error(one).value_or(INFINITY)) return;
         worst = one;
         where = data.contact.name;
       };
-      if (entry.gives_force) keep_worst(errors.force_nrmse, row.force_nrmse, row.force_contact);
+      keep_worst(errors.force_nrmse, row.force_nrmse, row.force_contact);
       keep_worst(errors.shape_rel_l2, row.shape_rel_l2, row.shape_contact);
     }
     for (const std::string& trouble : troubles) row.note += (row.note.empty() ? "" : "; ") + trouble;

@@ -1,7 +1,7 @@
 // The page of one tuning: how the tuned models do on contacts they were not tuned to, then how they were tuned.
 #pragma once
 
-#include "compare/tune/tune.h"
+#include "compare/tune/tuning.h"
 #include "scene/output/results.h"
 
 #include <string>

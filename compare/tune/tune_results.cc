@@ -1,5 +1,4 @@
-// What a tuning leaves in its folder, but for the page.
-#include "compare/tune/tune.h"
+#include "compare/tune/tune_results.h"
 
 #include "compare/errors/figures.h"
 #include "compare/tune/tune_report.h"
@@ -16,10 +15,6 @@
 namespace touchstone::compare {
 namespace {
 
-/// Figures of a comparison that say something about one contact, whatever machine it ran on.
-constexpr std::string_view figure_groups[] = {
-    "force.", "shape.", "contact.", "reference.force_uncertainty", "reference.shape_uncertainty", "reference.model"};
-
 /// A name as a part of a dotted key.
 std::string slug(const std::string& name) {
   std::string out;
@@ -34,43 +29,37 @@ std::string slug(const std::string& name) {
   return out;
 }
 
-scene::Figures contact_figures(const Tuning& tuning, const TuningOutcome& outcome) {
+/// What of the reference's figures says something about one contact, whatever machine it ran on.
+scene::Figures reference_side(const Tuning& tuning, const TuningOutcome& outcome) {
+  const scene::Figures all = reference_figures(tuning.data[outcome.data].result, outcome.errors.reference);
   scene::Figures out;
-  for (scene::Figure& figure : make_figures(outcome.errors, outcome.run, tuning.data[outcome.data].result)) {
-    const bool kept = std::any_of(std::begin(figure_groups), std::end(figure_groups),
-                                  [&](std::string_view group) { return figure.key.starts_with(group); });
-    if (kept) out.push_back(std::move(figure));
+  for (const char* key : {"reference.force_uncertainty_rel", "reference.shape_uncertainty_rel", "reference.model"}) {
+    out.push_back(*scene::find_figure(all, key));
   }
   return out;
 }
 
-const scene::Figure* find(const scene::Figures& figures, const std::string& key) {
-  const auto found = std::find_if(figures.begin(), figures.end(), [&](const scene::Figure& f) { return f.key == key; });
-  return found == figures.end() ? nullptr : &*found;
-}
-
 /// Every error of the contacts at its worst, with the uncertainty of the contact it is from.
-scene::Figures worst_of(const std::vector<scene::Figures>& contacts) {
+scene::Figures worst_figures(const std::vector<scene::Figures>& contacts) {
   scene::Figures out;
   for (const scene::Figure& first : contacts.front()) {
-    const bool of_one_side = first.key.ends_with("_n") || first.key.ends_with("_fast_m") ||
-                             first.key.ends_with("_reference_m") || first.key.starts_with("reference.");
-    if (of_one_side || first.key.ends_with(uncertainty_suffix)) continue;
-    const bool smallest = first.key == "contact.area_iou";
+    const Worst worst_is = worst_of(first.key);
+    if (worst_is == Worst::none || first.key.ends_with(uncertainty_suffix)) continue;
     const scene::Figures* from = nullptr;
     const scene::Figure* worst = nullptr;
     for (const scene::Figures& figures : contacts) {
-      const scene::Figure* one = find(figures, first.key);
+      const scene::Figure* one = scene::find_figure(figures, first.key);
       if (one == nullptr || !one->text.empty()) continue;
-      const bool worse = worst == nullptr ||
-                         (smallest ? one->number < worst->number : std::abs(one->number) > std::abs(worst->number));
+      const bool worse =
+          worst == nullptr ||
+          (worst_is == Worst::smallest ? one->number < worst->number : std::abs(one->number) > std::abs(worst->number));
       if (!worse) continue;
       worst = one;
       from = &figures;
     }
     out.push_back(worst != nullptr ? *worst : first);
     const scene::Figure* uncertainty =
-        from != nullptr ? find(*from, first.key + std::string(uncertainty_suffix)) : nullptr;
+        from != nullptr ? scene::find_figure(*from, first.key + std::string(uncertainty_suffix)) : nullptr;
     if (uncertainty != nullptr) out.push_back(*uncertainty);
   }
   return out;
@@ -90,18 +79,21 @@ scene::Figures model_figures(const Tuning& tuning, const TunedModel& model) {
     for (const TuningOutcome& outcome : model.outcomes) {
       const TuningData& data = tuning.data[outcome.data];
       if (data.held_out() != held_out) continue;
-      contacts.push_back(contact_figures(tuning, outcome));
+      contacts.push_back(error_figures(outcome.errors));
       const std::string prefix = group + slug(data.contact.name) + ".";
       add(each, prefix, contacts.back());
+      add(each, prefix, reference_side(tuning, outcome));
     }
     if (contacts.empty()) continue;
-    add(out, group, worst_of(contacts));
+    add(out, group, worst_figures(contacts));
     out.insert(out.end(), each.begin(), each.end());
   }
-  out.push_back({"training.shape_parts.whole", model.shape_parts.whole, "", ""});
-  out.push_back({"training.shape_parts.without_local_factor", model.shape_parts.without_local_factor, "", ""});
-  out.push_back({"training.shape_parts.anchors_at_rest", model.shape_parts.anchors_at_rest, "", ""});
-  out.push_back({"training.shape_parts.hat_alone", model.shape_parts.hat_alone, "", ""});
+  if (const std::optional<ShapeParts>& parts = model.shape_parts) {
+    out.push_back({"training.shape_parts.whole", parts->whole, "", ""});
+    out.push_back({"training.shape_parts.without_local_factor", parts->without_local_factor, "", ""});
+    out.push_back({"training.shape_parts.anchors_at_rest", parts->anchors_at_rest, "", ""});
+    out.push_back({"training.shape_parts.hat_alone", parts->hat_alone, "", ""});
+  }
   for (const StageFit& stage : model.stages) {
     for (std::size_t k = 0; k < stage.parameters.size(); ++k) {
       const TuningParameter& one = stage.parameters[k];

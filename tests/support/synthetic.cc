@@ -3,6 +3,7 @@
 #include "compare/errors/compute_errors.h"
 #include "compare/errors/figures.h"
 #include "compare/report/report.h"
+#include "fast/command/results.h"
 #include "scene/input/scene_io.h"
 #include "support/source_folder.h"
 
@@ -71,7 +72,6 @@ Sides pressed(int instants, int triangles) {
                                    {}});
   }
   for (const double time_s : scene::instants_s(sides.scene)) {
-    const std::size_t t = sides.run.instants.size();
     scene::InstantRecord fast;
     scene::ReferenceInstant reference;
     fast.time_s = time_s;
@@ -168,7 +168,7 @@ Sides pressed_by_mallet(const std::filesystem::path& folder, int instants) {
 
 std::string report_of(const Sides& sides) {
   const Errors errors = compute_errors(sides.scene, sides.run, sides.result.instants);
-  const scene::Figures figures = make_figures(errors, sides.run, sides.result);
+  const scene::Figures figures = make_figures(errors, sides.result, fast::figures(sides.run));
   const Verdict told = verdict(sides.scene, sides.run, sides.result, errors, sides.call);
   const ComparisonDrawings drawings = comparison_drawings(sides.scene, sides.run, sides.result, errors);
   return report_html(

@@ -1,5 +1,6 @@
 #include "compare/comparison/compare.h"
 
+#include "support/spring.h"
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
 
@@ -24,11 +25,17 @@ std::vector<std::string> split(const std::string& line) {
 class WriteComparison : public ::testing::Test {
  protected:
   WriteComparison() {
-    comparison_ =
-        write_comparison(folder_.path(), sides_.scene, sides_.run, sides_.result, sides_.manifest, sides_.call);
+    comparison_ = write_comparison(folder_.path(), sides_.scene, sides_.run, sides_.result, sides_.manifest, models_,
+                                   sides_.call);
+  }
+  static Contenders with_springs(const scene::Scene& scene) {
+    Contenders out = contenders(scene);
+    for (ModelEntry& entry : testing::springs({.scene = scene})) out.models.push_back(std::move(entry));
+    return out;
   }
 
   testing::Sides sides_ = testing::pressed(4, 200);
+  Contenders models_ = with_springs(sides_.scene);
   testing::TemporaryFolder folder_;
   Comparison comparison_;
 };
@@ -100,6 +107,9 @@ TEST_F(WriteComparison, JudgesTheOtherModelsToo) {
     EXPECT_GT(summary.at(key).get<double>(), 0.0);
   }
   EXPECT_EQ(summary.at("model.scene.force.nrmse"), summary.at("force.nrmse")) << "the scene's own model";
+  EXPECT_EQ(summary.at("model.spring.shape.rel_l2").get<double>(), 1.0) << "one that nobody here knows";
+  EXPECT_GT(summary.at("model.spring.force.nrmse").get<double>(), 0.0);
+  EXPECT_EQ(summary.at("reasons").at("model.broken.force.nrmse").get<std::string>(), "absent: it broke");
   EXPECT_NE(comparison_.text.find("area-aware, corrected"), std::string::npos) << comparison_.text;
   std::ifstream page(folder_.path() / "report.html");
   const std::string html{std::istreambuf_iterator<char>(page), {}};

@@ -1,6 +1,7 @@
 #include "compare/errors/figures.h"
 
 #include "compare/errors/compute_errors.h"
+#include "fast/command/results.h"
 #include "support/synthetic.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,8 @@ namespace touchstone::compare {
 namespace {
 
 scene::Figures figures_of(const testing::Sides& sides) {
-  return make_figures(compute_errors(sides.scene, sides.run, sides.result.instants), sides.run, sides.result);
+  return make_figures(compute_errors(sides.scene, sides.run, sides.result.instants), sides.result,
+                      fast::figures(sides.run));
 }
 
 const scene::Figure& find(const scene::Figures& figures, const std::string& key) {

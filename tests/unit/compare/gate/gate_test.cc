@@ -7,6 +7,7 @@
 #include "fast/command/command_line.h"
 #include "scene/base/files.h"
 #include "support/source_folder.h"
+#include "support/spring.h"
 #include "support/temporary_folder.h"
 #include "support/xml.h"
 
@@ -174,6 +175,23 @@ TEST_F(GateFolderTest, AQuantityThatTheRunDoesNotHaveIsBadInput) {
                                                      HasSubstr("did you mean \"force.peak_fast_n\"?"))));
 }
 
+TEST_F(GateFolderTest, HoldsAModelThatNobodyHereKnows) {
+  std::string text = gate_text("1e-6", "contact.k1_n_per_m=41.0");
+  write("one.toml", text.insert(text.find("set ="), "model = \"spring\"\n"));
+  const GateFolder folder = load_gates(this->folder(), {testing::springs});
+  const GateRecord record = run_gates(folder, {}).front();
+  EXPECT_NEAR(*record.value, 40.0 * 0.005, 1e-9) << "k1 at the deepest instant";
+  (void)accept(folder, {record});
+  const GateFolder accepted = load_gates(this->folder(), {testing::springs});
+  const std::vector<GateRecord> records = run_gates(accepted, {});
+  EXPECT_TRUE(records.front().passes());
+  EXPECT_TRUE(prove_gates(accepted, records).front().holds());
+  write("one.toml", text.replace(text.find("\"spring\""), 8, "\"broken\""));
+  EXPECT_THAT(run_gates(load_gates(this->folder(), {testing::springs}), {}).front().failure, HasSubstr("it broke"));
+  write("one.toml", text.replace(text.find("\"broken\""), 8, "\"compliance-7\""));
+  EXPECT_THAT(refusal(), HasSubstr("no model has the key \"compliance-7\""));
+}
+
 TEST_F(GateFolderTest, WhatNoGateAsksForIsAFault) {
   accept_all();
   EXPECT_THAT(loaded().unused, IsEmpty());
@@ -221,6 +239,9 @@ TEST_F(GateFolderTest, AWiderLimitThanTheBaseNeedsAWaiverThatHolds) {
   std::string text = gate_text("1e-6", "contact.k3_n_per_m3=3.1e8");
   write("one.toml", text.replace(text.find("force.peak_fast_n"), 17, "fast.regions_max"));
   EXPECT_THAT(held(today), HasSubstr("quantity"));
+  text = gate_text("1e-6", "contact.k3_n_per_m3=3.1e8");
+  write("one.toml", text.insert(text.find("set ="), "model = \"compliance-1\"\n"));
+  EXPECT_THAT(held(today), HasSubstr("model \"compliance-1\" instead of \"\""));
 }
 
 TEST_F(GateFolderTest, AGateOfTheBaseMayNotGoUnlessWaived) {

@@ -52,6 +52,7 @@ TEST(GateFile, MeansWhatItSays) {
 TEST(GateFile, ASecondCodeNeedsNoCommittedData) {
   const std::string both = "title = \"t\"\nrun = \"second_code\"\nscene = \"a.toml\"\n";
   EXPECT_EQ(parse_gate_file(both + gate, "gates/a.toml").run, GateRun::second_code);
+  EXPECT_THAT(refusal(both + "model = \"compliance-1\"\n" + gate), HasSubstr("model is for run = \"fast\" only"));
   EXPECT_THAT(refusal(both + "reference = \"reference/a\"\n" + gate), HasSubstr("reference is never looked at"));
 }
 
@@ -111,6 +112,7 @@ TEST(GateReference, TellsWhatTheReaderTakes) {
   expect_told_truly(gate_file_keys(),
                     {{"title", {"title = \"t\"", "title = 1"}},
                      {"run", {"run = \"fast\"", "run = \"compare\""}},
+                     {"model", {"model = \"compliance-1\"", "model = 1"}},
                      {"scene", {"scene = \"a.toml\"", "scene = 1"}},
                      {"set", {"set = [\"a=1\"]", "set = \"a=1\""}},
                      {"reference", {"reference = \"reference/a\"", "reference = true"}}},

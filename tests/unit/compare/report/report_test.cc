@@ -3,6 +3,7 @@
 
 #include "compare/errors/compute_errors.h"
 #include "compare/errors/figures.h"
+#include "fast/command/results.h"
 #include "fast/step/state.h"
 #include "support/synthetic.h"
 #include "support/xml.h"
@@ -49,8 +50,8 @@ TEST(Report, NeedsNothingFromElsewhere) {
 TEST(Report, TablesEveryFigureThatAppliesWithItsMeaning) {
   const testing::Sides sides = testing::pressed(5, 600);
   const std::string html = report_of(sides);
-  for (const scene::Figure& figure :
-       make_figures(compute_errors(sides.scene, sides.run, sides.result.instants), sides.run, sides.result)) {
+  for (const scene::Figure& figure : make_figures(compute_errors(sides.scene, sides.run, sides.result.instants),
+                                                  sides.result, fast::figures(sides.run))) {
     if (figure.text.starts_with("undefined")) {
       EXPECT_FALSE(has(html, ">" + figure.key + "<")) << figure.key;
       continue;

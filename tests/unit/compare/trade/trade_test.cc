@@ -4,6 +4,7 @@
 #include "scene/base/files.h"
 #include "scene/input/scene_io.h"
 #include "support/source_folder.h"
+#include "support/spring.h"
 #include "support/temporary_folder.h"
 #include "support/xml.h"
 
@@ -237,35 +238,10 @@ TEST_F(TradeTest, MeasuresAndJudgesEveryRung) {
   EXPECT_THAT(trade_text(found), HasSubstr("absent: anchor sets"));
 }
 
-/// A spring with the stiffness of the reference's deepest instant, on a body that never moves.
-class Spring final : public ContactModel {
- public:
-  void step(const scene::Pose&) override { ++steps_; }
-  void answer(scene::Answer& asked) override {
-    for (scene::InstantRecord& instant : asked.instants) {
-      if (instant.depth_m <= 0.0) continue;
-      instant.regions.push_back({.depth_m = instant.depth_m, .force_n = {0.0, 0.0, 1.0e4 * instant.depth_m}});
-    }
-  }
-  [[nodiscard]] int size() const override { return 1; }
-  [[nodiscard]] std::string note() const override { return "one spring"; }
-
- private:
-  int steps_ = 0;
-};
-
-std::vector<ModelEntry> springs(const ModelRequest&) {
-  return {{.name = "spring",
-           .key = "spring",
-           .label = "spring",
-           .set_up = [](const scene::Scene&) { return std::make_unique<Spring>(); }},
-          {.name = "broken spring",
-           .key = "broken",
-           .set_up = [](const scene::Scene&) -> std::unique_ptr<ContactModel> { throw Unavailable("it broke"); }}};
-}
-
 TEST_F(TradeTest, TradesAModelThatNobodyHereKnows) {
-  const Trade found = run(ball_on_ball(1), {}, {springs});
+  scene::Scene scene = ball_on_ball(1);
+  scene.contact.k1_n_per_m = 1.0e4;  // about as stiff as the reference
+  const Trade found = run(scene, {}, {testing::springs});
   ASSERT_EQ(found.rows.size(), 2u);
   const TradeRow& spring = find(found, "spring");
   EXPECT_EQ(spring.note, "one spring");

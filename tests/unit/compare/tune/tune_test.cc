@@ -1,90 +1,26 @@
-// Tuning against references that the fast model itself made: the constants come back, and what cannot be known is said.
+// Tuning against references that a model itself made: the constants come back.
 #include "compare/tune/tune.h"
 
-#include "compare/format/text.h"
 #include "fast/run/replay.h"
-#include "scene/base/files.h"
-#include "scene/input/scene_io.h"
+#include "fast/run/run.h"
 #include "support/bounded_memory.h"
-#include "support/source_folder.h"
-#include "support/temporary_folder.h"
-#include "support/xml.h"
+#include "support/spring.h"
+#include "unit/compare/tune/made_study.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
-#include <cmath>
-#include <limits>
 #include <tuple>
 
 namespace touchstone::compare {
 namespace {
 
+using namespace testing;
 using scene::Vec3;
-using ::testing::Contains;
-using ::testing::HasSubstr;
-
-const std::string scenes = source_folder() + "/meshes/scenes/";
-
-scene::Scene small(const std::vector<std::string>& more = {}) {
-  std::vector<std::string> settings = {"compare.instants=9", "fast.triangles=400", "fast.rate_hz=200.0",
-                                       "contact.k1_n_per_m=20000.0"};
-  settings.insert(settings.end(), more.begin(), more.end());
-  return scene::load_scene(scenes + "sphere-on-sphere-body.toml", settings);
-}
-
-/// What a fast model with these constants answers, as a reference with narrow bands.
-SolveReference made_with(const std::map<std::string, double>& constants) {
-  return [constants](const scene::Scene& asked, const scene::Surface&) {
-    scene::Scene scene = asked;
-    for (const auto& [key, value] : constants) set_parameter(scene, key, value);
-    reference::Result result;
-    const fast::Run run = fast::run(scene);
-    result.levels.push_back({});
-    for (const scene::InstantRecord& record : run.instants) {
-      result.levels[0].force_n.push_back(record.force_n().norm());
-      scene::ReferenceInstant& instant = result.instants.emplace_back(scene::ReferenceInstant{record});
-      if (!record.regions.empty()) instant.region_middles_m = {Vec3(0.0, 0.0, 0.06)};
-      instant.displacement_uncertainty_m.setConstant(run.surface.points_m.cols(), 1e-6);
-      instant.force_uncertainty_n = 0.01;
-    }
-    result.shape_uncertainty_rel = 1e-4;
-    result.model = "made by the fast model";
-    return result;
-  };
-}
-
-TuningParameter free(const std::string& key, double low, double high, TuningStage stage = TuningStage::force) {
-  return {key, "", stage, low, high, std::sqrt(low * high), true, false};
-}
-
-TuningStudy study(std::vector<TuningParameter> parameters) {
-  TuningStudy out;
-  out.name = "made";
-  out.formulations = {scene::Formulation::corrected};
-  out.laws = {scene::ContactLaw::duffing};
-  out.starts = 2;
-  out.shape_floor = 1e-4;
-  out.training = {{"pole", "", small(), {0.0, 0.003}}};
-  out.held_out = {{"deeper", "depth", small(), {0.003, 1.0}},
-                  {"Larger ball", "tool", small({"tool.radius_m=0.0104"}), {0.0, 1.0}}};
-  out.parameters = std::move(parameters);
-  return out;
-}
-
-const Determination& found(const TunedModel& model, const std::string& key) {
-  for (const StageFit& stage : model.stages) {
-    for (std::size_t k = 0; k < stage.parameters.size(); ++k) {
-      if (stage.parameters[k].key == key) return stage.fit.parameters[k];
-    }
-  }
-  throw std::out_of_range(key);
-}
 
 scene::Scene coarse(const std::string& name) {
-  return scene::load_scene(scenes + name + ".toml", {"compare.instants=7", "fast.triangles=200", "fast.rate_hz=100.0",
-                                                     "fast.tool_samples=2000"});
+  return scene::load_scene(
+      source_folder() + "/meshes/scenes/" + name + ".toml",
+      {"compare.instants=7", "fast.triangles=200", "fast.rate_hz=100.0", "fast.tool_samples=2000"});
 }
 
 /// Down, up and out, and down again.
@@ -186,6 +122,16 @@ TEST(Tune, BringsBackTheConstantsOfForceAndShape) {
   }
 }
 
+TEST(Tune, BringsBackTheConstantOfAModelThatNobodyHereKnows) {
+  const ModelEntry spring = testing::springs({.scene = small()}).front();
+  const Tuning tuning = tune(study({free("contact.k1_n_per_m", 1e1, 1e5)}),
+                             made_with({{"contact.k1_n_per_m", 900.0}}, spring), {}, spring);
+  const TunedModel& model = tuning.models.at(0);
+  EXPECT_NEAR(found(model, "contact.k1_n_per_m").value, 900.0, 0.5);
+  for (const TuningOutcome& outcome : model.outcomes) EXPECT_LT(*outcome.errors.force_nrmse.value, 1e-3);
+  EXPECT_FALSE(model.shape_parts) << "those of a skeleton";
+}
+
 TEST(Tune, JudgesOnlyTheInstantsOfTheAskedDepths) {
   const Tuning tuning = tune(study({free("contact.k1_n_per_m", 1e1, 1e5)}), made_with({}));
   ASSERT_EQ(tuning.data.size(), 3u);
@@ -200,114 +146,10 @@ TEST(Tune, JudgesOnlyTheInstantsOfTheAskedDepths) {
   EXPECT_EQ(depths(2).size(), 9u);
 }
 
-TEST(Tune, SaysWhatTheDataCannotDetermine) {
-  // A local factor of strength zero has no radius.
-  TuningStudy asked =
-      study({free("fast.s_c_m2", 1e-2, 1.0, TuningStage::shape), free("fast.r_R_m", 0.005, 0.03, TuningStage::shape)});
-  for (auto* list : {&asked.training, &asked.held_out}) {
-    for (TuningContact& contact : *list) contact.scene.fast.C_n = 0.0;
-  }
-  const Tuning tuning = tune(asked, made_with({{"fast.s_c_m2", 0.1}}));
-  const TunedModel& model = tuning.models.at(0);
-  EXPECT_TRUE(found(model, "fast.r_R_m").open);
-  EXPECT_FALSE(found(model, "fast.s_c_m2").open);
-  EXPECT_THAT(model.stages.at(0).notes, Contains(HasSubstr("cannot determine fast.r_R_m")));
-}
-
-TEST(Tune, NamesAnActiveBoundInEveryAnswer) {
-  const Tuning tuning = tune(study({free("contact.k1_n_per_m", 1e2, 1e4), free("contact.k3_n_per_m3", 1e7, 1e11)}),
-                             made_with({{"contact.k1_n_per_m", 3.0e4}, {"contact.k3_n_per_m3", 2.0e9}}));
-  const TunedModel& model = tuning.models.at(0);
-  EXPECT_EQ(found(model, "contact.k1_n_per_m").at_bound, AtBound::high);
-  EXPECT_THAT(model.stages.at(0).notes, Contains(HasSubstr("contact.k1_n_per_m ended at its upper bound")));
-  const scene::Figures figures = tuning_figures(tuning);
-  const auto error = std::find_if(figures.begin(), figures.end(), [](const scene::Figure& figure) {
-    return figure.key == "parameter.contact.k1_n_per_m.error_rel";
-  });
-  ASSERT_NE(error, figures.end());
-  EXPECT_EQ(error->text, "none: at its upper bound");
-}
-
-TEST(Tune, SaysWhatThePartsOfTheShapeAreGoodFor) {
-  const auto constants = std::map<std::string, double>{{"contact.k1_n_per_m", 900.0}, {"fast.s_c_m2", 6.0e-3}};
-  const Tuning tuning =
-      tune(study({free("contact.k1_n_per_m", 1e1, 1e5), free("fast.s_c_m2", 1e-4, 1e-1, TuningStage::shape)}),
-           made_with(constants));
-  const TunedModel& model = tuning.models.at(0);
-  const ShapeParts& parts = model.shape_parts;
-  EXPECT_NEAR(parts.whole, *model.outcomes.at(0).errors.shape_rel_l2.value, 1e-9);
-  // The reference has both parts.
-  EXPECT_GT(parts.without_local_factor, parts.whole + 0.01);
-  EXPECT_GT(parts.anchors_at_rest, parts.whole + 0.01);
-  EXPECT_GT(parts.hat_alone, parts.whole + 0.01);
-  EXPECT_THAT(model.limits.back(), HasSubstr("What its parts are good for, on the training contact pole"));
-}
-
-TEST(Tune, NamesTheLawInWordsAndKeepsItsKeyForFiles) {
-  TunedModel model;
-  model.law = scene::ContactLaw::area_aware;
-  EXPECT_EQ(model.name(), "corrected area-aware");
-  EXPECT_EQ(model.key(), "corrected-area_aware");
-}
-
-TEST(Tune, HeldOutFiguresAreTheWorstContactsAndNoneOfTraining) {
-  const Tuning tuning =
-      tune(study({free("contact.k1_n_per_m", 1e1, 1e5)}), made_with({{"contact.k3_n_per_m3", 2.0e9}}));
-  std::map<std::string, double> figures;
-  for (const scene::Figure& figure : tuning_figures(tuning)) figures[figure.key] = figure.number;
-  const auto nrmse = [&](std::size_t k) { return *tuning.models[0].outcomes[k].errors.force_nrmse.value; };
-  EXPECT_EQ(figures.at("training.force.nrmse"), nrmse(0));
-  EXPECT_EQ(figures.at("held_out.force.nrmse"), std::max(nrmse(1), nrmse(2)));
-  EXPECT_EQ(figures.at("held_out.deeper.force.nrmse"), nrmse(1));
-  EXPECT_EQ(figures.at("held_out.larger-ball.force.nrmse"), nrmse(2));
-  EXPECT_EQ(figures.at("corrected-duffing.held_out.force.nrmse"), figures.at("held_out.force.nrmse"));
-  EXPECT_GT(nrmse(1), nrmse(0));
-}
-
 TEST(Tune, RefusesAContactWithoutAnInstantThatCounts) {
   TuningStudy asked = study({free("contact.k1_n_per_m", 1e1, 1e5)});
   asked.held_out[0].depth_m = {0.1, 1.0};
   EXPECT_THROW((void)tune(asked, made_with({})), scene::InputError);
-}
-
-TEST(Tune, LeavesAFolderWhoseParametersASceneTakesOver) {
-  const testing::TemporaryFolder folder;
-  TuningStudy asked = study({free("contact.k3_n_per_m3", 1e7, 1e11), free("contact.k1_n_per_m", 1e1, 1e5),
-                             free("fast.s_c_m2", 1e-4, 1e-1, TuningStage::shape)});
-  asked.parameters[2].profile = true;
-  asked.title = "Made & tuned";
-  const Tuning tuning = tune(asked, made_with({{"contact.k1_n_per_m", 900.0}}));
-  write_tuning(folder.path(), tuning, scene::make_manifest(asked.training[0].scene, "touchstone tune"));
-  for (const char* name : {"parameters.toml", "parameters-corrected-duffing.toml", "summary.json", "curve.csv",
-                           "manifest.json", "report.html"}) {
-    EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
-  }
-  // The scene without the constants, and one line more.
-  std::string text = scene::resolved_toml(asked.training[0].scene);
-  for (const char* key : {"k1_n_per_m", "k3_n_per_m3", "s_c_m2", "formulation", "law"}) {
-    const std::size_t at = text.find(std::string("\n") + key + " = ");
-    ASSERT_NE(at, std::string::npos) << key;
-    text.erase(at, text.find('\n', at + 1) - at);
-  }
-  const scene::Scene taken = scene::parse_scene("include = \"parameters.toml\"\n" + text, folder.path() / "scene.toml");
-  const scene::Scene wanted = tuned_scene(asked.training[0].scene, tuning.models[0]);
-  EXPECT_EQ(taken.contact.k1_n_per_m, wanted.contact.k1_n_per_m);
-  EXPECT_EQ(taken.fast.s_c_m2, wanted.fast.s_c_m2);
-  EXPECT_EQ(scene::scene_hash(taken), scene::scene_hash(wanted));
-
-  const std::string html = *scene::read_file(folder.path() / "report.html");
-  EXPECT_TRUE(testing::is_well_formed(html));
-  EXPECT_FALSE(testing::shows_not_a_number(html));
-  EXPECT_LT(html.find("On held-out contacts"), html.find("On training contacts"));
-  for (const char* text_there :
-       {"Made &amp; tuned", "Profile of fast.s_c_m2", "Regime map", "Correlation", "What limits"}) {
-    EXPECT_THAT(html, HasSubstr(text_there));
-  }
-  // Nobody's material is judged by what another model once reached, and what limits the first model stands there once.
-  EXPECT_THAT(html, ::testing::Not(HasSubstr("prototype")));
-  const std::string limit = escape_xml(tuning.models.front().limits.front());
-  EXPECT_NE(html.find(limit), std::string::npos);
-  EXPECT_EQ(html.find(limit), html.rfind(limit));
 }
 
 }  // namespace

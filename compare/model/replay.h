@@ -1,0 +1,11 @@
+// A model for a fit, whether or not it has anything faster than to be set up anew.
+#pragma once
+
+#include "compare/model/model.h"
+
+namespace touchstone::compare {
+
+/// The entry's own replay; without one it is set up for every call. @throws Unavailable
+[[nodiscard]] std::unique_ptr<ModelReplay> replay_of(const ModelEntry& entry, const scene::Scene& scene);
+
+}  // namespace touchstone::compare

@@ -1,0 +1,41 @@
+// A contact model that nobody but the tests knows: a spring, on a body that never moves.
+#pragma once
+
+#include "compare/model/request.h"
+
+#include <memory>
+#include <vector>
+
+namespace touchstone::compare::testing {
+
+class Spring final : public ContactModel {
+ public:
+  explicit Spring(double n_per_m) : n_per_m_(n_per_m) {}
+
+  void step(const scene::Pose&) override { ++steps_; }
+  void answer(scene::Answer& asked) override {
+    for (scene::InstantRecord& instant : asked.instants) {
+      if (instant.depth_m <= 0.0) continue;
+      instant.regions.push_back({.depth_m = instant.depth_m, .force_n = {0.0, 0.0, n_per_m_ * instant.depth_m}});
+    }
+  }
+  [[nodiscard]] int size() const override { return 1; }
+  [[nodiscard]] std::string note() const override { return "one spring"; }
+
+ private:
+  double n_per_m_;
+  int steps_ = 0;
+};
+
+/// One as stiff as the scene's k1, and one that cannot be set up.
+[[nodiscard]] inline std::vector<ModelEntry> springs(const ModelRequest&) {
+  return {{.name = "spring",
+           .key = "spring",
+           .label = "spring",
+           .set_up = [](const scene::Scene& scene) { return std::make_unique<Spring>(scene.contact.k1_n_per_m); }},
+          {.name = "broken spring",
+           .key = "broken",
+           .set_up = [](const scene::Scene&) -> std::unique_ptr<ContactModel> { throw Unavailable("it broke"); }}};
+}
+
+}  // namespace touchstone::compare::testing
