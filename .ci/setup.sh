@@ -39,15 +39,15 @@ install_packages() {
     fail "apt-get could not add the packages (is the network up?); its messages are in $log."
 }
 
-# build PRESET BUILD_DIR [CMAKE_OPTION...] -- [TARGET...]
+# build PRESET [CMAKE_OPTION...] -- [TARGET...]
 build() {
-  local preset=$1 folder=$2 options=()
-  shift 2
+  local preset=$1 folder=build/$1 options=()
+  shift
   while [ $# -gt 0 ] && [ "$1" != -- ]; do options+=("$1"); shift; done
   shift
   echo "== Building $folder (the first time takes some minutes)"
   local log=$folder/build.log
   mkdir -p "$folder"
-  { cmake --preset "$preset" -B "$folder" "${options[@]}" && cmake --build "$folder" -j 2 ${1:+--target "$@"}; } \
+  { cmake --preset "$preset" "${options[@]}" && cmake --build "$folder" -j 2 ${1:+--target "$@"}; } \
     >"$log" 2>&1 || { tail -n 40 "$log" >&2; fail "the build failed; the whole log is $log."; }
 }

@@ -4,6 +4,7 @@
 #include "reference/mesh/sampling.h"
 #include "reference/run/model_choice.h"
 #include "reference/solver.h"
+#include "scene/base/in_space.h"
 #include "scene/shape/surface.h"
 
 #include <algorithm>
@@ -12,15 +13,6 @@
 
 namespace touchstone::reference {
 namespace {
-
-template <int dim>
-scene::Vec3 in_world(const Eigen::Matrix<double, dim, 1>& p) {
-  if constexpr (dim == 3) {
-    return p;
-  } else {
-    return {p[0], 0.0, p[1]};
-  }
-}
 
 /// The contact nodes that the tool comes near to at some instant.
 template <int dim>
@@ -77,9 +69,9 @@ LinearResponse condense(const scene::Scene& scene, const ModelChoice& choice, co
       const int node = nodes[static_cast<std::size_t>(j)];
       const Eigen::Matrix<double, dim, 1> N = problem.surface_normal(node);
       forces.push_back({node, -N});
-      out.nodes_m.col(j) = in_world<dim>(problem.mesh().points_m.col(node));
-      out.normals.col(j) = in_world<dim>(N);
-      scene::Vec3 on_tool = images * in_world<dim>(N);
+      out.nodes_m.col(j) = scene::in_space<dim>(problem.mesh().points_m.col(node));
+      out.normals.col(j) = scene::in_space<dim>(N);
+      scene::Vec3 on_tool = images * scene::in_space<dim>(N);
       if (dim == 2 || mirror_x) on_tool.x() = 0.0;
       if (mirror_y) on_tool.y() = 0.0;
       out.force_on_tool.col(j) = on_tool;

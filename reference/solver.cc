@@ -12,12 +12,11 @@
 #include "reference/tool/tool_distance.h"
 #include "scene/base/files.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <iomanip>
 #include <optional>
-#include <sstream>
 
 namespace touchstone::reference {
 namespace {
@@ -50,13 +49,12 @@ void add_level_lines(const Scene& scene, const ModelChoice& choice, int levels, 
   };
   std::optional<Mesh<dim>> coarsest;
   for (int level = 0; level < levels; ++level) {
-    std::ostringstream size;
-    size << "cells of " << std::setprecision(3) << 1e3 * element_size_m(scene, choice, level)
-         << " mm at the deepest contact's rim";
+    const std::string size =
+        fmt::format("cells of {:.3g} mm at the deepest contact's rim", 1e3 * element_size_m(scene, choice, level));
     const std::string part = "mesh " + std::to_string(level + 1);
     try {
       Mesh<dim> mesh = level_mesh<dim>(scene, choice, level);
-      plan.push_back({part, true, size.str(),
+      plan.push_back({part, true, size,
                       add({.dim = dim,
                            .unknowns = unknowns_of(mesh),
                            .load_steps = load_steps,
@@ -75,29 +73,29 @@ void add_level_lines(const Scene& scene, const ModelChoice& choice, int levels, 
       add(one.work);
     }
   }
-  std::ostringstream how;
-  how << load_steps << " load steps in contact on each mesh" << (uncertainty ? ", and the sensitivities" : "")
-      << "; time of " << ranks::threads() << " thread" << (ranks::threads() == 1 ? "" : "s")
-      << " on an idle AMD EPYC at 2.6 GHz, within a factor of two";
-  plan.push_back(
-      {"all meshes", true, how.str(), "about " + memory_text(all.memory_bytes) + " and " + duration_text(all.seconds)});
+  plan.push_back({"all meshes", true,
+                  fmt::format("{} load steps in contact on each mesh{}; time of {} thread{} on an idle AMD EPYC at 2.6 "
+                              "GHz, within a factor of two",
+                              load_steps, uncertainty ? ", and the sensitivities" : "", ranks::threads(),
+                              ranks::threads() == 1 ? "" : "s"),
+                  "about " + memory_text(all.memory_bytes) + " and " + duration_text(all.seconds)});
 }
 
 template <class Add>
 void add_tool_line(const Scene& scene, const Add& add) {
-  std::ostringstream how;
-  how << std::setprecision(3);
+  std::string how;
   if (scene.tool.shape == scene::ToolShape::mesh) {
-    how << "signed distance on a grid of " << 1e3 * grid_spacing_m(*scene.tool.mesh)
-        << " mm with a tricubic spline; sharp edges are rounded over about as much";
+    how = fmt::format(
+        "signed distance on a grid of {:.3g} mm with a tricubic spline; sharp edges are rounded over about as much",
+        1e3 * grid_spacing_m(*scene.tool.mesh));
   } else {
-    how << "exact signed distance";
+    how = "exact signed distance";
     if (scene.tool.shape == scene::ToolShape::box) {
-      how << " of a box with edges rounded by " << 0.5e3 * box_edge_share * scene.tool.size_m.minCoeff()
-          << " mm: sharp ones have unbounded pressure";
+      how += fmt::format(" of a box with edges rounded by {:.3g} mm: sharp ones have unbounded pressure",
+                         0.5e3 * box_edge_share * scene.tool.size_m.minCoeff());
     }
   }
-  add("tool", true, how.str());
+  add("tool", true, how);
 }
 
 }  // namespace
@@ -127,11 +125,12 @@ scene::Plan plan(const Scene& scene) {
   add("finite strain", finite,
       finite ? "neo-Hookean, deformed geometry in contact"
              : "reference.kinematics is \"small\": linear elasticity, gap along the rest normal");
-  std::ostringstream nu;
-  nu << "nu = " << scene.body.material.poissons_ratio << "; "
-     << (scene.body.material.poissons_ratio == 0.5 ? "incompressible, the pressure keeps the volume"
-                                                   : "the same mixed element serves every nu, so nothing locks");
-  add("pressure unknowns", true, nu.str(), "eliminated cell by cell, none in the global matrix");
+  const double nu = scene.body.material.poissons_ratio;
+  add("pressure unknowns", true,
+      fmt::format("nu = {:g}; {}", nu,
+                  nu == 0.5 ? "incompressible, the pressure keeps the volume"
+                            : "the same mixed element serves every nu, so nothing locks"),
+      "eliminated cell by cell, none in the global matrix");
   if (scene.contact.friction) {
     add("friction", true,
         "|t| <= m N at every node, m of its region: stuck m F_n = K F_n^beta, sliding m = mu_D, but no more than stuck",
@@ -141,7 +140,7 @@ scene::Plan plan(const Scene& scene) {
   }
   add("several contact regions", !scene.tool.convex(),
       scene.tool.convex() ? "a convex tool touches a convex body once"
-                          : "touching nodes nearer than fast.r_th_m, or of one cell face, are one region");
+                          : "touching nodes nearer than contact.r_th_m, or of one cell face, are one region");
   add_tool_line(scene, add);
   const std::size_t inclusions = scene.body.inclusions.size();
   if (inclusions == 0) {
@@ -152,16 +151,14 @@ scene::Plan plan(const Scene& scene) {
         "small cells at their surfaces");
   }
   const int levels = scene.reference.levels.value_or(3);
-  std::ostringstream uncertainty;
+  std::string uncertainty = "unknown with fewer than three meshes";
   if (!scene.reference.levels) {
-    uncertainty << "from 3 meshes or more, until force and shape are known to " << 100.0 * scene.reference.error
-                << " %";
+    uncertainty =
+        fmt::format("from 3 meshes or more, until force and shape are known to {:g} %", 100.0 * scene.reference.error);
   } else if (levels >= 3) {
-    uncertainty << "from " << levels << " meshes";
-  } else {
-    uncertainty << "unknown with fewer than three meshes";
+    uncertainty = fmt::format("from {} meshes", levels);
   }
-  add("uncertainty", levels >= 3, uncertainty.str());
+  add("uncertainty", levels >= 3, uncertainty);
   if (choice.dim == 2) {
     add_level_lines<2>(scene, choice, levels, plan);
   } else {
@@ -174,7 +171,7 @@ Result solve(const Scene& scene, const Eigen::Matrix3Xd& rest_points_m, const Op
   if (std::vector<scene::Fault> faults = unsupported(scene); !faults.empty())
     throw scene::InputError(std::move(faults));
   scene::require_writable(options.store / content_key(scene), "--store");
-  const auto begin = std::chrono::steady_clock::now();
+  const scene::Stopwatch begin;
   const ModelChoice choice = choose_model(scene);
   return run(scene, choice, rest_points_m, options, begin);
 }

@@ -103,22 +103,20 @@ int export_deck(const fast::VerbOptions& options, const ExportOptions& export_op
   });
 }
 
-CLI::App* add_export_verb(CLI::App& app, fast::VerbOptions& options, ExportOptions& export_options,
-                          const ReferenceOptions& reference, int& exit_code) {
-  CLI::App* verb = fast::add_verb(
-      app, "export", "the scene as an input deck for CalculiX, an independent finite element code",
+fast::Command add_export_verb(fast::Command& program, fast::VerbOptions& options, ExportOptions& export_options,
+                              const ReferenceOptions& reference) {
+  fast::Command verb = fast::add_verb(
+      program, "export", "the scene as an input deck for CalculiX, an independent finite element code",
       "meshes/scenes/ball-on-cube-press.toml --mesh 2 --run", options,
-      [&options, &export_options, &reference] { return export_deck(options, export_options, reference); }, exit_code);
-  verb->add_option("--mesh", export_options.mesh, "of the reference's meshes, 1 the coarsest")
-      ->check(CLI::Range(1, 6))
-      ->capture_default_str();
-  verb->add_option("--contact-stiffness", export_options.contact_stiffness_pa_per_m,
-                   "contact pressure over overclosure [Pa/m] (default: costs about a thousandth of the force)")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--time-to-error", export_options.time_to_error,
-                   "instead of one deck: solve this many meshes with both codes and print what a force error costs")
-      ->check(CLI::Range(2, 4));
-  verb->add_flag("--run", export_options.run, "run ccx on it, solve the reference, and print both side by side");
+      [&options, &export_options, &reference] { return export_deck(options, export_options, reference); });
+  verb.option("--mesh", export_options.mesh, "of the reference's meshes, 1 the coarsest").range(1, 6).shows_default();
+  verb.option("--contact-stiffness", export_options.contact_stiffness_pa_per_m,
+              "contact pressure over overclosure [Pa/m] (default: costs about a thousandth of the force)")
+      .positive();
+  verb.option("--time-to-error", export_options.time_to_error,
+              "instead of one deck: solve this many meshes with both codes and print what a force error costs")
+      .range(2, 4);
+  verb.flag("--run", export_options.run, "run ccx on it, solve the reference, and print both side by side");
   return verb;
 }
 

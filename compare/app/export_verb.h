@@ -20,8 +20,8 @@ struct ExportOptions {
 int export_deck(const fast::VerbOptions& options, const ExportOptions& export_options,
                 const ReferenceOptions& reference);
 
-/// Adds the verb to the command line. @param options, reference, exit_code  as for the other verbs
-CLI::App* add_export_verb(CLI::App& app, fast::VerbOptions& options, ExportOptions& export_options,
-                          const ReferenceOptions& reference, int& exit_code);
+/// Adds the command; its variables must outlive Program::run.
+fast::Command add_export_verb(fast::Command& program, fast::VerbOptions& options, ExportOptions& export_options,
+                              const ReferenceOptions& reference);
 
 }  // namespace touchstone::compare

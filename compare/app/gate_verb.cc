@@ -95,36 +95,29 @@ int gate(const GateOptions& options, const std::string& command) {
   });
 }
 
-void add_gate_verb(CLI::App& app, GateOptions& options, int& exit_code) {
-  const std::string program = app.get_name();
-  CLI::App* verb = app.add_subcommand("gate", "accuracy gates; exit 1 when one is red");
-  verb->add_option("NAME", options.names, "gates to hold, FILE or FILE.GATE (default all)");
-  verb->add_option("--gates", options.folder, "folder of the gate files")->capture_default_str();
-  verb->add_option("--out", options.out, "result folder")->capture_default_str();
-  verb->add_option("--junit", options.junit, "also write JUnit's XML to this file");
-  verb->add_option("--base", options.base, "commit or branch whose limits may not be widened without a waiver");
-  verb->add_flag("--list", options.list, "names, quantities and limits, nothing is run");
-  verb->add_flag_callback(
-      "--keys",
-      [] {
-        std::cout << gate_reference_markdown();
-        throw CLI::Success();
-      },
-      "print every key of a gate file as Markdown tables");
-  verb->add_flag("--quiet", options.quiet, "no progress, only results and errors");
-  CLI::Option* prove = verb->add_flag("--prove", options.prove,
-                                      "apply every gate's own change too; exit 1 unless it turns the gate red");
-  CLI::Option* regenerate =
-      verb->add_flag("--regenerate", options.regenerate, "solve the reference data of the gates named, and write it");
-  CLI::Option* accept =
-      verb->add_flag("--accept", options.accept, "write the values of the drift gates named as the accepted ones");
-  regenerate->excludes(prove)->excludes(accept);
-  accept->excludes(prove);
-  verb->add_option("--store", options.reference.store, "for --regenerate: content-addressed reference results")
-      ->capture_default_str()
-      ->needs(regenerate);
-  verb->footer("Example:\n  " + program + " gate --junit out/gates.xml --base origin/main");
-  verb->callback([&options, &exit_code, program] { exit_code = gate(options, program + " gate"); });
+void add_gate_verb(fast::Command& program, GateOptions& options) {
+  fast::Command verb = program.add("gate", "accuracy gates; exit 1 when one is red");
+  verb.option("NAME", options.names, "gates to hold, FILE or FILE.GATE (default all)");
+  verb.option("--gates", options.folder, "folder of the gate files").shows_default();
+  verb.option("--out", options.out, "result folder").shows_default();
+  verb.option("--junit", options.junit, "also write JUnit's XML to this file");
+  verb.option("--base", options.base, "commit or branch whose limits may not be widened without a waiver");
+  verb.flag("--list", options.list, "names, quantities and limits, nothing is run");
+  verb.prints("--keys", gate_reference_markdown, "print every key of a gate file as Markdown tables");
+  verb.flag("--quiet", options.quiet, "no progress, only results and errors");
+  const fast::Option prove =
+      verb.flag("--prove", options.prove, "apply every gate's own change too; exit 1 unless it turns the gate red");
+  const fast::Option regenerate =
+      verb.flag("--regenerate", options.regenerate, "solve the reference data of the gates named, and write it");
+  const fast::Option accept =
+      verb.flag("--accept", options.accept, "write the values of the drift gates named as the accepted ones");
+  regenerate.excludes(prove).excludes(accept);
+  accept.excludes(prove);
+  verb.option("--store", options.reference.store, "for --regenerate: content-addressed reference results")
+      .shows_default()
+      .needs(regenerate);
+  verb.example("gate --junit out/gates.xml --base origin/main");
+  verb.action([&options, name = program.program_name()] { return gate(options, name + " gate"); });
 }
 
 }  // namespace touchstone::compare

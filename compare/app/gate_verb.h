@@ -2,8 +2,7 @@
 #pragma once
 
 #include "compare/gate/gate.h"
-
-#include <CLI/CLI.hpp>
+#include "fast/command/command.h"
 
 #include <filesystem>
 
@@ -26,6 +25,6 @@ struct GateOptions {
 /// @returns exit code: answer_is_no when a gate is red, or not proved
 int gate(const GateOptions& options, const std::string& command);
 
-void add_gate_verb(CLI::App& app, GateOptions& options, int& exit_code);
+void add_gate_verb(fast::Command& program, GateOptions& options);
 
 }  // namespace touchstone::compare

@@ -31,110 +31,104 @@ int run_program(int argc, char** argv) {
     reference::follow_first_rank();
     return fast::done;
   }
-  CLI::App app("How wrong a fast contact model is, against a finite-strain reference with error bars.", "touchstone");
-  app.add_flag_callback(
-      "--scene-reference",
-      [] {
-        std::cout << scene::scene_reference_markdown();
-        throw CLI::Success();
-      },
-      "print every key of a scene file as a Markdown table");
+  fast::Program program("How wrong a fast contact model is, against a finite-strain reference with error bars.",
+                        "touchstone");
+  program.prints("--scene-reference", scene::scene_reference_markdown,
+                 "print every key of a scene file as a Markdown table");
 
   fast::VerbOptions options;
   live::LiveOptions live_options;
   compare::ReferenceOptions reference;
   compare::VerifyOptions verify_options;
-  int exit_code = fast::done;
   fast::NewOptions new_options;
-  fast::add_new_verb(app, new_options, exit_code);
+  fast::add_new_verb(program, new_options);
   const auto add = [&](const char* name, const char* what, const char* example, auto verb) {
-    return fast::add_verb(
-        app, name, what, example, options, [&, verb] { return verb(options, reference); }, exit_code);
+    return fast::add_verb(program, name, what, example, options, [&, verb] { return verb(options, reference); });
   };
   const auto add_with_folder = [&](const char* name, const char* what, const char* example, auto verb) {
-    CLI::App* command = add(name, what, example, verb);
-    command->add_option("--out", options.out, std::string("result folder (default out/<scene>-") + name + ")");
+    fast::Command command = add(name, what, example, verb);
+    command.option("--out", options.out, std::string("result folder (default out/<scene>-") + name + ")");
     return command;
   };
-  const auto add_store = [&](CLI::App* command) {
-    command->add_option("--store", reference.store, "content-addressed reference results, shared by all runs")
-        ->capture_default_str();
+  const auto add_store = [&](fast::Command command) {
+    command.option("--store", reference.store, "content-addressed reference results, shared by all runs")
+        .shows_default();
   };
-  const auto add_reference = [&](CLI::App* command) {
+  const auto add_reference = [&](fast::Command command) {
     add_store(command);
-    auto* levels = command->add_option("--level", reference.levels, "number of meshes, in place of an error")
-                       ->check(CLI::Range(1, 9));
+    const fast::Option levels =
+        command.option("--level", reference.levels, "number of meshes, in place of an error").range(1, 9);
     command
-        ->add_option("--error", reference.error,
-                     "refine until force and shape are known to this, relative (default: the scene's)")
-        ->check(CLI::Range(1e-4, 0.5))
-        ->excludes(levels);
+        .option("--error", reference.error,
+                "refine until force and shape are known to this, relative (default: the scene's)")
+        .range(1e-4, 0.5)
+        .excludes(levels);
     command
-        ->add_option("--memory-gib", reference.memory_gib,
-                     "no mesh that would take more, by estimate (default 80 % of the memory)")
-        ->check(CLI::Range(0.1, 1e6));
+        .option("--memory-gib", reference.memory_gib,
+                "no mesh that would take more, by estimate (default 80 % of the memory)")
+        .range(0.1, 1e6);
     command
-        ->add_option("--minutes", reference.minutes,
-                     "end a reference solve after this time, what is solved is kept (default 60; none with --level)")
-        ->check(CLI::Range(0.01, 1e6));
+        .option("--minutes", reference.minutes,
+                "end a reference solve after this time, what is solved is kept (default 60; none with --level)")
+        .range(0.01, 1e6);
   };
-  const auto add_require_error = [&](CLI::App* command) {
+  const auto add_require_error = [&](fast::Command command) {
     command
-        ->add_option("--require-error", reference.require_error,
-                     "exit 3 unless force and shape are known to this, relative; results are written all the same")
-        ->check(CLI::Range(1e-4, 0.5));
+        .option("--require-error", reference.require_error,
+                "exit 3 unless force and shape are known to this, relative; results are written all the same")
+        .range(1e-4, 0.5);
   };
   add("plan", "what each side will model for a scene, what it leaves out and why",
       "meshes/scenes/ball-on-cube-press.toml --set fast.formulation=published", compare::plan);
   add_with_folder("fast", "the real-time pipeline over the scene's track in virtual time",
                   "meshes/scenes/ball-on-cube-press.toml --out out/press", compare::run_fast);
-  CLI::App* solved =
+  fast::Command solved =
       add_with_folder("reference", "the offline solve; answers from the store, resumes where it was interrupted",
                       "meshes/scenes/hertz-sphere.toml --error 0.005", compare::run_reference);
   add_reference(solved);
   add_require_error(solved);
   compare::CompareOptions compare_options;
-  CLI::App* compared = add_with_folder(
+  fast::Command compared = add_with_folder(
       "compare", "both sides, then force and shape errors: tables, VTK, report",
       "meshes/scenes/ball-on-cube-press.toml --set tool.radius_m=0.008 --error 0.02",
       [&](const auto& given, const auto& asked) { return compare::run_compare(given, asked, compare_options); });
-  compared->add_option("--parameters", compare_options.parameters, "file that tune left, for the fast side alone");
+  compared.option("--parameters", compare_options.parameters, "file that tune left, for the fast side alone");
   compared
-      ->add_option("--model", compare_options.models,
-                   "another model for the table, by its key in a trade, such as compliance-1; may be repeated")
-      ->allow_extra_args(false);
-  compared->add_flag("--plots", compare_options.plots,
-                     "every plot of the report also as SVG and PDF, in the folder's plots/");
+      .option("--model", compare_options.models,
+              "another model for the table, by its key in a trade, such as compliance-1; may be repeated")
+      .one_value_each_time();
+  compared.flag("--plots", compare_options.plots,
+                "every plot of the report also as SVG and PDF, in the folder's plots/");
   add_reference(compared);
   add_require_error(compared);
   compare::StudyOptions study_options;
-  compare::add_study_verb(app, study_options, exit_code);
+  compare::add_study_verb(program, study_options);
   compare::ResultsOptions results_options;
-  compare::add_report_verb(app, results_options, exit_code);
+  compare::add_report_verb(program, results_options);
   compare::ViewOptions view_options;
-  compare::add_view_verb(app, view_options, exit_code);
+  compare::add_view_verb(program, view_options);
   compare::TuneOptions tune_options;
-  add_reference(compare::add_tune_verb(app, tune_options, reference, exit_code));
+  add_reference(compare::add_tune_verb(program, tune_options, reference));
   compare::TradeOptions trade_options;
-  CLI::App* trade_verb = compare::add_trade_verb(app, options, trade_options, reference, exit_code);
-  trade_verb->add_option("--out", options.out, "result folder (default out/<scene>-trade)");
+  fast::Command trade_verb = compare::add_trade_verb(program, options, trade_options, reference);
+  trade_verb.option("--out", options.out, "result folder (default out/<scene>-trade)");
   add_reference(trade_verb);
   compare::ExportOptions export_options;
-  CLI::App* export_verb = compare::add_export_verb(app, options, export_options, reference, exit_code);
-  export_verb->add_option("--out", options.out, "result folder (default out/<scene>-export)");
+  fast::Command export_verb = compare::add_export_verb(program, options, export_options, reference);
+  export_verb.option("--out", options.out, "result folder (default out/<scene>-export)");
   add_store(export_verb);
-  live::add_live_verb(app, options, live_options, exit_code, compare::write_live_report);
-  compare::add_verify_verb(app, verify_options, exit_code);
+  live::add_live_verb(program, options, live_options, compare::write_live_report);
+  compare::add_verify_verb(program, verify_options);
   compare::GateOptions gate_options;
-  compare::add_gate_verb(app, gate_options, exit_code);
+  compare::add_gate_verb(program, gate_options);
   std::string shell;
-  fast::add_completion_verb(app, shell, exit_code);
-  fast::group_verbs(app, {{"First", {"new", "plan", "compare"}},
-                          {"One scene", {"fast", "live", "reference", "trade", "export"}},
-                          {"Results", {"view", "report"}},
-                          {"Many scenes", {"study", "tune"}},
-                          {"Checks", {"gate", "verify"}}});
-  app.footer(
+  fast::add_completion_verb(program, shell);
+  program.group({{"First", {"new", "plan", "compare"}},
+                 {"One scene", {"fast", "live", "reference", "trade", "export"}},
+                 {"Results", {"view", "report"}},
+                 {"Many scenes", {"study", "tune"}},
+                 {"Checks", {"gate", "verify"}}});
+  program.footer(
       "First steps:\n"
       "  touchstone new block.toml --body box 60x60x40mm --youngs-modulus 3MPa --poissons-ratio 0.45 \\\n"
       "    --tool sphere 10mm --depth 3mm\n"
@@ -142,7 +136,7 @@ int run_program(int argc, char** argv) {
       "touchstone VERB --help: its options and an example. Exit status: 0 done, 1 the answer is no, 2 bad input, 3 "
       "not\n"
       "converged.");
-  return fast::run_command_line(app, argc, argv, exit_code);
+  return program.run(argc, argv);
 }
 
 }  // namespace

@@ -28,12 +28,12 @@ int report_results(const ResultsOptions& options) {
   return fast::done;
 }
 
-CLI::App* add_report_verb(CLI::App& app, ResultsOptions& options, int& exit_code) {
-  CLI::App* verb = app.add_subcommand("report", "one page over many results of compare");
-  verb->add_option("DIR", options.folders, "result folders")->required();
-  verb->add_option("--out", options.out, "the page's file")->capture_default_str();
-  verb->callback([&options, &exit_code] { exit_code = report_results(options); });
-  verb->footer("Example:\n  " + app.get_name() + " report out/*-compare --out out/all.html");
+fast::Command add_report_verb(fast::Command& program, ResultsOptions& options) {
+  fast::Command verb = program.add("report", "one page over many results of compare");
+  verb.option("DIR", options.folders, "result folders").required();
+  verb.option("--out", options.out, "the page's file").shows_default();
+  verb.action([&options] { return report_results(options); });
+  verb.example("report out/*-compare --out out/all.html");
   return verb;
 }
 

@@ -1,7 +1,7 @@
 // `touchstone report`: one page over many result folders.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "fast/command/command.h"
 
 #include <filesystem>
 #include <vector>
@@ -16,7 +16,7 @@ struct ResultsOptions {
 /// Writes the page. @returns exit code; @throws scene::InputError with every folder that cannot be read
 int report_results(const ResultsOptions& options);
 
-/// Adds the verb to the command line. @param options, exit_code  as for the other verbs
-CLI::App* add_report_verb(CLI::App& app, ResultsOptions& options, int& exit_code);
+/// Adds the command; its variables must outlive Program::run.
+fast::Command add_report_verb(fast::Command& program, ResultsOptions& options);
 
 }  // namespace touchstone::compare

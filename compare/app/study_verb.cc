@@ -79,40 +79,38 @@ int collect_verb(const StudyOptions& options) {
 
 }  // namespace
 
-void add_study_verb(CLI::App& app, StudyOptions& options, int& exit_code) {
-  CLI::App* study = app.add_subcommand("study", "many cases of one scene, for a loop, GNU parallel or a batch system");
-  study->require_subcommand(1);
-  const std::string example = "Example:\n  " + app.get_name() + " study ";
+void add_study_verb(fast::Command& program, StudyOptions& options) {
+  fast::Command study = program.add("study", "many cases of one scene, for a loop, GNU parallel or a batch system");
   const auto add = [&](const char* name, const char* what, const char* argument, const char* meaning, auto action) {
-    CLI::App* verb = study->add_subcommand(name, what);
-    verb->add_option(argument, options.study, meaning)->required();
-    verb->callback([&options, &exit_code, action] { exit_code = action(options); });
+    fast::Command verb = study.add(name, what);
+    verb.option(argument, options.study, meaning).required();
+    verb.action([&options, action] { return action(options); });
     return verb;
   };
-  const auto add_store = [&](CLI::App* verb) {
-    verb->add_option("--store", options.store, "content-addressed reference results, shared by all cases")
-        ->capture_default_str();
+  const auto add_store = [&](fast::Command verb) {
+    verb.option("--store", options.store, "content-addressed reference results, shared by all cases").shows_default();
   };
-  CLI::App* expand = add("expand", "write a folder of independent cases", "STUDY", "study file (TOML)", expand_verb);
-  expand->add_option("--out", options.out, "the study's folder (default out/<study>-study)");
+  fast::Command expand =
+      add("expand", "write a folder of independent cases", "STUDY", "study file (TOML)", expand_verb);
+  expand.option("--out", options.out, "the study's folder (default out/<study>-study)");
   add_store(expand);
-  expand->footer(example + "expand meshes/studies/ball-on-cube-depth-and-place.toml --out out/depth-and-place");
+  expand.example("study expand meshes/studies/ball-on-cube-depth-and-place.toml --out out/depth-and-place");
 
-  CLI::App* run = add("run", "run what is not done of a study; several processes may do so at a time", "DIR",
-                      "the study's folder", run_verb);
-  CLI::Option* index = run->add_option("--index", options.index, "only this case, from 1")
-                           ->check(CLI::Range(1, static_cast<int>(study_cases_max)));
-  run->add_option("--step", options.step, "and every case this far behind it, for long studies in short arrays")
-      ->check(CLI::Range(1, static_cast<int>(study_cases_max)))
-      ->needs(index);
+  fast::Command run = add("run", "run what is not done of a study; several processes may do so at a time", "DIR",
+                          "the study's folder", run_verb);
+  const fast::Option index =
+      run.option("--index", options.index, "only this case, from 1").range(1, static_cast<int>(study_cases_max));
+  run.option("--step", options.step, "and every case this far behind it, for long studies in short arrays")
+      .range(1, static_cast<int>(study_cases_max))
+      .needs(index);
   add_store(run);
-  run->add_flag("--quiet", options.quiet, "no progress of the cases' solvers");
-  run->footer(example + "run out/depth-and-place --index 3");
+  run.flag("--quiet", options.quiet, "no progress of the cases' solvers");
+  run.example("study run out/depth-and-place --index 3");
 
-  CLI::App* collect =
+  fast::Command collect =
       add("collect", "table and report over all cases; exit 1 when some are not done, and which and why", "DIR",
           "the study's folder", collect_verb);
-  collect->footer(example + "collect out/depth-and-place");
+  collect.example("study collect out/depth-and-place");
 }
 
 }  // namespace touchstone::compare

@@ -9,14 +9,14 @@ namespace touchstone::compare {
 
 struct StudyOptions {
   std::filesystem::path study;  ///< expand: the study file; run, collect: the study's folder
-  std::filesystem::path out;    ///< expand: the folder; empty: out/<study>-study
+  std::filesystem::path out;    ///< expand: the folder; empty: `out/<study>-study`
   std::filesystem::path store = "out/reference-store";
   int index = 0;  ///< 0: all cases
   int step = 0;   ///< 0: the one case
   bool quiet = false;
 };
 
-/// Adds the verb to a command line. `options` and `exit_code` must outlive the parse.
-void add_study_verb(CLI::App& app, StudyOptions& options, int& exit_code);
+/// Adds the command; its variables must outlive Program::run.
+void add_study_verb(fast::Command& program, StudyOptions& options);
 
 }  // namespace touchstone::compare

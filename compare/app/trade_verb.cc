@@ -41,16 +41,15 @@ int run(const fast::VerbOptions& options, const TradeOptions& trade_options, con
 
 }  // namespace
 
-CLI::App* add_trade_verb(CLI::App& app, fast::VerbOptions& options, TradeOptions& trade, ReferenceOptions& reference,
-                         int& exit_code) {
-  CLI::App* verb = fast::add_verb(
-      app, "trade", "the speed/accuracy ladder: every model and level on one plot",
-      "meshes/scenes/ball-on-cube-press.toml --quick --out out/trade", options,
-      [&] { return run(options, trade, reference); }, exit_code);
-  verb->add_option("--parameters", trade.parameters, "file that tune left, its values a row more; may be repeated")
-      ->allow_extra_args(false);
-  verb->add_option("--held-out", trade.held_out, "tuning study whose held-out contacts judge, the worst of them");
-  verb->add_flag("--quick", trade.quick, "few steps and small sizes");
+fast::Command add_trade_verb(fast::Command& program, fast::VerbOptions& options, TradeOptions& trade,
+                             ReferenceOptions& reference) {
+  fast::Command verb = fast::add_verb(program, "trade", "the speed/accuracy ladder: every model and level on one plot",
+                                      "meshes/scenes/ball-on-cube-press.toml --quick --out out/trade", options,
+                                      [&] { return run(options, trade, reference); });
+  verb.option("--parameters", trade.parameters, "file that tune left, its values a row more; may be repeated")
+      .one_value_each_time();
+  verb.option("--held-out", trade.held_out, "tuning study whose held-out contacts judge, the worst of them");
+  verb.flag("--quick", trade.quick, "few steps and small sizes");
   return verb;
 }
 

@@ -10,7 +10,7 @@ namespace touchstone::compare {
 /// Adds the verb to a command line. All four must outlive the parse.
 /// @param options    shared with the other verbs that take a scene; --out is the caller's to add
 /// @param reference  its options are the caller's to add
-CLI::App* add_trade_verb(CLI::App& app, fast::VerbOptions& options, TradeOptions& trade, ReferenceOptions& reference,
-                         int& exit_code);
+fast::Command add_trade_verb(fast::Command& program, fast::VerbOptions& options, TradeOptions& trade,
+                             ReferenceOptions& reference);
 
 }  // namespace touchstone::compare

@@ -68,14 +68,14 @@ int run(const TuneOptions& options, const ReferenceOptions& reference) {
 
 }  // namespace
 
-CLI::App* add_tune_verb(CLI::App& app, TuneOptions& options, ReferenceOptions& reference, int& exit_code) {
-  CLI::App* tune =
-      app.add_subcommand("tune", "fit the fast model's free numbers on training contacts, judge them on held-out ones");
-  tune->add_option("STUDY", options.study, "tuning study (TOML)")->required();
-  tune->add_option("--out", options.out, "result folder (default out/<study>-tune)");
-  tune->add_flag("--quiet", options.quiet, "no progress");
-  tune->callback([&] { exit_code = run(options, reference); });
-  tune->footer("Example:\n  " + app.get_name() + " tune meshes/studies/ball-on-cube.toml");
+fast::Command add_tune_verb(fast::Command& program, TuneOptions& options, ReferenceOptions& reference) {
+  fast::Command tune =
+      program.add("tune", "fit the fast model's free numbers on training contacts, judge them on held-out ones");
+  tune.option("STUDY", options.study, "tuning study (TOML)").required();
+  tune.option("--out", options.out, "result folder (default out/<study>-tune)");
+  tune.flag("--quiet", options.quiet, "no progress");
+  tune.action([&] { return run(options, reference); });
+  tune.example("tune meshes/studies/ball-on-cube.toml");
   return tune;
 }
 

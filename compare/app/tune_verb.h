@@ -10,12 +10,12 @@ namespace touchstone::compare {
 
 struct TuneOptions {
   std::filesystem::path study;
-  std::filesystem::path out;  ///< empty: out/<study>-tune
+  std::filesystem::path out;  ///< empty: `out/<study>-tune`
   bool quiet = false;
 };
 
-/// Adds the verb to a command line. All three must outlive the parse.
+/// Adds the command; its variables must outlive Program::run.
 /// @param reference  its options are the caller's to add
-CLI::App* add_tune_verb(CLI::App& app, TuneOptions& options, ReferenceOptions& reference, int& exit_code);
+fast::Command add_tune_verb(fast::Command& program, TuneOptions& options, ReferenceOptions& reference);
 
 }  // namespace touchstone::compare

@@ -193,13 +193,7 @@ std::string verify_html(const std::vector<ProblemRecord>& records, const scene::
     out += "</table></div>\n";
     for (const std::string& note : record.findings.notes) out += tag("p", note, "class=\"dim\"") + "\n";
   }
-  out += tag("h2", "How this was made") + "\n<div class=\"scroll\"><table>\n";
-  const auto row = [&](const std::string& name, const std::string& value) {
-    out += "<tr>" + tag("th", name) + cell(value) + "</tr>\n";
-  };
-  row("command", manifest.command);
-  for (const auto& [name, value] : manifest.entries) row(name, value);
-  for (const scene::StageTime& time : manifest.times) row("time, " + time.stage, quantity_text(time.wall_s, "s"));
+  out += tag("h2", "How this was made") + "\n<div class=\"scroll\"><table>\n" + origin_rows(manifest);
   return page(title, out + "</table></div>\n");
 }
 
@@ -227,17 +221,16 @@ int verify(const VerifyOptions& options, const std::string& command, const std::
   return std::ranges::all_of(records, &ProblemRecord::passes) ? fast::done : fast::answer_is_no;
 }
 
-void add_verify_verb(CLI::App& app, VerifyOptions& options, int& exit_code) {
-  const std::string program = app.get_name();
-  CLI::App* verb =
-      app.add_subcommand("verify", "the reference against closed forms and published benchmarks; exit 1 on a miss");
-  verb->add_option("NAME", options.names, "problems to run (default all)");
-  verb->add_flag("--quick", options.quick, "about a minute: one mesh fewer, and the dearest cases left out");
-  verb->add_flag("--list", options.list, "names and sources of the problems, nothing is run");
-  verb->add_option("--out", options.out, "result folder")->capture_default_str();
-  verb->add_flag("--quiet", options.quiet, "no progress, only results and errors");
-  verb->footer("Example:\n  " + program + " verify hertz sneddon --quick");
-  verb->callback([&options, &exit_code, program] { exit_code = verify(options, program + " verify"); });
+void add_verify_verb(fast::Command& program, VerifyOptions& options) {
+  fast::Command verb =
+      program.add("verify", "the reference against closed forms and published benchmarks; exit 1 on a miss");
+  verb.option("NAME", options.names, "problems to run (default all)");
+  verb.flag("--quick", options.quick, "about a minute: one mesh fewer, and the dearest cases left out");
+  verb.flag("--list", options.list, "names and sources of the problems, nothing is run");
+  verb.option("--out", options.out, "result folder").shows_default();
+  verb.flag("--quiet", options.quiet, "no progress, only results and errors");
+  verb.example("verify hertz sneddon --quick");
+  verb.action([&options, name = program.program_name()] { return verify(options, name + " verify"); });
 }
 
 }  // namespace touchstone::compare

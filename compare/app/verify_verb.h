@@ -1,10 +1,9 @@
 // `touchstone verify`: the reference against closed forms and published benchmarks.
 #pragma once
 
+#include "fast/command/command.h"
 #include "reference/verification/problem.h"
 #include "scene/output/results.h"
-
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <string>
@@ -48,6 +47,6 @@ struct ProblemRecord {
 int verify(const VerifyOptions& options, const std::string& command,
            const std::vector<verification::Problem>& all = verification::problems());
 
-void add_verify_verb(CLI::App& app, VerifyOptions& options, int& exit_code);
+void add_verify_verb(fast::Command& program, VerifyOptions& options);
 
 }  // namespace touchstone::compare

@@ -67,18 +67,16 @@ int view_result(const ViewOptions& options) {
   return fast::done;
 }
 
-CLI::App* add_view_verb(CLI::App& app, ViewOptions& options, int& exit_code) {
-  CLI::App* verb = app.add_subcommand("view", "a window on a result: body, tool, force curve, one instant at a time");
-  verb->add_option("DIR", options.folder, "result folder of fast, reference or compare")->required();
-  verb->add_option("--screenshot", options.screenshot,
-                   "write this PNG or JPEG file, by its ending, and open no window");
-  verb->add_option("--instant", options.instant, "show this instant, from 1 (default: the deepest)")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--side", options.side, "reference or fast model");
-  verb->add_option("--colour", options.colour, "displacement, error or uncertainty");
-  verb->callback([&options, &exit_code] { exit_code = view_result(options); });
-  verb->footer("Keys:\n" + ResultView::keys_text() + "\n\nExample:\n  " + app.get_name() +
-               " view out/ball-on-cube-press-compare --colour error --screenshot error.png");
+fast::Command add_view_verb(fast::Command& program, ViewOptions& options) {
+  fast::Command verb = program.add("view", "a window on a result: body, tool, force curve, one instant at a time");
+  verb.option("DIR", options.folder, "result folder of fast, reference or compare").required();
+  verb.option("--screenshot", options.screenshot, "write this PNG or JPEG file, by its ending, and open no window");
+  verb.option("--instant", options.instant, "show this instant, from 1 (default: the deepest)").positive();
+  verb.option("--side", options.side, "reference or fast model");
+  verb.option("--colour", options.colour, "displacement, error or uncertainty");
+  verb.action([&options] { return view_result(options); });
+  verb.footer("Keys:\n" + ResultView::keys_text() + "\n\nExample:\n  " + program.program_name() +
+              " view out/ball-on-cube-press-compare --colour error --screenshot error.png");
   return verb;
 }
 

@@ -1,7 +1,7 @@
 // `touchstone view`: a window on a result folder, or a picture of it.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "fast/command/command.h"
 
 #include <filesystem>
 
@@ -17,7 +17,7 @@ struct ViewOptions {
 /// @returns exit code; @throws scene::InputError for a folder that is no result, and without a display
 int view_result(const ViewOptions& options);
 
-/// Adds the verb to the command line. @param options, exit_code  as for the other verbs
-CLI::App* add_view_verb(CLI::App& app, ViewOptions& options, int& exit_code);
+/// Adds the command; its variables must outlive Program::run.
+fast::Command add_view_verb(fast::Command& program, ViewOptions& options);
 
 }  // namespace touchstone::compare

@@ -1,6 +1,7 @@
 #include "compare/calculix/calculix.h"
 
 #include "scene/base/error.h"
+#include "scene/base/stopwatch.h"
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -8,7 +9,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <fstream>
 #include <sstream>
 
@@ -64,7 +64,7 @@ std::vector<CalculixStep> read_calculix(const std::filesystem::path& dat, const 
 CalculixRun run_calculix(const std::filesystem::path& folder, const std::string& name, const reference::Deck& deck) {
   std::filesystem::remove(folder / (name + ".dat"));
   const std::string log = name + ".log";
-  const auto begin = std::chrono::steady_clock::now();
+  const scene::Stopwatch watch;
   const pid_t child = fork();
   if (child == 0) {
     const int out = chdir(folder.c_str()) == 0 ? open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644) : -1;
@@ -81,7 +81,7 @@ CalculixRun run_calculix(const std::filesystem::path& folder, const std::string&
     throw scene::InputError("ccx: no such program; expected CalculiX, Debian's package calculix-ccx");
   }
   CalculixRun run;
-  run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  run.wall_s = watch.wall_s();
   run.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   run.steps = read_calculix(folder / (name + ".dat"), deck);
   return run;

@@ -3,13 +3,11 @@
 #include "compare/errors/contact_errors.h"
 #include "compare/errors/moved_surface.h"
 #include "reference/tool/tool_distance.h"
-#include "scene/shape/revolution.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 #include <stdexcept>
 
@@ -91,29 +89,17 @@ std::vector<scene::Vec3> contact_points_m(const scene::Shape& body,
 
 /// Faces of the body, which meet at edges, by patch; empty for a body of one smooth face or a surface with other
 /// patches than the body's.
-std::vector<int> faces_of_patches(scene::BodyShape kind, const scene::Shape& body, const scene::Surface& surface) {
+std::vector<int> faces_of_patches(const scene::Shape& body, const scene::Surface& surface) {
   std::vector<int> face(static_cast<std::size_t>(body.patch_count()));
   if (surface.patch_begin.size() != face.size() + 1) return {};
-  if (kind == scene::BodyShape::box) {
-    std::iota(face.begin(), face.end(), 0);
-    return face;
-  }
-  if (kind != scene::BodyShape::revolution) return {};
-  const auto& revolution = static_cast<const scene::Revolution&>(body);
-  int faces = 1;
-  for (int piece = 0; piece < revolution.piece_count(); ++piece) {
-    const scene::RevolutionPiece& here = revolution.piece(piece);
-    constexpr double edge_rad = 1e-6;
-    if (piece > 0 && std::abs(here.start_angle - revolution.piece(piece - 1).end_angle) > edge_rad) ++faces;
-    std::fill_n(face.begin() + here.first_patch, here.patch_count(), faces - 1);
-  }
-  return faces > 1 ? face : std::vector<int>();
+  for (std::size_t patch = 0; patch < face.size(); ++patch) face[patch] = body.face_of(static_cast<int>(patch));
+  return std::any_of(face.begin(), face.end(), [](int f) { return f > 0; }) ? face : std::vector<int>();
 }
 
 /// Rest points of the faces that are nowhere touched at any instant; empty where the body has one face only.
-std::vector<bool> on_side_faces(scene::BodyShape kind, const scene::Shape& body, const scene::Surface& surface,
+std::vector<bool> on_side_faces(const scene::Shape& body, const scene::Surface& surface,
                                 const std::vector<scene::ReferenceInstant>& reference, const Errors& errors) {
-  const std::vector<int> face = faces_of_patches(kind, body, surface);
+  const std::vector<int> face = faces_of_patches(body, surface);
   if (face.empty()) return {};
   std::set<int> touched;
   for (std::size_t t = 0; t < errors.instants.size(); ++t) {
@@ -138,7 +124,7 @@ void compare_shapes(const scene::Scene& scene, const scene::Answer& answer,
   const Eigen::Index points = surface.points_m.cols();
   const double rest_m3 = enclosed_volume_m3(surface, Eigen::Matrix3Xd::Zero(3, points));
 
-  const std::vector<bool> on_side = on_side_faces(scene.body.shape, *body, surface, reference, errors);
+  const std::vector<bool> on_side = on_side_faces(*body, surface, reference, errors);
   SquareSums all, inside, outside, side;
   double normals2 = 0.0, normals_area_m2 = 0.0;
   double uncertainty_max_m = 0.0, hausdorff_max_m = 0.0, max_over_depth = 0.0, uncertainty_over_depth = 0.0;

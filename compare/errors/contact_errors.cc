@@ -17,18 +17,6 @@ using scene::Vec3;
 /// Friction below this share of the peak force is what rounding leaves of none, as under a tool pressed straight in.
 constexpr double least_friction_share = 1e-6;
 
-Vec3 friction_n(const InstantRecord& record) {
-  Vec3 sum_n = Vec3::Zero();
-  for (const RegionRecord& region : record.regions) sum_n += region.friction_n;
-  return sum_n;
-}
-
-Vec3 torque_nm(const InstantRecord& record) {
-  Vec3 sum_nm = Vec3::Zero();
-  for (const RegionRecord& region : record.regions) sum_nm += region.torque_nm;
-  return sum_nm;
-}
-
 /// How the tool's point at the middle of the reference's regions moves up to the next instant; the tool's centre where
 /// there is no region.
 Vec3 step_to_next_m(const std::vector<scene::ReferenceInstant>& reference, std::size_t t) {
@@ -56,7 +44,7 @@ void compare_friction(const scene::Answer& answer, const std::vector<scene::Refe
   const std::size_t count = errors.instants.size();
   for (std::size_t t = 0; t < count; ++t) {
     InstantErrors& e = errors.instants[t];
-    const Vec3 fast_n = friction_n(answer.instants[t]), reference_n = friction_n(reference[t]);
+    const Vec3 fast_n = answer.instants[t].friction_n(), reference_n = reference[t].friction_n();
     e.friction_fast_n = fast_n.norm();
     e.friction_reference_n = reference_n.norm();
     squares.add((fast_n - reference_n).norm(), e.force_uncertainty_n);
@@ -64,8 +52,8 @@ void compare_friction(const scene::Answer& answer, const std::vector<scene::Refe
     if (t + 1 == count) break;
     const Vec3 step_m = step_to_next_m(reference, t);
     errors.instants[t + 1].way_m = e.way_m + step_m.norm();
-    work_fast_j -= 0.5 * (fast_n + friction_n(answer.instants[t + 1])).dot(step_m);
-    work_reference_j -= 0.5 * (reference_n + friction_n(reference[t + 1])).dot(step_m);
+    work_fast_j -= 0.5 * (fast_n + answer.instants[t + 1].friction_n()).dot(step_m);
+    work_reference_j -= 0.5 * (reference_n + reference[t + 1].friction_n()).dot(step_m);
     work_band_j += 0.5 * (e.force_uncertainty_n + reference[t + 1].force_uncertainty_n) * step_m.norm();
   }
   if (peak_n > least_friction_share * errors.force_peak_reference_n) {
@@ -99,7 +87,7 @@ void compare_torques(const scene::Answer& answer, const std::vector<scene::Refer
     for (const Vec3& middle_m : reference[t].region_middles_m) {
       lever_m = std::max(lever_m, (middle_m - reference[t].tool.position_m).norm());
     }
-    squares.add((torque_nm(answer.instants[t]) - torque_nm(reference[t])).norm(), e.force_uncertainty_n * lever_m);
+    squares.add((answer.instants[t].torque_nm() - reference[t].torque_nm()).norm(), e.force_uncertainty_n * lever_m);
     scale_nm = std::max(scale_nm, e.force_reference_n * lever_m);
   }
   if (scale_nm > 0.0) errors.force_torque_nrmse = squares.over(scale_nm);

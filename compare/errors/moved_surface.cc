@@ -1,10 +1,9 @@
 #include "compare/errors/moved_surface.h"
 
-#include <vtkCellArray.h>
+#include "compare/format/polydata.h"
+
 #include <vtkGenericCell.h>
 #include <vtkNew.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
 #include <vtkStaticCellLocator.h>
 
 #include <algorithm>
@@ -16,17 +15,7 @@ namespace {
 
 /// Largest distance from a column of `from_m` to the triangles spanned by `to_m`.
 double one_way_m(const scene::Surface& surface, const Eigen::Matrix3Xd& from_m, const Eigen::Matrix3Xd& to_m) {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  for (const auto& p : to_m.colwise()) points->InsertNextPoint(p.x(), p.y(), p.z());
-  vtkNew<vtkCellArray> cells;
-  for (const auto& [a, b, c] : surface.triangles) {
-    const vtkIdType corners[] = {a, b, c};
-    cells->InsertNextCell(3, corners);
-  }
-  vtkNew<vtkPolyData> target;
-  target->SetPoints(points);
-  target->SetPolys(cells);
+  const vtkSmartPointer<vtkPolyData> target = polydata_of(to_m, surface.triangles);
   vtkNew<vtkStaticCellLocator> locator;
   locator->SetDataSet(target);
   locator->BuildLocator();

@@ -193,6 +193,17 @@ std::string in_order(const std::vector<Section>& sections) {
   return out;
 }
 
+std::string origin_rows(const scene::Manifest& manifest) {
+  const auto row = [](const std::string& name, const std::string& value) {
+    return "<tr>" + tag("th", name) + cell(value) + "</tr>\n";
+  };
+  std::string out = row("command", manifest.command);
+  for (const auto& [name, value] : manifest.entries) out += row(name, value);
+  for (const scene::StageTime& time : manifest.times)
+    out += row("time, " + time.stage, quantity_text(time.wall_s, "s"));
+  return out;
+}
+
 Section origin(const scene::Manifest& manifest, const std::string& beside) {
   std::string out = "<div class=\"scroll\"><table>\n";
   const auto row = [&](const std::string& name, const std::string& value) {

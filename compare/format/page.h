@@ -39,6 +39,9 @@ struct Section {
 /// The parts themselves.
 [[nodiscard]] std::string in_order(const std::vector<Section>& sections);
 
+/// Rows of a table of two columns: the command, the manifest's entries and the wall times.
+[[nodiscard]] std::string origin_rows(const scene::Manifest& manifest);
+
 /// @param beside  what else the folder holds, a sentence
 [[nodiscard]] Section origin(const scene::Manifest& manifest, const std::string& beside);
 /// Every value in force, folded.

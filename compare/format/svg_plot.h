@@ -69,16 +69,16 @@ struct Plot {
   std::vector<Bars> bars = {};
 };
 
-/// @returns one <svg> element, well-formed XML; without any point to draw it shows "nothing to show"
+/// @returns one `<svg>` element, well-formed XML; without any point to draw it shows "nothing to show"
 [[nodiscard]] std::string to_svg(const Plot& plot, int width_px = 560, int height_px = 360);
 
 /// Where the x axis of such an element begins and ends [px].
 [[nodiscard]] std::pair<double, double> x_axis_px(const Plot& plot, int width_px, int height_px);
 
-/// Begins an <svg> element: its size, font and title; "</svg>" ends it.
+/// Begins an `<svg>` element: its size, font and title; `</svg>` ends it.
 [[nodiscard]] std::string svg_opening(const std::string& title, int width_px, int height_px);
 
-/// Several <svg> elements of one size as one, `columns` to a row.
+/// Several `<svg>` elements of one size as one, `columns` to a row.
 [[nodiscard]] std::string in_rows(const std::string& title, const std::vector<std::string>& svgs, int columns,
                                   int width_px, int height_px);
 
@@ -86,7 +86,7 @@ struct Plot {
 enum class BandSeen { nowhere, narrower_than_the_line, area };
 [[nodiscard]] BandSeen band_seen(const Plot& plot, const Band& band, int width_px = 560, int height_px = 360);
 
-/// The same <svg> element as a file: dark on white, whatever the page around it.
+/// The same `<svg>` element as a file: dark on white, whatever the page around it.
 [[nodiscard]] std::string as_file(const std::string& svg);
 
 /// Colour of a look, "#rrggbb".

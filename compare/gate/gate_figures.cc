@@ -52,13 +52,11 @@ bool flat_top(const scene::Body& body) {
 
 /// Of a ball on a half space in small strain [N]; nothing for other scenes.
 std::optional<double> half_space_force_n(const scene::Scene& scene, double depth_m) {
-  const scene::Material& material = scene.body.material;
   if (scene.tool.shape != scene::ToolShape::sphere || !flat_top(scene.body) || !scene.body.inclusions.empty() ||
       scene.reference.kinematics != scene::Kinematics::small) {
     return std::nullopt;
   }
-  const double E_star_pa = material.youngs_modulus_pa / (1.0 - material.poissons_ratio * material.poissons_ratio);
-  return verification::hertz(E_star_pa, scene.tool.radius_m, depth_m).force_n;
+  return verification::hertz(scene.body.material.contact_modulus_pa(), scene.tool.radius_m, depth_m).force_n;
 }
 
 std::size_t deepest(const scene::Instants& instants) {

@@ -171,14 +171,7 @@ std::string table(const GateFolder& folder, const std::vector<GateRecord>& recor
 }
 
 std::string origin(const scene::Manifest& manifest) {
-  std::string out = tag("h2", "How this was made") + "\n<table>\n";
-  const auto row = [&](const std::string& name, const std::string& value) {
-    out += "<tr>" + tag("th", name) + cell(value) + "</tr>\n";
-  };
-  row("command", manifest.command);
-  for (const auto& [name, value] : manifest.entries) row(name, value);
-  for (const scene::StageTime& time : manifest.times) row("time, " + time.stage, quantity_text(time.wall_s, "s"));
-  return out +
+  return tag("h2", "How this was made") + "\n<table>\n" + origin_rows(manifest) +
          "</table>\n<p>Beside this page: <a href=\"table.txt\">table.txt</a> (what the terminal showed), <a "
          "href=\"summary.json\">summary.json</a> (every number), <a href=\"manifest.json\">manifest.json</a>.</p>\n";
 }

@@ -14,52 +14,36 @@ namespace touchstone::compare {
 using namespace scene;  // the reader of TOML and its words
 namespace {
 
-constexpr const char* omega_key = "contact.omega0_squared_per_s2";
-constexpr const char* epsilon_key = "contact.epsilon_beta0_squared_per_m2_s2";
-
-/// What may be tuned. A key of our own stands for one of the scene's.
-struct Tunable {
-  const char* key;
-  const char* scene_key;  ///< whose range and meaning count
-  const char* unit;       ///< of a key of our own
-  TuningStage stage;
-  bool rough;                                   ///< the fit may have corners or steps in it
-  std::optional<ContactLaw> law;                ///< absent: any
-  std::optional<Formulation> formulation = {};  ///< absent: any
-};
-constexpr Tunable tunables[] = {
-    {"contact.k1_n_per_m", "contact.k1_n_per_m", nullptr, TuningStage::force, false, ContactLaw::duffing},
-    {omega_key, "contact.k1_n_per_m", "1/s^2", TuningStage::force, false, ContactLaw::duffing},
-    {"contact.k1_per_radius_n_per_m2", "contact.k1_per_radius_n_per_m2", nullptr, TuningStage::force, false,
-     ContactLaw::area_aware},
-    {"contact.k3_n_per_m3", "contact.k3_n_per_m3", nullptr, TuningStage::force, false, {}},
-    {epsilon_key, "contact.k3_n_per_m3", "1/(m^2 s^2)", TuningStage::force, false, {}},
-    {"contact.friction.K", "contact.friction.K", nullptr, TuningStage::force, false, {}},
-    {"contact.friction.beta", "contact.friction.beta", nullptr, TuningStage::force, false, {}},
-    {"contact.friction.mu_D", "contact.friction.mu_D", nullptr, TuningStage::force, false, {}},
-    {"contact.friction.stiffness_ratio",
-     "contact.friction.stiffness_ratio",
-     nullptr,
-     TuningStage::force,
-     false,
-     {},
-     Formulation::corrected},
-    {"fast.r_th_m", "fast.r_th_m", nullptr, TuningStage::force, true, {}},
-    {"fast.s_c_m2", "fast.s_c_m2", nullptr, TuningStage::shape, false, {}},
-    {"fast.C_n", "fast.C_n", nullptr, TuningStage::shape, false, {}},
-    {"fast.C_r_m", "fast.C_r_m", nullptr, TuningStage::shape, true, {}},
-    {"fast.r_R_m", "fast.r_R_m", nullptr, TuningStage::shape, true, {}},
-};
-
-const Tunable* tunable(const std::string& key) {
-  const auto found =
-      std::find_if(std::begin(tunables), std::end(tunables), [&](const Tunable& t) { return key == t.key; });
-  return found == std::end(tunables) ? nullptr : found;
+/// What may be fitted, or with `models` chosen too, under every name that it has.
+std::vector<std::string> tunable_names(bool models) {
+  std::vector<std::string> names;
+  for (const auto& field : scene_fields()) {
+    if (!field.tunable || (field.tunable->stage == TuningStage::model && !models)) continue;
+    names.emplace_back(field.key);
+    if (field.tunable->per_mass) names.emplace_back(field.tunable->per_mass->key);
+  }
+  return names;
 }
 
-const Field<Scene>& scene_field(const std::string& key) {
-  const auto& fields = scene_fields();
-  return *std::find_if(fields.begin(), fields.end(), [&](const Field<Scene>& field) { return field.key == key; });
+/// The words of a choice of model.
+std::vector<std::string> words_of(const Field<Scene>& field) {
+  const auto& names = std::get<Choice<Scene>>(field.access).names;
+  return {names.begin(), names.end()};
+}
+
+/// The constants that a scene must have as it is now, but had no need of as it was before.
+std::vector<const Field<Scene>*> newly_required(const Scene& before, const Scene& now) {
+  std::vector<const Field<Scene>*> list;
+  for (const auto& field : scene_fields()) {
+    if (field.tunable && must_be_given(field) && !scene::applies(field, before) && scene::applies(field, now))
+      list.push_back(&field);
+  }
+  return list;
+}
+
+Scene with_law(Scene scene, ContactLaw law) {
+  scene.contact.law = law;
+  return scene;
 }
 
 class Reader : TomlReader {
@@ -76,8 +60,8 @@ class Reader : TomlReader {
                 "held_out", "parameter"});
     word(document_, "kind", {"tuning"});
     study.title = text(document_, "title").value_or("");
-    study.formulations = choices<Formulation>("formulation", {"published", "corrected"});
-    study.laws = choices<ContactLaw>("law", {"duffing", "area_aware"});
+    study.formulations = choices<Formulation>("formulation", words_of(*tunable_field("fast.formulation")));
+    study.laws = choices<ContactLaw>("law", words_of(*tunable_field("contact.law")));
     study.starts = static_cast<int>(number(document_, "starts", {1.0, 100.0}, 16.0));
     study.force_floor = number(document_, "force_floor", {1e-6, 1.0}, 0.01);
     study.shape_floor = number(document_, "shape_floor", {1e-6, 1.0}, 0.01);
@@ -178,27 +162,26 @@ class Reader : TomlReader {
 
   void parameter(const toml::table& table, TuningStudy& study) {
     known_keys(table, "parameter.", {"key", "bounds", "start", "scale", "profile"});
-    std::vector<std::string> names;
-    for (const Tunable& each : tunables) names.emplace_back(each.key);
     const std::string key = text(table, "key").value_or("");
-    const Tunable* what = tunable(key);
-    if (what == nullptr) {
+    const Field<Scene>* field = tunable_field(key);
+    if (field == nullptr || field->tunable->stage == TuningStage::model) {
       const toml::node* node = table.get("key");
+      const std::string former = former_name_message(key);
       add(node != nullptr ? *node : table,
-          "parameter.key = \"" + key + "\" cannot be tuned; did you mean \"" + nearest_name(key, names) + "\"?");
+          "parameter.key = \"" + key + "\" cannot be tuned; " +
+              (former.empty() ? "did you mean \"" + nearest_name(key, tunable_names(false)) + "\"?" : former));
       return;
     }
-    const Field<Scene>& field = scene_field(what->scene_key);
     TuningParameter out;
     out.key = key;
-    out.unit = what->unit != nullptr ? what->unit : field.unit;
-    out.stage = what->stage;
+    out.unit = key == field->key ? field->unit : field->tunable->per_mass->unit;
+    out.stage = field->tunable->stage;
     const toml::node* bounds = table.get("bounds");
     if (bounds == nullptr) {
       add(table, "parameter.bounds: missing for " + key + "; expected [low, high]");
       return;
     }
-    const auto ends = interval(*bounds, "parameter.bounds", field.range, out.unit);
+    const auto ends = interval(*bounds, "parameter.bounds", field->range, out.unit);
     if (!ends) return;
     std::tie(out.low, out.high) = std::pair((*ends)[0], (*ends)[1]);
     out.log = word(table, "scale", {"log", "linear"}, out.low > 0.0 ? "log" : "linear") == "log";
@@ -209,10 +192,10 @@ class Reader : TomlReader {
     const double middle = out.log ? std::sqrt(out.low * out.high) : 0.5 * (out.low + out.high);
     out.start = number(table, "start", {out.low, out.high}, middle);
     const toml::node* profile = table.get("profile");
-    out.profile = profile != nullptr ? profile->value_or(false) : what->rough;
+    out.profile = profile != nullptr ? profile->value_or(false) : field->tunable->rough;
     if (profile != nullptr && !profile->is_boolean()) add(*profile, "parameter.profile: expected true or false");
     for (const TuningParameter& other : study.parameters) {
-      if (std::string_view(tunable(other.key)->scene_key) == what->scene_key) {
+      if (tunable_field(other.key) == field) {
         add(table, "parameter.key = \"" + key + "\": \"" + other.key + "\" is the same constant already");
       }
     }
@@ -226,30 +209,36 @@ class Reader : TomlReader {
     if (study.formulations.empty()) study.formulations = {first.fast.formulation};
     if (study.laws.empty()) study.laws = {first.contact.law};
     for (const ContactLaw law : study.laws) {
-      const bool own = std::all_of(study.training.begin(), study.training.end(),
-                                   [&](const TuningContact& contact) { return contact.scene.contact.law == law; });
-      const bool tuned = std::any_of(study.parameters.begin(), study.parameters.end(),
-                                     [&](const TuningParameter& one) { return tunable(one.key)->law == law; });
-      if (!own && !tuned) {
+      const auto tuned = [&](const Field<Scene>* field) {
+        return std::ranges::any_of(study.parameters,
+                                   [&](const TuningParameter& one) { return tunable_field(one.key) == field; });
+      };
+      const bool complete = std::ranges::all_of(study.training, [&](const TuningContact& contact) {
+        return std::ranges::all_of(newly_required(contact.scene, with_law(contact.scene, law)), tuned);
+      });
+      if (!complete) {
         const toml::node* node = document_.get("law");
         add(node != nullptr ? *node : document_, std::string("law: the scenes have no linear constant for \"") +
                                                      (law == ContactLaw::duffing ? "duffing" : "area_aware") +
                                                      "\"; expected a [[parameter]] with it");
       }
     }
-    const auto has_friction = [](const TuningContact& contact) { return contact.scene.contact.friction.has_value(); };
     for (std::size_t k = 0; k < study.parameters.size(); ++k) {
       const TuningParameter& one = study.parameters[k];
       const auto meant = [&](Formulation formulation) {
         return std::any_of(study.laws.begin(), study.laws.end(),
                            [&](ContactLaw law) { return applies(one, formulation, law); });
       };
+      const Field<Scene>& field = *tunable_field(one.key);
+      const auto has = [&](const TuningContact& contact) {
+        return std::ranges::any_of(study.laws,
+                                   [&](ContactLaw law) { return scene::applies(field, with_law(contact.scene, law)); });
+      };
       if (std::none_of(study.formulations.begin(), study.formulations.end(), meant)) {
         add(*places_[k], "parameter.key = \"" + one.key + "\" has no meaning under the models of this study");
-      }
-      if (one.key.starts_with("contact.friction.") &&
-          std::none_of(study.training.begin(), study.training.end(), has_friction)) {
-        add(*places_[k], "parameter.key = \"" + one.key + "\": no training contact has friction");
+      } else if (std::ranges::none_of(study.training, has)) {
+        add(*places_[k], "parameter.key = \"" + one.key + "\" only applies with " + std::string(field.only_when->text) +
+                             "; expected a training contact with it");
       }
     }
   }
@@ -264,73 +253,72 @@ class ParameterReader : TomlReader {
   using TomlReader::TomlReader;
 
   Scene over(Scene scene) {
-    const ContactLaw before = scene.contact.law;
-    known_keys(document_, "", {"contact", "fast"});
-    take(document_, "", scene);
-    if (scene.contact.law != before && !linear_constant_) {
-      add(document_,
-          "contact.law is not the scene's, and its linear constant is missing; expected contact." +
-              std::string(scene.contact.law == ContactLaw::duffing ? "k1_n_per_m" : "k1_per_radius_n_per_m2"));
+    const Scene before = scene;
+    // Which constants apply hangs on the model.
+    for (const bool models : {true, false}) take(document_, "", models, scene);
+    for (const Field<Scene>* field : newly_required(before, scene)) {
+      if (given_.contains(field)) continue;
+      add(document_, std::string(field->only_when->key) +
+                         " is not the scene's, and its constant is missing; expected " + std::string(field->key));
     }
     refuse_faults();
     return scene;
   }
 
  private:
-  void take(const toml::table& table, const std::string& above, Scene& scene) {
+  /// @param models  the choices of the model, else the constants
+  void take(const toml::table& table, const std::string& above, bool models, Scene& scene) {
     for (const auto& [name, node] : table) {
       const std::string key = above + std::string(name.str());
-      if (node.is_table()) {
-        take(*node.as_table(), key + ".", scene);
-      } else if (key == "contact.law") {
-        const std::string law = word(table, "law", {"duffing", "area_aware"});
-        scene.contact.law = law == "area_aware" ? ContactLaw::area_aware : ContactLaw::duffing;
-      } else if (key == "fast.formulation") {
-        const std::string formulation = word(table, "formulation", {"published", "corrected"});
-        scene.fast.formulation = formulation == "published" ? Formulation::published : Formulation::corrected;
+      const Field<Scene>* field = tunable_field(key);
+      if (const toml::table* below = node.as_table()) {
+        take(*below, key + ".", models, scene);
+      } else if (field == nullptr) {
+        if (models) refuse(key, name.source());
+      } else if (models != (field->tunable->stage == TuningStage::model)) {
+        continue;
+      } else if (models) {
+        const std::vector<std::string> words = words_of(*field);
+        const auto found = std::ranges::find(words, word(table, std::string(name.str()), words));
+        if (found != words.end())
+          std::get<Choice<Scene>>(field->access).set(scene, static_cast<int>(found - words.begin()));
       } else {
-        take_number(key, node, name.source(), scene);
+        given_.insert(field);
+        const double value = node.is_number() ? *node.value<double>() : NAN;
+        if (field->range.contains(value)) {
+          set_parameter(scene, key, value);
+        } else {
+          add(node, key + " = " + shortened(value_text(node)) + "; expected a number in " + field->range.text());
+        }
       }
     }
   }
 
-  void take_number(const std::string& key, const toml::node& node, const toml::source_region& source, Scene& scene) {
-    const Tunable* what = tunable(key);
-    if (what == nullptr) {
-      std::vector<std::string> names = {"contact.law", "fast.formulation"};
-      for (const Tunable& each : tunables) names.emplace_back(each.key);
-      add(source,
-          "\"" + key + "\" is no parameter of the fast model; did you mean \"" + nearest_name(key, names) + "\"?");
-      return;
-    }
-    const Range& range = scene_field(what->scene_key).range;
-    const double value = node.is_number() ? *node.value<double>() : NAN;
-    if (!range.contains(value)) {
-      add(node, key + " = " + shortened(value_text(node)) + "; expected a number in " + range.text());
-      return;
-    }
-    linear_constant_ = linear_constant_ || what->law.has_value();
-    if (!key.starts_with("contact.friction.") || scene.contact.friction) set_parameter(scene, key, value);
+  void refuse(const std::string& key, const toml::source_region& source) {
+    const std::string former = former_name_message(key);
+    add(source, former.empty() ? "\"" + key + "\" is no parameter of the fast model; did you mean \"" +
+                                     nearest_name(key, tunable_names(true)) + "\"?"
+                               : former + ": set it in the scene");
   }
 
-  bool linear_constant_ = false;
+  std::set<const Field<Scene>*> given_;
 };
 
 }  // namespace
 
 bool applies(const TuningParameter& parameter, Formulation formulation, ContactLaw law) {
-  const Tunable* what = tunable(parameter.key);
-  return what != nullptr && what->law.value_or(law) == law && what->formulation.value_or(formulation) == formulation;
+  const Field<Scene>* field = tunable_field(parameter.key);
+  if (field == nullptr || field->tunable->formulation.value_or(formulation) != formulation) return false;
+  Scene full = with_law({}, law);
+  for (const OptionalTable& table : optional_tables()) table.give(full);
+  return scene::applies(*field, full);
 }
 
 void set_parameter(Scene& scene, const std::string& key, double value) {
-  if (key == omega_key) {
-    scene.contact.k1_n_per_m = scene.tool.mass_kg * value;
-  } else if (key == epsilon_key) {
-    scene.contact.k3_n_per_m3 = 0.75 * scene.tool.mass_kg * value;
-  } else {
-    std::get<double& (*)(Scene&)>(scene_field(key).access)(scene) = value;
-  }
+  const Field<Scene>& field = *tunable_field(key);
+  if (!scene::applies(field, scene)) return;
+  const double factor = key == field.key ? 1.0 : field.tunable->per_mass->factor * scene.tool.mass_kg;
+  std::get<double& (*)(Scene&)>(field.access)(scene) = factor * value;
 }
 
 Scene with_parameters(Scene scene, const std::filesystem::path& file) {

@@ -28,10 +28,12 @@
 //   bounds  = [1.0e3, 1.0e6]
 //   start   = 4.0e4                            # without it the middle of the bounds
 //   scale   = "log"                            # log | linear; without it log where both bounds are above 0
-//   profile = true                             # fit the others at values along it; without it for r_R_m, C_r_m, r_th_m
+//   profile = true                             # fit the others at values along it; without it where a fit may be
+//   rough: r_R_m, C_r_m
 #pragma once
 
 #include "compare/input/study_file.h"
+#include "scene/input/fields.h"
 
 #include <array>
 #include <filesystem>
@@ -49,12 +51,11 @@ struct TuningContact {
   std::array<double, 2> depth_m = {0.0, 1e300};  ///< instants above the first up to and with the second count
 };
 
-/// What a parameter acts on: the force is fitted first, the shape with the force that was found.
-enum class TuningStage { force, shape };
+using scene::TuningStage;
 
 /// One free number of the fast model.
 struct TuningParameter {
-  std::string key;  ///< of a scene, or omega0_squared_per_s2 and epsilon_beta0_squared_per_m2_s2 of its law
+  std::string key;  ///< a name that scene::tunable_field knows
   std::string unit;
   TuningStage stage = TuningStage::force;
   double low = 0.0, high = 0.0;
@@ -77,8 +78,9 @@ struct TuningStudy {
 /// Has the parameter a meaning in the model? Only the corrected formulation has friction's stiffness ratio.
 [[nodiscard]] bool applies(const TuningParameter& parameter, scene::Formulation formulation, scene::ContactLaw law);
 
-/// Writes a value into a scene. omega0^2 and epsilon beta0^2 become k1 = m omega0^2 and k3 = (3/4) m epsilon beta0^2
-/// with the tool's mass, equation (1). @param key  of a TuningParameter; friction's need a scene that has it
+/// Writes a value into a scene; nothing where the key does not apply, as friction's in a scene without it. omega0^2 and
+/// epsilon beta0^2 become k1 = m omega0^2 and k3 = (3/4) m epsilon beta0^2 with the tool's mass, equation (1).
+/// @param key  of a TuningParameter
 void set_parameter(scene::Scene& scene, const std::string& key, double value);
 
 /// Puts the values of a file that scenes include, such as `tune` leaves, over a scene's own: a contact law, a

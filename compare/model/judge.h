@@ -27,7 +27,7 @@ namespace touchstone::compare {
 
 /// One model's row. Errors are those of Errors, with the reference's uncertainty.
 struct JudgedModel {
-  std::string key{};     ///< in summary.json: model.<key>.force.nrmse and so on
+  std::string key{};     ///< in summary.json: `model.<key>.force.nrmse` and so on
   std::string name{};    ///< "paper as printed"
   std::string method{};  ///< law and skeleton, "Duffing, published"
   Measure force_nrmse{}, shape_rel_l2{};

@@ -19,7 +19,7 @@ struct ComparisonDrawings {
   std::vector<Drawing> forces;  ///< further ones: over the other axis, logarithmic, friction, relative error
   std::vector<Drawing> shapes;  ///< further ones: sections, largest error
   std::vector<Drawing> bodies;  ///< half-cut in space: "reference", "fast" and "error"
-  std::string bodies_in_a_row;  ///< the same as one <svg> element
+  std::string bodies_in_a_row;  ///< the same as one `<svg>` element
 
   /// For files.
   [[nodiscard]] std::vector<Drawing> all() const;

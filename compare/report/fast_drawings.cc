@@ -58,13 +58,7 @@ std::string force_label(const fast::Run& run, const std::string& what) {
 
 double time_s(const InstantRecord& record) { return record.time_s; }
 
-Vec3 friction_n(const InstantRecord& record) {
-  Vec3 sum_n = Vec3::Zero();
-  for (const RegionRecord& region : record.regions) sum_n += region.friction_n;
-  return sum_n;
-}
-
-Vec3 normal_n(const InstantRecord& record) { return record.force_n() - friction_n(record); }
+Vec3 normal_n(const InstantRecord& record) { return record.force_n() - record.friction_n(); }
 
 bool slides(const InstantRecord& record) {
   return std::any_of(record.regions.begin(), record.regions.end(), [](const RegionRecord& r) { return r.sliding; });
@@ -404,7 +398,7 @@ std::vector<Drawing> force_drawings(const scene::Scene& scene, const fast::Run& 
 
   if (friction) {
     Plot plot = over_time(run, "Friction on the tool", force_label(run, "friction on the tool"));
-    const std::string note = add_components(plot, run, "f", time_s, friction_n);
+    const std::string note = add_components(plot, run, "f", time_s, &InstantRecord::friction_n);
     plot.spans = friction_spans(run);
     out.push_back(drawing("friction", "The part of the force along the surface. " + note, plot));
   }
@@ -417,7 +411,8 @@ std::vector<Drawing> force_drawings(const scene::Scene& scene, const fast::Run& 
   if (travel) {
     out.push_back(along_path(run, *travel, "path", "Normal force along the path", "N", normal_n));
     if (friction) {
-      out.push_back(along_path(run, *travel, "friction-path", "Friction along the path", "f", friction_n));
+      out.push_back(
+          along_path(run, *travel, "friction-path", "Friction along the path", "f", &InstantRecord::friction_n));
     }
   }
 

@@ -15,7 +15,7 @@ namespace touchstone::compare {
 /// The table for a page.
 [[nodiscard]] std::string model_table_html(const std::vector<JudgedModel>& models);
 
-/// model.<key>.force.nrmse, .shape.rel_l2 with their uncertainty, .step_us.p50.
+/// `model.<key>.force.nrmse`, .shape.rel_l2 with their uncertainty, .step_us.p50.
 [[nodiscard]] scene::Figures model_figures(const std::vector<JudgedModel>& models);
 
 }  // namespace touchstone::compare

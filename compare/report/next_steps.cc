@@ -228,7 +228,7 @@ class Finder {
 
   [[nodiscard]] std::string again(const std::string& options) const { return command_text(call_, options); }
 
-  [[nodiscard]] bool time_left() const { return watch_.read("").wall_s < trial_time_s; }
+  [[nodiscard]] bool time_left() const { return watch_.wall_s() < trial_time_s; }
 
   const scene::Scene& scene_;
   const fast::Run& run_;

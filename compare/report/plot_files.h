@@ -17,7 +17,7 @@ namespace touchstone::compare {
 /// @throws std::runtime_error when it is not SVG, std::logic_error without has_pdf()
 [[nodiscard]] std::string pdf_of(const std::string& svg);
 
-/// Writes <name>.svg and, where there is PDF, <name>.pdf of each into the folder, which need not exist.
+/// Writes `<name>.svg` and, where there is PDF, `<name>.pdf` of each into the folder, which need not exist.
 /// @throws std::filesystem::filesystem_error
 void write_plots(const std::filesystem::path& folder, const std::vector<Drawing>& drawings);
 

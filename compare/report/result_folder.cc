@@ -1,28 +1,19 @@
 #include "compare/report/result_folder.h"
 
+#include "scene/base/csv.h"
 #include "scene/base/error.h"
+#include "scene/base/text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 
 namespace touchstone::compare {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::vector<std::string_view> split(std::string_view text, char at) {
-  std::vector<std::string_view> parts;
-  for (std::size_t begin = 0;;) {
-    const std::size_t end = text.find(at, begin);
-    parts.push_back(text.substr(begin, end - begin));
-    if (end == std::string_view::npos) return parts;
-    begin = end + 1;
-  }
-}
 
 int line_of(std::string_view text, std::size_t byte) {
   return 1 + static_cast<int>(std::count(
@@ -87,27 +78,23 @@ const std::vector<double>& ResultFolder::required_column(std::string_view name) 
 scene::Figures read_figures(const std::filesystem::path& file) { return figures_of(read_object(file)); }
 
 std::vector<scene::Column> parse_csv(std::string_view text, const std::filesystem::path& file) {
-  if (text.ends_with('\n')) text.remove_suffix(1);
-  const std::vector<std::string_view> lines = split(text, '\n');
   std::vector<scene::Column> columns;
-  for (const std::string_view name : split(lines.front(), ',')) columns.push_back({std::string(name), {}});
-  for (std::size_t row = 1; row < lines.size(); ++row) {
-    const std::vector<std::string_view> cells = split(lines[row], ',');
-    const int line = static_cast<int>(row) + 1;
+  scene::CsvRows rows(text);
+  if (rows.next()) {
+    for (const std::string_view name : rows.cells()) columns.push_back({std::string(name), {}});
+  }
+  while (rows.next()) {
+    const auto refuse = [&](const std::string& message) {
+      throw scene::InputError(std::vector<scene::Fault>{{file.string(), rows.line(), 0, message}});
+    };
+    const std::vector<std::string_view>& cells = rows.cells();
     if (cells.size() != columns.size()) {
-      throw scene::InputError(
-          {{file.string(), line, 0,
-            fmt::format("has {} values, expected {} as in the first line", cells.size(), columns.size())}});
+      refuse(fmt::format("has {} values, expected {} as in the first line", cells.size(), columns.size()));
     }
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      double value = 0.0;
-      const char* end = cells[i].data() + cells[i].size();
-      const auto read = std::from_chars(cells[i].data(), end, value);
-      if (read.ec != std::errc() || read.ptr != end) {
-        throw scene::InputError(
-            {{file.string(), line, 0, fmt::format("\"{}\" in column {} is no number", cells[i], columns[i].name)}});
-      }
-      columns[i].values.push_back(value);
+      const std::optional<double> value = scene::parsed<double>(cells[i]);
+      if (!value) refuse(fmt::format("\"{}\" in column {} is no number", cells[i], columns[i].name));
+      columns[i].values.push_back(*value);
     }
   }
   return columns;

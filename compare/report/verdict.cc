@@ -3,6 +3,7 @@
 #include "compare/format/text.h"
 #include "compare/report/comparison_drawings.h"
 #include "fast/step/state.h"
+#include "reference/verification/closed_forms.h"
 
 #include <fmt/format.h>
 
@@ -277,7 +278,7 @@ std::optional<double> hertz_force_n(const scene::Scene& scene, double depth_m) {
   if (body.shape == scene::BodyShape::sphere) curvature_per_m += 1.0 / body.radius_m;
   if (body.shape == scene::BodyShape::ellipsoid)
     curvature_per_m += body.semi_axes_m.z() / (body.semi_axes_m.x() * body.semi_axes_m.y());
-  return 4.0 / 3.0 * body.material.contact_modulus_pa() * std::sqrt(1.0 / curvature_per_m) * std::pow(depth_m, 1.5);
+  return verification::hertz(body.material.contact_modulus_pa(), 1.0 / curvature_per_m, depth_m).force_n;
 }
 
 std::string reference_sentence(const reference::Result& result, const Errors& errors) {

@@ -1,14 +1,13 @@
 #include "compare/report/vtk_out.h"
 
+#include "compare/format/polydata.h"
 #include "scene/output/results.h"
 
 #include <fmt/format.h>
-#include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkXMLPolyDataWriter.h>
@@ -44,21 +43,6 @@ void add_region(vtkPolyData* data, const char* name, const std::vector<bool>& to
   data->GetPointData()->AddArray(array);
 }
 
-vtkSmartPointer<vtkPolyData> polydata_of(const scene::Surface& surface) {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  for (const auto& p : surface.points_m.colwise()) points->InsertNextPoint(p.x(), p.y(), p.z());
-  vtkNew<vtkCellArray> cells;
-  for (const auto& [a, b, c] : surface.triangles) {
-    const vtkIdType corners[] = {a, b, c};
-    cells->InsertNextCell(3, corners);
-  }
-  auto data = vtkSmartPointer<vtkPolyData>::New();
-  data->SetPoints(points);
-  data->SetPolys(cells);
-  return data;
-}
-
 /// Writes <name>_0000.vtp ..., one file per instant, and the collection <name>.pvd.
 /// @param at  the surface at an instant
 void write_series(const std::filesystem::path& folder, const std::string& name, const scene::Instants& instants,
@@ -88,7 +72,7 @@ void write_series(const std::filesystem::path& folder, const std::string& name, 
 /// The body's rest surface with `add_arrays(instant, data)` for its point arrays.
 void write_body(const std::filesystem::path& folder, const scene::Surface& surface, const scene::Instants& instants,
                 const std::function<void(std::size_t, vtkPolyData*)>& add_arrays) {
-  const vtkSmartPointer<vtkPolyData> rest = polydata_of(surface);
+  const vtkSmartPointer<vtkPolyData> rest = polydata_of(surface.points_m, surface.triangles);
   write_series(folder, "surface", instants, [&](std::size_t t) {
     auto data = vtkSmartPointer<vtkPolyData>::New();
     data->ShallowCopy(rest);
@@ -120,9 +104,7 @@ void write_tool(const std::filesystem::path& folder, const scene::Tool& tool, co
   const scene::Surface own = scene::tool_surface(tool, tool_triangles);
   write_series(folder, "tool", instants, [&](std::size_t t) {
     const scene::Pose& pose = instants[t].tool;
-    scene::Surface placed = own;
-    placed.points_m = (pose.orientation.toRotationMatrix() * own.points_m).colwise() + pose.position_m;
-    return polydata_of(placed);
+    return polydata_of((pose.orientation.toRotationMatrix() * own.points_m).colwise() + pose.position_m, own.triangles);
   });
 }
 

@@ -137,12 +137,12 @@ int run_case(const StudyManifest& manifest, const ManifestCase& one, const CaseR
   if (!summary) throw std::logic_error("the verb left no summary.json");
   Json done = attempt;
   done["ended"] = utc_now();
-  done["wall_s"] = watch.read("case").wall_s;
+  done["wall_s"] = watch.wall_s();
   done["version"] = scene::build_info.version;
   done["commit"] = scene::build_info.commit;
   done["summary"] = scene::hash_text(*summary);
   scene::write_file(folder / "done.json", scene::json_text(done));
-  say(title + fmt::format(" done in {:.1f} s", watch.read("case").wall_s));
+  say(title + fmt::format(" done in {:.1f} s", watch.wall_s()));
   return code;
 }
 

@@ -82,7 +82,7 @@ struct TradeOptions {
 /// The plot: time of a step over both errors, the fronts drawn, the points named.
 [[nodiscard]] std::string trade_svg(const Trade& trade);
 
-/// By stable dotted keys: trade.<row>.<figure>, trade.front_force and trade.front_shape.
+/// By stable dotted keys: `trade.<row>.<figure>`, trade.front_force and trade.front_shape.
 [[nodiscard]] scene::Figures trade_figures(const Trade& trade);
 
 /// trade.csv, trade.svg, summary.json, report.html, manifest.json. @throws std::filesystem::filesystem_error

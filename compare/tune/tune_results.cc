@@ -11,9 +11,12 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <set>
 
 namespace touchstone::compare {
 namespace {
+
+using Field = scene::Field<scene::Scene>;
 
 /// A name as a part of a dotted key.
 std::string slug(const std::string& name) {
@@ -157,36 +160,46 @@ scene::Figures tuning_figures(const Tuning& tuning) {
 }
 
 std::string parameters_toml(const Tuning& tuning, const TunedModel& model) {
-  const bool duffing = model.law == scene::ContactLaw::duffing;
-  std::vector<std::string> keys = {"contact.law", duffing ? "contact.k1_n_per_m" : "contact.k1_per_radius_n_per_m2",
-                                   "contact.k3_n_per_m3", "fast.formulation"};
-  const scene::Scene* scene = nullptr;
+  std::set<const Field*> tuned;
   for (const StageFit& stage : model.stages) {
-    for (const TuningParameter& one : stage.parameters) {
-      keys.push_back(one.key);
-      if (!one.key.starts_with("contact.friction.")) continue;
-      for (const TuningData& data : tuning.data) {
-        if (scene == nullptr && data.contact.scene.contact.friction) scene = &data.contact.scene;
-      }
-      for (const char* name :
-           {"contact.friction.K", "contact.friction.beta", "contact.friction.mu_D", "contact.friction.stiffness_ratio"})
-        keys.emplace_back(name);
-    }
+    for (const TuningParameter& one : stage.parameters) tuned.insert(scene::tunable_field(one.key));
   }
-  const scene::Scene values = tuned_scene(scene != nullptr ? *scene : tuning.data.front().contact.scene, model);
+  // Of a contact in which all of them apply, as friction's do not everywhere.
+  std::vector<scene::Scene> scenes;
+  for (const TuningData& data : tuning.data) scenes.push_back(tuned_scene(data.contact.scene, model));
+  const auto whole = std::ranges::find_if(scenes, [&](const scene::Scene& scene) {
+    return std::ranges::all_of(tuned, [&](const Field* field) { return scene::applies(*field, scene); });
+  });
+  const scene::Scene& values = whole != scenes.end() ? *whole : scenes.front();
+  // An optional table is written whole or not at all.
+  const auto written = [&](const Field& field) {
+    if (!field.tunable || !scene::applies(field, values)) return false;
+    if (tuned.contains(&field)) return true;
+    if (!scene::in_optional_table(field))
+      return scene::must_be_given(field) || field.tunable->stage == scene::TuningStage::model;
+    return std::ranges::any_of(
+        tuned, [&](const Field* one) { return one->only_when && one->only_when->key == field.only_when->key; });
+  };
+  std::string keys, shared;
+  std::string section;
+  for (const Field& field : scene::scene_fields()) {
+    if (!written(field)) continue;
+    const std::string key(field.key);
+    if (scene::reference_reads(field.side)) shared += (shared.empty() ? "" : ", ") + key;
+    const std::size_t dot = key.rfind('.');
+    if (key.substr(0, dot) != section) keys += "\n[" + (section = key.substr(0, dot)) + "]\n";
+    keys += key.substr(dot + 1) + " = " + scene::value_text(field, values) + "\n";
+  }
   std::string text = fmt::format(
       "# The {} model, tuned by the study {}.\n# A scene takes it over with include = \"<this file>\" at its "
       "top, and leaves these keys out: its own win.\n",
       model.name(), tuning.study.name);
-  std::string section;
-  for (const auto& field : scene::scene_fields()) {
-    const std::string key(field.key);
-    if (std::find(keys.begin(), keys.end(), key) == keys.end()) continue;
-    const std::size_t dot = key.rfind('.');
-    if (key.substr(0, dot) != section) text += "\n[" + (section = key.substr(0, dot)) + "]\n";
-    text += key.substr(dot + 1) + " = " + scene::value_text(field, values) + "\n";
-  }
-  return text;
+  if (!shared.empty())
+    text += fmt::format(
+        "# The reference reads {} too, and a scene with other values is another one to it. compare --parameters gives "
+        "them to the fast model alone.\n",
+        shared);
+  return text + keys;
 }
 
 void write_tuning(const std::filesystem::path& folder, const Tuning& tuning, const scene::Manifest& manifest) {

@@ -46,7 +46,6 @@ TuningData tuning_data(const TuningContact& contact, const SolveReference& solve
 
 void set_values(scene::Scene& scene, const std::vector<TuningParameter>& parameters, const Eigen::VectorXd& values) {
   for (std::size_t k = 0; k < parameters.size(); ++k) {
-    if (parameters[k].key.starts_with("contact.friction.") && !scene.contact.friction) continue;
     set_parameter(scene, parameters[k].key, values[static_cast<Eigen::Index>(k)]);
   }
 }

@@ -1,5 +1,6 @@
 #include "compare/view/view.h"
 
+#include "compare/format/polydata.h"
 #include "compare/format/svg_plot.h"
 #include "compare/format/text.h"
 #include "compare/report/picture.h"
@@ -12,7 +13,6 @@
 #include <vtkAxis.h>
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
-#include <vtkCellArray.h>
 #include <vtkChartLegend.h>
 #include <vtkChartXY.h>
 #include <vtkContextActor.h>
@@ -134,20 +134,6 @@ vtkSmartPointer<vtkTable> table_of(const std::vector<scene::Column>& columns) {
     table->AddColumn(array);
   }
   return table;
-}
-
-vtkSmartPointer<vtkPolyData> polydata_of(const scene::Surface& surface) {
-  vtkNew<vtkPoints> points;
-  for (const auto& p : surface.points_m.colwise()) points->InsertNextPoint(p.x(), p.y(), p.z());
-  vtkNew<vtkCellArray> cells;
-  for (const auto& [a, b, c] : surface.triangles) {
-    const vtkIdType corners[] = {a, b, c};
-    cells->InsertNextCell(3, corners);
-  }
-  auto data = vtkSmartPointer<vtkPolyData>::New();
-  data->SetPoints(points);
-  data->SetPolys(cells);
-  return data;
 }
 
 vtkSmartPointer<vtkLookupTable> lookup_table(ColourMap map) {
@@ -295,7 +281,8 @@ struct ResultView::Parts {
     space->AddActor(body_actor);
 
     const scene::Scene scene = scene::parse_scene(result.resolved_scene, result.folder / "manifest.json");
-    tool_mapper->SetInputData(polydata_of(scene::tool_surface(scene.tool, tool_triangles)));
+    const scene::Surface tool = scene::tool_surface(scene.tool, tool_triangles);
+    tool_mapper->SetInputData(polydata_of(tool.points_m, tool.triangles));
     tool_actor->SetMapper(tool_mapper);
     tool_actor->GetProperty()->SetColor(0.5, 0.5, 0.53);
     tool_actor->GetProperty()->SetOpacity(0.35);

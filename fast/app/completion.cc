@@ -26,44 +26,41 @@ struct VerbWords {
   Place alone;
 };
 
-Place place_of(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
-  const auto starts = [&](const char* with) { return type.starts_with(with); };
-  if (!option.nonpositional()) {
-    const std::string name = option.get_name(true);
+Place place_of(const CommandWords::Value& value) {
+  const std::string& name = value.name;
+  const auto starts = [&](const char* with) { return value.type.starts_with(with); };
+  if (value.argument) {
     if (name == "SCENE" || name == "STUDY") return {"", Expects::toml_files, ""};
     if (name == "DIR") return {"", Expects::folders, ""};
     if (name == "SHELL") return {"", Expects::words, "bash zsh"};
     return {"", name == "FILE" ? Expects::files : Expects::nothing, ""};
   }
   // A plain text is most often a path; numbers and lengths have a type of their own.
-  Place place{"--" + option.get_lnames().front(), starts("TEXT") ? Expects::files : Expects::nothing, ""};
+  Place place{name, starts("TEXT") ? Expects::files : Expects::nothing, ""};
   if (starts("KEY=VALUE")) {
     place.expects = Expects::keys;
-  } else if (type.find('|') != std::string::npos) {
+  } else if (value.type.find('|') != std::string::npos) {
     place.expects = Expects::words;
-    place.words = type.substr(0, type.find(' '));
+    place.words = value.type.substr(0, value.type.find(' '));
     std::ranges::replace(place.words, '|', ' ');
   }
   return place;
 }
 
-void collect(const CLI::App& app, const std::string& above, std::vector<VerbWords>& list) {
-  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
-    VerbWords words{above + verb->get_name(), verb->get_description(), "", {}, {}};
-    for (const CLI::App* below : verb->get_subcommands([](const CLI::App*) { return true; }))
-      words.options += below->get_name() + " ";
-    for (const CLI::Option* option : verb->get_options()) {
-      if (!option->nonpositional()) {
-        words.alone = place_of(*option);
+void collect(const CommandWords& program, const std::string& above, std::vector<VerbWords>& list) {
+  for (const CommandWords& verb : program.below) {
+    VerbWords words{above + verb.name, verb.what, "", {}, {}};
+    for (const CommandWords& below : verb.below) words.options += below.name + " ";
+    for (const CommandWords::Value& value : verb.values) {
+      if (value.argument) {
+        words.alone = place_of(value);
         continue;
       }
-      if (option->get_lnames().empty()) continue;
-      words.options += "--" + option->get_lnames().front() + " ";
-      if (option->get_items_expected_max() > 0) words.values.push_back(place_of(*option));
+      words.options += value.name + " ";
+      if (value.takes_value) words.values.push_back(place_of(value));
     }
     list.push_back(words);
-    collect(*verb, words.name + " ", list);
+    collect(verb, words.name + " ", list);
   }
 }
 
@@ -171,30 +168,28 @@ std::string zsh_script(const std::string& program, const std::string& function, 
 
 }  // namespace
 
-std::string completion_script(const CLI::App& app, const std::string& shell) {
+std::string completion_script(const CommandWords& program, const std::string& shell) {
   std::vector<VerbWords> verbs;
-  collect(app, "", verbs);
+  collect(program, "", verbs);
   std::string first;
   for (const VerbWords& verb : verbs) {
     if (verb.name.find(' ') == std::string::npos) first += verb.name + " ";
   }
   first += "--help --version";
-  std::string function = "_" + app.get_name();
+  std::string function = "_" + program.name;
   std::ranges::replace(function, '-', '_');
-  return shell == "zsh" ? zsh_script(app.get_name(), function, verbs, first)
-                        : bash_script(app.get_name(), function, verbs, first);
+  return shell == "zsh" ? zsh_script(program.name, function, verbs, first)
+                        : bash_script(program.name, function, verbs, first);
 }
 
-CLI::App* add_completion_verb(CLI::App& app, std::string& shell, int& exit_code) {
-  CLI::App* verb =
-      app.add_subcommand("completion", "print a script that completes verbs, options and files in a shell");
-  verb->add_option("SHELL", shell, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
-  verb->footer("Example:\n  source <(" + app.get_name() + " completion bash)");
-  verb->callback([&app, &shell, &exit_code] {
-    std::cout << completion_script(app, shell);
-    exit_code = done;
+void add_completion_verb(Program& program, std::string& shell) {
+  Command verb = program.add("completion", "print a script that completes verbs, options and files in a shell");
+  verb.option("SHELL", shell, "bash or zsh").required().one_of({"bash", "zsh"});
+  verb.footer("Example:\n  source <(" + program.program_name() + " completion bash)");
+  verb.action([&program, &shell] {
+    std::cout << completion_script(program.words(), shell);
+    return done;
   });
-  return verb;
 }
 
 }  // namespace touchstone::fast

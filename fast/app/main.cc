@@ -30,27 +30,24 @@ int run(const fast::VerbOptions& options) {
 }
 
 int run_program(int argc, char** argv) {
-  CLI::App app("Real-time contact of a rigid tool with an elastic body.", "touchstone-fast");
+  fast::Program program("Real-time contact of a rigid tool with an elastic body.", "touchstone-fast");
   fast::VerbOptions options;
   live::LiveOptions live_options;
   bench::BenchVerbOptions bench_options;
   fast::NewOptions new_options;
   std::string shell;
-  int exit_code = fast::done;
-  fast::add_new_verb(app, new_options, exit_code);
-  fast::add_verb(
-      app, "plan", "what the fast model computes for a scene, what it leaves out and why",
-      "meshes/scenes/ball-on-cube-press.toml --set fast.formulation=published", options, [&] { return plan(options); },
-      exit_code);
-  fast::add_verb(
-      app, "fast", "the real-time pipeline over the scene's track in virtual time",
-      "meshes/scenes/ball-on-cube-press.toml --out out/press", options, [&] { return run(options); }, exit_code)
-      ->add_option("--out", options.out, "result folder (default out/<scene>-fast)");
-  live::add_live_verb(app, options, live_options, exit_code);
-  bench::add_bench_verb(app, bench_options, exit_code);
-  fast::add_completion_verb(app, shell, exit_code);
-  app.footer("touchstone-fast VERB --help: options and an example");
-  return fast::run_command_line(app, argc, argv, exit_code);
+  fast::add_new_verb(program, new_options);
+  fast::add_verb(program, "plan", "what the fast model computes for a scene, what it leaves out and why",
+                 "meshes/scenes/ball-on-cube-press.toml --set fast.formulation=published", options,
+                 [&] { return plan(options); });
+  fast::add_verb(program, "fast", "the real-time pipeline over the scene's track in virtual time",
+                 "meshes/scenes/ball-on-cube-press.toml --out out/press", options, [&] { return run(options); })
+      .option("--out", options.out, "result folder (default out/<scene>-fast)");
+  live::add_live_verb(program, options, live_options);
+  bench::add_bench_verb(program, bench_options);
+  fast::add_completion_verb(program, shell);
+  program.footer("touchstone-fast VERB --help: options and an example");
+  return program.run(argc, argv);
 }
 
 }  // namespace

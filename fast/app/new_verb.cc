@@ -249,39 +249,33 @@ int write_new_scene(const NewOptions& options, const std::string& program) {
   return done;
 }
 
-CLI::App* add_new_verb(CLI::App& app, NewOptions& options, int& exit_code) {
-  const std::string program = app.get_name();
-  CLI::App* verb = app.add_subcommand("new", "write a commented scene file from sizes, material and depth");
-  verb->add_option("FILE", options.file, "scene file to write (.toml); never overwritten")->required();
-  verb->add_option("--body", options.body, words_of(body_shapes))
-      ->required()
-      ->expected(2)
-      ->type_name("box|sphere|ellipsoid|cylinder SIZE");
-  verb->add_option("--youngs-modulus", options.youngs_modulus, "E of the body, such as 3MPa")
-      ->required()
-      ->type_name("STRESS");
-  verb->add_option("--poissons-ratio", options.poissons_ratio, "nu of the body, 0 to 0.5")
-      ->required()
-      ->check(CLI::Range(0.0, 0.5));
-  verb->add_option("--tool", options.tool, words_of(tool_shapes))
-      ->required()
-      ->expected(2)
-      ->type_name("sphere|capsule|cylinder|box|mesh SIZE");
-  verb->add_option("--unit", options.unit, "of a mesh tool's coordinates")->type_name("m|cm|mm|in");
-  verb->add_option("--depth", options.depth, "how far the tool goes on beyond first contact, such as 3mm")
-      ->required()
-      ->type_name("LENGTH");
-  verb->add_option("--at", options.place, "x and y where it comes down, such as 10x5mm (default the middle)")
-      ->type_name("LENGTHxLENGTH");
-  verb->add_option("--slide", options.slide, "how far it is then moved along x, such as 10mm (default not at all)")
-      ->type_name("LENGTH");
-  verb->add_option("--friction", options.friction, "Coulomb's coefficient (default frictionless)")
-      ->check(CLI::Range(0.0, 10.0));
-  verb->add_option("--title", options.title, "for reports")->type_name("WORDS");
-  verb->footer("Example:\n  " + program +
-               " new block.toml --body box 60x60x40mm --youngs-modulus 3MPa --poissons-ratio 0.45 \\\n"
-               "    --tool capsule 6x20mm --depth 3mm --at 10x5mm --friction 0.3");
-  verb->callback([&options, &exit_code, program] { exit_code = write_new_scene(options, program); });
+Command add_new_verb(Command& program, NewOptions& options) {
+  Command verb = program.add("new", "write a commented scene file from sizes, material and depth");
+  verb.option("FILE", options.file, "scene file to write (.toml); never overwritten").required();
+  verb.option("--body", options.body, words_of(body_shapes))
+      .required()
+      .values(2)
+      .type("box|sphere|ellipsoid|cylinder SIZE");
+  verb.option("--youngs-modulus", options.youngs_modulus, "E of the body, such as 3MPa").required().type("STRESS");
+  verb.option("--poissons-ratio", options.poissons_ratio, "nu of the body, 0 to 0.5").required().range(0.0, 0.5);
+  verb.option("--tool", options.tool, words_of(tool_shapes))
+      .required()
+      .values(2)
+      .type("sphere|capsule|cylinder|box|mesh SIZE");
+  verb.option("--unit", options.unit, "of a mesh tool's coordinates").type("m|cm|mm|in");
+  verb.option("--depth", options.depth, "how far the tool goes on beyond first contact, such as 3mm")
+      .required()
+      .type("LENGTH");
+  verb.option("--at", options.place, "x and y where it comes down, such as 10x5mm (default the middle)")
+      .type("LENGTHxLENGTH");
+  verb.option("--slide", options.slide, "how far it is then moved along x, such as 10mm (default not at all)")
+      .type("LENGTH");
+  verb.option("--friction", options.friction, "Coulomb's coefficient (default frictionless)").range(0.0, 10.0);
+  verb.option("--title", options.title, "for reports").type("WORDS");
+  verb.example(
+      "new block.toml --body box 60x60x40mm --youngs-modulus 3MPa --poissons-ratio 0.45 \\\n"
+      "    --tool capsule 6x20mm --depth 3mm --at 10x5mm --friction 0.3");
+  verb.action([&options, name = program.program_name()] { return write_new_scene(options, name); });
   return verb;
 }
 

@@ -1,7 +1,7 @@
 // "touchstone new": a first scene file from a few options.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "fast/command/command.h"
 
 #include <filesystem>
 #include <optional>
@@ -32,6 +32,6 @@ struct NewOptions {
 /// Writes the scene file. @returns an exit code; @throws scene::InputError, and then no file is written
 [[nodiscard]] int write_new_scene(const NewOptions& options, const std::string& program);
 
-CLI::App* add_new_verb(CLI::App& app, NewOptions& options, int& exit_code);
+Command add_new_verb(Command& program, NewOptions& options);
 
 }  // namespace touchstone::fast

@@ -4,6 +4,8 @@
 #include "fast/command/progress_line.h"
 #include "scene/output/results.h"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <iostream>
 
@@ -14,9 +16,7 @@ namespace {
 std::string load_average() {
   double load = 0.0;
   if (getloadavg(&load, 1) != 1) return "unknown";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f", load);
-  return text;
+  return fmt::format("{:.2f}", load);
 }
 
 }  // namespace
@@ -41,16 +41,15 @@ int bench_verb(const BenchVerbOptions& options, const std::string& command) {
   return fast::done;
 }
 
-void add_bench_verb(CLI::App& app, BenchVerbOptions& options, int& exit_code) {
-  const std::string program = app.get_name();
-  CLI::App* verb = app.add_subcommand("bench", "what a tick costs, per stage, beside copying its output and Bullet");
-  verb->add_flag("--quick", options.quick, "about 10 s instead of more than a minute: fewer cases and ticks");
-  verb->add_option("--only", options.only, "some cases: the first parts of a name such as box/4k/1, * for any part");
-  verb->add_option("--ticks", options.ticks, "measured per case (default by the time)")->check(CLI::Range(1, 10000000));
-  verb->add_option("--out", options.out, "result folder (default out/bench)");
-  verb->add_flag("--quiet", options.quiet, "no progress, only results and errors");
-  verb->footer("Example:\n  " + program + " bench --only box/4k");
-  verb->callback([&options, &exit_code, program] { exit_code = bench_verb(options, program + " bench"); });
+void add_bench_verb(fast::Command& program, BenchVerbOptions& options) {
+  fast::Command verb = program.add("bench", "what a tick costs, per stage, beside copying its output and Bullet");
+  verb.flag("--quick", options.quick, "about 10 s instead of more than a minute: fewer cases and ticks");
+  verb.option("--only", options.only, "some cases: the first parts of a name such as box/4k/1, * for any part");
+  verb.option("--ticks", options.ticks, "measured per case (default by the time)").range(1, 10000000);
+  verb.option("--out", options.out, "result folder (default out/bench)");
+  verb.flag("--quiet", options.quiet, "no progress, only results and errors");
+  verb.example("bench --only box/4k");
+  verb.action([&options, name = program.program_name()] { return bench_verb(options, name + " bench"); });
 }
 
 }  // namespace touchstone::bench

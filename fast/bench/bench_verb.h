@@ -2,8 +2,7 @@
 #pragma once
 
 #include "fast/bench/bench.h"
-
-#include <CLI/CLI.hpp>
+#include "fast/command/command.h"
 
 #include <filesystem>
 #include <string>
@@ -21,7 +20,7 @@ struct BenchVerbOptions : BenchOptions {
 /// @throws scene::InputError for bad input
 int bench_verb(const BenchVerbOptions& options, const std::string& command);
 
-/// Adds the verb to a command line. `options` and `exit_code` must outlive the parse.
-void add_bench_verb(CLI::App& app, BenchVerbOptions& options, int& exit_code);
+/// Adds the command; its variables must outlive Program::run.
+void add_bench_verb(fast::Command& program, BenchVerbOptions& options);
 
 }  // namespace touchstone::bench

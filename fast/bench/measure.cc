@@ -3,6 +3,7 @@
 #include "fast/bench/floor.h"
 #include "fast/bench/statistics.h"
 #include "fast/step/engine.h"
+#include "scene/base/stopwatch.h"
 
 #include <algorithm>
 #include <chrono>
@@ -14,10 +15,6 @@ namespace touchstone::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double us_between(Clock::time_point begin, Clock::time_point end) {
-  return std::chrono::duration<double, std::micro>(end - begin).count();
-}
 
 /// Ticks at the start of every block that are not measured: they bring back what the other kind of work drove out of
 /// the caches.
@@ -75,7 +72,7 @@ class Measurement {
     for (int i = 0; i < ticks; ++i) {
       const Clock::time_point begin = Clock::now();
       floor_.copy();
-      samples_.floor_us.push_back(us_between(begin, Clock::now()));
+      samples_.floor_us.push_back(std::chrono::duration<double, std::micro>(Clock::now() - begin).count());
     }
     samples_.floor_cpu_us.push_back((thread_cpu_us() - cpu_begin_us) / ticks);
   }
@@ -169,10 +166,10 @@ CaseResult measure(const Case& which, const Effort& effort, HardwareCounters& co
   CaseResult result;
   result.which = which;
   const scene::Scene scene = scene_of(which);
-  const Clock::time_point start = Clock::now();
+  const scene::Stopwatch watch;
   fast::Engine engine(scene);
   const fast::FastModel& model = engine.model();
-  result.setup_s = 1e-6 * us_between(start, Clock::now());
+  result.setup_s = watch.wall_s();
   result.triangles = model.surface.triangle_count();
   result.vertices = model.surface.vertex_count();
   if (model.tool.count() == 0) {

@@ -5,9 +5,9 @@
 #ifdef TOUCHSTONE_BULLET
 #include "fast/bench/bullet_peer.h"
 #include "fast/step/engine.h"
+#include "scene/base/stopwatch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #endif
@@ -34,12 +34,6 @@ const PeerResult* fastest(const std::vector<PeerResult>& peers, const std::strin
 
 #ifdef TOUCHSTONE_BULLET
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double us_since(Clock::time_point begin) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
-}
 
 /// Our step on the same box, some ticks after each of the peer's.
 class OurStep {
@@ -97,11 +91,11 @@ PeerResult measure_setting(const std::string& size, const PeerSetting& setting, 
   int touching_ticks = 0;
   bool pierced = false;
   for (int k = 0; k < ticks && result.sound; ++k) {
-    const Clock::time_point begin = Clock::now();
+    const scene::Stopwatch watch;
     const double cpu_begin_us = thread_cpu_us();
     press(pressed_m + sway_m * std::sin(2.0 * std::numbers::pi * k / 40.0));
     cpu_us.push_back(thread_cpu_us() - cpu_begin_us);
-    step_us.push_back(us_since(begin));
+    step_us.push_back(1e6 * watch.wall_s());
     result.sound = peer.sound();
     if (peer.contacts() > 0) ++touching_ticks;
     pierced = pierced || peer.pierced_m() > 0.2 * result.depth_m;

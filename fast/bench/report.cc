@@ -3,31 +3,23 @@
 #include "fast/bench/statistics.h"
 #include "fast/step/state.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace touchstone::bench {
 namespace {
 
 std::string number(double value) {
   if (!std::isfinite(value)) return "-";
-  char text[32];
   const double size = std::abs(value);
-  std::snprintf(text, sizeof text, size >= 100.0 ? "%.0f" : size >= 10.0 ? "%.1f" : "%.2f", value);
-  return text;
+  return fmt::format("{:.{}f}", value, size >= 100.0 ? 0 : size >= 10.0 ? 1 : 2);
 }
 
 std::string dotted(std::string name) {
   std::replace(name.begin(), name.end(), '/', '.');
   return name;
-}
-
-void add_percentiles(scene::Figures& figures, const std::string& key, const fast::Percentiles& p) {
-  figures.push_back({key + ".p50", p.p50_us, "", "us"});
-  figures.push_back({key + ".p99", p.p99_us, "", "us"});
-  figures.push_back({key + ".p999", p.p999_us, "", "us"});
-  figures.push_back({key + ".max", p.max_us, "", "us"});
 }
 
 void add_case(scene::Figures& figures, const CaseResult& c) {
@@ -46,9 +38,9 @@ void add_case(scene::Figures& figures, const CaseResult& c) {
   add("regions_most", c.regions_most, "");
   add("points", c.points, "");
   add("setup_s", c.setup_s, "s");
-  add_percentiles(figures, key + ".step_us", c.step.wall);
-  add_percentiles(figures, key + ".floor_us", c.floor.wall);
-  add_percentiles(figures, key + ".force_us", c.force);
+  fast::add_figures(key + ".step_us", c.step.wall, figures);
+  fast::add_figures(key + ".floor_us", c.floor.wall, figures);
+  fast::add_figures(key + ".force_us", c.force, figures);
   add("step_cpu_us", c.step.cpu_us, "us");
   add("floor_cpu_us", c.floor.cpu_us, "us");
   add("over_floor", c.step_over_floor(), "");
@@ -56,7 +48,7 @@ void add_case(scene::Figures& figures, const CaseResult& c) {
   add("force_us_per_region", c.force_us_per_region(), "us");
   for (std::size_t s = 0; s < fast::stage_count; ++s) {
     if (c.stages[s].max_us > 0.0) {
-      add_percentiles(figures, key + ".stage." + fast::stage_names[s] + "_us", c.stages[s]);
+      fast::add_figures(key + ".stage." + fast::stage_names[s] + "_us", c.stages[s], figures);
       add(("stage." + std::string(fast::stage_names[s]) + "_over_floor").c_str(),
           ratio(c.stages[s].p50_us, c.floor.wall.p50_us), "");
     }
@@ -75,7 +67,7 @@ void add_peer(scene::Figures& figures, const PeerResult& p) {
   figures.push_back({key + ".status", 0.0, !p.sound ? "diverged" : !p.touching ? "not in contact" : "in contact", ""});
   if (!p.valid()) return;
   figures.push_back({key + ".ticks", static_cast<double>(p.ticks), "", ""});
-  add_percentiles(figures, key + ".step_us", p.step.wall);
+  fast::add_figures(key + ".step_us", p.step.wall, figures);
   figures.push_back({key + ".step_cpu_us", p.step.cpu_us, "", "us"});
   figures.push_back({key + ".over_step", p.over_step(), "", ""});
 }
@@ -156,15 +148,13 @@ std::string where_time_goes(const CaseResult& c) {
             [&](std::size_t a, std::size_t b) { return c.stages[a].p50_us > c.stages[b].p50_us; });
   std::string text = "  " + c.which.name() + ":";
   for (const std::size_t s : order) {
-    char part[80];
-    std::snprintf(part, sizeof part, " %s %s us (%.0f %%, %s floors)", fast::stage_names[s],
-                  number(c.stages[s].p50_us).c_str(), 100.0 * c.stages[s].p50_us / sum_us,
-                  number(ratio(c.stages[s].p50_us, c.floor.wall.p50_us)).c_str());
-    text += part + std::string(s == order.back() ? "" : ",");
+    text += fmt::format(" {} {} us ({:.0f} %, {} floors){}", fast::stage_names[s], number(c.stages[s].p50_us),
+                        100.0 * c.stages[s].p50_us / sum_us, number(ratio(c.stages[s].p50_us, c.floor.wall.p50_us)),
+                        s == order.back() ? "" : ",");
   }
   if (std::isfinite(c.instructions)) {
-    text += "; " + number(c.instructions) + " instructions in " + number(c.cycles) + " cycles, " +
-            number(c.instructions / c.vertices) + " per vertex";
+    text += fmt::format("; {} instructions in {} cycles, {} per vertex", number(c.instructions), number(c.cycles),
+                        number(c.instructions / c.vertices));
   }
   return text + "\n";
 }
@@ -204,8 +194,8 @@ std::string remarks(const BenchResult& result) {
   std::string text;
   for (const CaseResult& c : result.cases) {
     if (!c.available || c.as_planned()) continue;
-    text += "  " + c.which.name() + ": " + std::to_string(c.regions_least) + " to " + std::to_string(c.regions_most) +
-            " regions pressed, " + fast::status_text(c.status) + "\n";
+    text += fmt::format("  {}: {} to {} regions pressed, {}\n", c.which.name(), c.regions_least, c.regions_most,
+                        fast::status_text(c.status));
   }
   return text.empty() ? "" : "Other than planned\n" + text;
 }

@@ -39,7 +39,7 @@ struct Verdict {
 /// of Bullet's schemes that computed it.
 [[nodiscard]] std::vector<Verdict> verdicts(const BenchResult& result);
 
-/// Everything by stable dotted key: the targets' keys, then bench.<body>.<size>.<regions>.<figure>.
+/// Everything by stable dotted key: the targets' keys, then `bench.<body>.<size>.<regions>.<figure>`.
 [[nodiscard]] scene::Figures figures(const BenchResult& result);
 
 /// Cases by columns, the stages' medians, the peer, the targets, and where the time goes of what missed one.

@@ -188,7 +188,7 @@ scene::Scene scene_of(const Case& which) {
   scene.fast.triangles = triangles_wished(which.size);
   scene.fast.max_regions = which.regions;
   scene.fast.rate_hz = 1000.0;
-  scene.fast.r_th_m = 0.004;
+  scene.contact.r_th_m = 0.004;
   scene.fast.r_R_m = 0.015;
   scene.fast.C_n = 0.2;
   scene.fast.C_r_m = 0.002;

@@ -1,10 +1,10 @@
-// Common to all commands of both executables: options, exit codes, how progress and plans are shown.
+// Common to all commands of both executables: options, exit codes, how failures and plans are shown.
 #pragma once
 
+#include "fast/command/command.h"
+#include "fast/command/exit_code.h"
 #include "scene/model/plan.h"
 #include "scene/model/scene.h"
-
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <functional>
@@ -13,12 +13,10 @@
 
 namespace touchstone::fast {
 
-enum ExitCode { done = 0, answer_is_no = 1, bad_input = 2, not_converged = 3, interrupted = 130 };
-
 /// Options of a verb that takes one scene and leaves one result folder.
 struct VerbOptions {
   std::filesystem::path scene_file;
-  std::filesystem::path out;  ///< empty: out/<scene>-<verb>
+  std::filesystem::path out;  ///< empty: `out/<scene>-<verb>`
   std::vector<std::string> overrides;
   bool quiet = false;
 
@@ -27,24 +25,11 @@ struct VerbOptions {
   [[nodiscard]] scene::Scene load() const;
 };
 
-/// Adds a verb with its options.
-/// @param example  for --help: what follows the verb
-/// @param action  runs when the verb is chosen; its result is the exit code
-/// @param exit_code  receives it
-CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& example,
-                   VerbOptions& options, std::function<int()> action, int& exit_code);
-
-/// The verbs of --help under headings, in this order; the rest under "More".
-void group_verbs(CLI::App& app, const std::vector<std::pair<std::string, std::vector<std::string>>>& groups);
-
-/// The message for a misspelt command or option, with the nearest known one; empty when the fault is another.
-[[nodiscard]] std::string misspelt(const CLI::App& app);
-
-/// Parses and runs the chosen verb; a command that cannot be is one message on stderr and an exit code. Without any
-/// argument it prints the help.
-/// @param exit_code  the variable given to add_verb
-/// @throws what the verb throws
-[[nodiscard]] int run_command_line(CLI::App& app, int argc, char** argv, int& exit_code);
+/// Adds a command with these options.
+/// @param example  for --help: what follows the command
+/// @param action  runs when the command is chosen; its result is the exit code
+Command add_verb(Command& program, const std::string& name, const std::string& what, const std::string& example,
+                 VerbOptions& options, std::function<int()> action);
 
 /// What a failure is to its user.
 struct Failure {

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 namespace touchstone::fast {
 
@@ -42,11 +41,9 @@ std::vector<scene::Column> beam_columns(const std::vector<BeamRecord>& beams) {
 }
 
 scene::Figures figures(const Run& run) {
-  scene::Figures out = {
-      {"fast.step_us.p50", run.step.p50_us, "", "us"},
-      {"fast.step_us.p99", run.step.p99_us, "", "us"},
-      {"fast.step_us.p999", run.step.p999_us, "", "us"},
-      {"fast.step_us.max", run.step.max_us, "", "us"},
+  scene::Figures out;
+  add_figures("fast.step_us", run.step, out);
+  const scene::Figures rest = {
       {"fast.force_us.p50", run.force.p50_us, "", "us"},
       {"fast.force_us.p99", run.force.p99_us, "", "us"},
       {"fast.setup_s", run.setup_s, "", "s"},
@@ -55,6 +52,7 @@ scene::Figures figures(const Run& run) {
       {"fast.regions_max", static_cast<double>(run.regions_max), "", ""},
       {"fast.status", 0.0, status_text(run.status), ""},
   };
+  out.insert(out.end(), rest.begin(), rest.end());
   if (run.first_contact_s) out.push_back({"fast.first_contact_s", *run.first_contact_s, "", "s"});
   if (run.order_spread_rel) out.push_back({"fast.order_spread_rel", *run.order_spread_rel, "", ""});
   if (run.equilibrium_rel) out.push_back({"fast.equilibrium_rel", *run.equilibrium_rel, "", ""});
@@ -66,9 +64,7 @@ Run run_into_folder(const scene::Scene& scene, const std::filesystem::path& fold
   const scene::Stopwatch watch;
   ProgressLine progress(quiet);
   Run result = run(scene, [&](double fraction) {
-    char text[64];
-    std::snprintf(text, sizeof text, "fast: %3.0f %% of the track", 100.0 * fraction);
-    progress.show(text, fraction == 1.0);
+    progress.show(fmt::format("fast: {:3.0f} % of the track", 100.0 * fraction), fraction == 1.0);
   });
   progress.finish();
   manifest.times.push_back(watch.read("fast"));

@@ -26,49 +26,28 @@ void place_batch(const Placement& at, CellBatch& batch) noexcept {
   }
 }
 
+// The shapes' own formulas, of copies that no column overlaps.
+
 TOUCHSTONE_WIDE_LOOPS
-bool beyond_batch(const scene::Ellipsoid& body, CellBatch& batch) noexcept {
-  const scene::Vec3 center_m = body.center_m(), per_m = body.semi_axes_m().cwiseInverse();
+void beyond_batch(const scene::Ellipsoid& given, CellBatch& batch) noexcept {
+  const scene::Ellipsoid body = given;
   const std::size_t lanes = batch.lanes();
-  for (std::size_t i = 0; i < lanes; ++i) {
-    const double sx = (batch.x_m[i] - center_m.x()) * per_m.x(), sy = (batch.y_m[i] - center_m.y()) * per_m.y(),
-                 sz = (batch.z_m[i] - center_m.z()) * per_m.z();
-    const double gx = sx * per_m.x(), gy = sy * per_m.y(), gz = sz * per_m.z();
-    const double ratio2 = sx * sx + sy * sy + sz * sz;
-    batch.beyond[i] = ratio2 - std::sqrt(ratio2) - batch.reach_m[i] * std::sqrt(gx * gx + gy * gy + gz * gz);
-  }
-  return true;
+  for (std::size_t i = 0; i < lanes; ++i)
+    batch.beyond[i] = body.beyond(batch.x_m[i], batch.y_m[i], batch.z_m[i], batch.reach_m[i]);
 }
 
 TOUCHSTONE_WIDE_LOOPS
-void rest_batch(const scene::Box& body, CellBatch& batch) noexcept {
-  const scene::Vec3 center_m = body.center_m(), half_m = body.half_m();
+void rest_batch(const scene::Box& given, CellBatch& batch) noexcept {
+  const scene::Box body = given;
   const std::size_t lanes = batch.lanes();
-  for (std::size_t i = 0; i < lanes; ++i) {
-    const double lx = batch.x_m[i] - center_m.x(), ly = batch.y_m[i] - center_m.y(), lz = batch.z_m[i] - center_m.z();
-    const double ax = std::abs(lx) - half_m.x(), ay = std::abs(ly) - half_m.y(), az = std::abs(lz) - half_m.z();
-    batch.distance_m[i] = larger(larger(ax, ay), az);
-    const bool x = (ax >= ay) & (ax >= az), y = !x & (ay >= az);
-    batch.nx[i] = x ? std::copysign(1.0, lx) : 0.0;
-    batch.ny[i] = y ? std::copysign(1.0, ly) : 0.0;
-    batch.nz[i] = x | y ? 0.0 : std::copysign(1.0, lz);
-  }
+  for (std::size_t i = 0; i < lanes; ++i) batch.set_rest(i, body.distance_at(batch.x_m[i], batch.y_m[i], batch.z_m[i]));
 }
 
 TOUCHSTONE_WIDE_LOOPS
-void rest_batch(const scene::Sphere& body, CellBatch& batch) noexcept {
-  const scene::Vec3 center_m = body.center_m();
-  const double radius_m = body.radius_m();
+void rest_batch(const scene::Sphere& given, CellBatch& batch) noexcept {
+  const scene::Sphere body = given;
   const std::size_t lanes = batch.lanes();
-  for (std::size_t i = 0; i < lanes; ++i) {
-    const double lx = batch.x_m[i] - center_m.x(), ly = batch.y_m[i] - center_m.y(), lz = batch.z_m[i] - center_m.z();
-    const double distance_m = std::sqrt(lx * lx + ly * ly + lz * lz);
-    batch.distance_m[i] = distance_m - radius_m;
-    const bool apart = distance_m > 0.0;
-    batch.nx[i] = apart ? lx / distance_m : 0.0;
-    batch.ny[i] = apart ? ly / distance_m : 0.0;
-    batch.nz[i] = apart ? lz / distance_m : 1.0;
-  }
+  for (std::size_t i = 0; i < lanes; ++i) batch.set_rest(i, body.distance_at(batch.x_m[i], batch.y_m[i], batch.z_m[i]));
 }
 
 namespace {
@@ -78,12 +57,12 @@ constexpr double searching = 0.0, found = 1.0, lost = 2.0;
 
 }  // namespace
 
-/// The steps of rest_distance(), each lane until it has its answer.
+/// The steps of Ellipsoid::distance_at(), each lane until it has its answer.
 TOUCHSTONE_WIDE_LOOPS
 void rest_batch(const scene::Ellipsoid& body, CellBatch& batch) noexcept {
   constexpr std::size_t wide = 8;
-  const scene::Vec3 center_m = body.center_m(), a = body.semi_axes_m(), a2 = a.cwiseProduct(a);
-  const double deepest = -0.9 * a2.minCoeff();
+  const scene::Vec3 center_m = body.center_m();
+  const scene::EllipsoidSearch search(body.semi_axes_m());
   for (std::size_t begin = 0; begin < batch.count; begin += wide) {
     alignas(64) double lx[wide], ly[wide], lz[wide], t[wide], state[wide];
     for (std::size_t i = 0; i < wide; ++i) {
@@ -94,19 +73,12 @@ void rest_batch(const scene::Ellipsoid& body, CellBatch& batch) noexcept {
       t[i] = 0.0;
       state[i] = searching;
     }
-    for (int step = 0; step < 12; ++step) {
+    for (int k = 0; k < scene::EllipsoidSearch::steps_max; ++k) {
       for (std::size_t i = 0; i < wide; ++i) {
-        const double px = 1.0 / (a2.x() + t[i]), py = 1.0 / (a2.y() + t[i]), pz = 1.0 / (a2.z() + t[i]);
-        const double qx = a.x() * lx[i] * px, qy = a.y() * ly[i] * py, qz = a.z() * lz[i] * pz;
-        const double qx2 = qx * qx, qy2 = qy * qy, qz2 = qz * qz;
-        const double rx = qx2 * px, ry = qy2 * py, rz = qz2 * pz;
-        const double length2 = qx2 + qy2 + qz2, length = std::sqrt(length2), over = length - 1.0;
-        const double s1 = rx + ry + rz, s2 = rx * px + ry * py + rz * pz;
-        const double bent = 2.0 * s1 * s1 + 3.0 * over * (s1 * s1 - length2 * s2);
-        const double next = t[i] + 2.0 * length2 * over * s1 / (bent > s1 * s1 ? bent : 2.0 * s1 * s1);
-        const bool on = std::abs(over) < 4e-16, goes_on = state[i] == searching;
-        const double becomes = on | !(next > deepest) ? lost : std::abs(over) < 1e-5 ? found : searching;
-        t[i] = goes_on & !on ? next : t[i];
+        const scene::EllipsoidSearch::Step step = search.step(lx[i], ly[i], lz[i], t[i]);
+        const bool goes_on = state[i] == searching;
+        const double becomes = search.lost(step) ? lost : scene::EllipsoidSearch::settled(step) ? found : searching;
+        t[i] = goes_on & !scene::EllipsoidSearch::stands(step) ? step.next : t[i];
         state[i] = goes_on ? becomes : state[i];
       }
       double least = found;
@@ -115,26 +87,18 @@ void rest_batch(const scene::Ellipsoid& body, CellBatch& batch) noexcept {
     }
     alignas(64) double distance_m[wide], nx[wide], ny[wide], nz[wide];
     for (std::size_t i = 0; i < wide; ++i) {
-      const double x = lx[i] / (a2.x() + t[i]), y = ly[i] / (a2.y() + t[i]), z = lz[i] / (a2.z() + t[i]);
-      const double length = std::sqrt(x * x + y * y + z * z);
-      nx[i] = x / length;
-      ny[i] = y / length;
-      nz[i] = z / length;
-      const double ax = a.x() * nx[i], ay = a.y() * ny[i], az = a.z() * nz[i];
-      distance_m[i] = lx[i] * nx[i] + ly[i] * ny[i] + lz[i] * nz[i] - std::sqrt(ax * ax + ay * ay + az * az);
+      const scene::Distance d = search.answer(lx[i], ly[i], lz[i], t[i]);
+      distance_m[i] = d.signed_distance_m;
+      nx[i] = d.nx;
+      ny[i] = d.ny;
+      nz[i] = d.nz;
     }
     for (std::size_t i = 0; i < wide && begin + i < batch.count; ++i) {
       const std::size_t k = begin + i;
-      batch.distance_m[k] = distance_m[i];
-      batch.nx[k] = nx[i];
-      batch.ny[k] = ny[i];
-      batch.nz[k] = nz[i];
+      batch.set_rest(k, {distance_m[i], nx[i], ny[i], nz[i]});
       if (state[i] == found) continue;
-      const scene::SurfaceQuery closest = body.query(scene::Vec3(batch.x_m[k], batch.y_m[k], batch.z_m[k]));
-      batch.distance_m[k] = closest.signed_distance_m;
-      batch.nx[k] = closest.normal.x();
-      batch.ny[k] = closest.normal.y();
-      batch.nz[k] = closest.normal.z();
+      const scene::SurfaceQuery safe = body.query(scene::Vec3(batch.x_m[k], batch.y_m[k], batch.z_m[k]));
+      batch.set_rest(k, {safe.signed_distance_m, safe.normal.x(), safe.normal.y(), safe.normal.z()});
     }
   }
 }

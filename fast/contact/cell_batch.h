@@ -4,6 +4,7 @@
 
 #include "fast/contact/region_points.h"
 #include "fast/contact/rest_distance.h"
+#include "scene/shape/solids.h"
 
 #include <array>
 #include <cstddef>
@@ -51,6 +52,12 @@ struct CellBatch {
       corner_m[k][2][i] = at_m.z();
     }
   }
+  TOUCHSTONE_INLINE void set_rest(std::size_t i, const scene::Distance& d) noexcept {
+    distance_m[i] = d.signed_distance_m;
+    nx[i] = d.nx;
+    ny[i] = d.ny;
+    nz[i] = d.nz;
+  }
   /// Takes lane `from` for lane `to`, as far as place_batch() has filled it.
   void move(std::size_t from, std::size_t to) noexcept {
     for (Column* column : {&x_m, &y_m, &z_m, &reach_m}) (*column)[to] = (*column)[from];
@@ -59,21 +66,19 @@ struct CellBatch {
 
 /// Middles to the world.
 void place_batch(const Placement&, CellBatch&) noexcept;
-/// Sets `beyond`, where there is a cheap answer. @return whether there is
+/// Sets `beyond`, of a shape that knows it.
 template <class Body>
-bool beyond_batch(const Body&, CellBatch&) noexcept {
-  return false;
+void beyond_batch(const Body& body, CellBatch& batch) noexcept {
+  for (std::size_t i = 0; i < batch.lanes(); ++i)
+    batch.beyond[i] = body.beyond(batch.x_m[i], batch.y_m[i], batch.z_m[i], batch.reach_m[i]);
 }
-bool beyond_batch(const scene::Ellipsoid&, CellBatch&) noexcept;
-/// RestDistance of the middles.
+void beyond_batch(const scene::Ellipsoid&, CellBatch&) noexcept;
+/// RestDistance of the middles. Shapes with an overload have the loop for wide registers.
 template <class Body>
 void rest_batch(const Body& body, CellBatch& batch) noexcept {
   for (std::size_t i = 0; i < batch.count; ++i) {
     const RestDistance rest = rest_distance(body, scene::Vec3(batch.x_m[i], batch.y_m[i], batch.z_m[i]));
-    batch.distance_m[i] = rest.signed_distance_m;
-    batch.nx[i] = rest.normal.x();
-    batch.ny[i] = rest.normal.y();
-    batch.nz[i] = rest.normal.z();
+    batch.set_rest(i, {rest.signed_distance_m, rest.normal.x(), rest.normal.y(), rest.normal.z()});
   }
 }
 void rest_batch(const scene::Box&, CellBatch&) noexcept;

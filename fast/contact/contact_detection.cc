@@ -1,9 +1,8 @@
 #include "fast/contact/contact_detection.h"
 
-#include "fast/contact/find_cells.h"
 #include "fast/contact/point_loops.h"
-#include "fast/contact/pull_back.h"
 #include "fast/contact/rest_distance.h"
+#include "scene/shape/solids.h"
 
 #include <algorithm>
 #include <cmath>
@@ -76,7 +75,7 @@ void set_rises(const Body& body, const WayOut&, const Mat3& R_WT, const Vec3& d,
   }
 }
 template <>
-void set_rises(const scene::Box&, const BoxExit& way_out, const Mat3& R_WT, const Vec3& d,
+void set_rises(const scene::Box&, const scene::BoxExit& way_out, const Mat3& R_WT, const Vec3& d,
                RegionPoints& points) noexcept {
   set_rises(way_out, R_WT, d, points);
 }
@@ -118,24 +117,18 @@ double exit_distance(const scene::Shape& shape, const Vec3& p_W_m, const Vec3& d
   return exit_along(static_cast<const Body&>(shape), direction)(p_W_m);
 }
 
-template <class Body>
-constexpr Detection detection_of{&find_inside<Body>, &find_cells<Body>,     &summarise<Body>,
-                                 &pull_back<Body>,   &measure_depths<Body>, &exit_distance<Body>};
-
 }  // namespace
 
-Detection detection_for(scene::BodyShape shape) noexcept {
-  switch (shape) {
-    case scene::BodyShape::box:
-      return detection_of<scene::Box>;
-    case scene::BodyShape::sphere:
-      return detection_of<scene::Sphere>;
-    case scene::BodyShape::ellipsoid:
-      return detection_of<scene::Ellipsoid>;
-    case scene::BodyShape::revolution:
-      return detection_of<scene::Revolution>;
-  }
-  return {};
+Detection detection_for(const scene::Shape& shape) noexcept {
+  auto detection = scene::as_solid<Detection>(shape, []<class Body>() {
+    return Detection{.find_inside = &find_inside<Body>,
+                     .summarise = &summarise<Body>,
+                     .measure_depths = &measure_depths<Body>,
+                     .exit_distance_m = &exit_distance<Body>};
+  });
+  detection.find_cells = find_cells_for(shape);
+  detection.pull_back = pull_back_for(shape);
+  return detection;
 }
 
 Vec3 direction_from(const InsideSummary& inside, const Vec3& otherwise) noexcept {

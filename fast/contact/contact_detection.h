@@ -2,9 +2,11 @@
 // how d is chosen (sections II-B, III, appendix III: the set M).
 #pragma once
 
+#include "fast/contact/find_cells.h"
+#include "fast/contact/pull_back.h"
 #include "fast/contact/region_points.h"
 #include "fast/contact/tool_samples.h"
-#include "scene/model/scene.h"
+#include "scene/shape/shape.h"
 
 namespace touchstone::fast {
 
@@ -14,12 +16,6 @@ namespace touchstone::fast {
 /// @param limit stops once this many points are found
 using FindInside = InsideSummary (*)(const scene::Shape&, const ToolSamples&, const Placement&, double margin_m,
                                      int limit, RegionPoints&) noexcept;
-
-struct CellRule;
-class CellScratch;
-/// See find_cells.h.
-using FindCells = InsideSummary (*)(const scene::Shape&, const ToolSamples&, const Placement&, const CellRule&,
-                                    double margin_m, RegionPoints&, CellScratch&) noexcept;
 
 /// The summary of points as they stand, none left out but those that are not inside.
 using Summarise = InsideSummary (*)(const scene::Shape&, const RegionPoints&) noexcept;
@@ -32,12 +28,6 @@ using MeasureDepths = RegionExtent (*)(const scene::Shape&, const scene::Mat3& R
 /// Way from a point of the body along a direction to the rest surface [m].
 using ExitDistance = double (*)(const scene::Shape&, const scene::Vec3& p_W_m, const scene::Vec3& direction) noexcept;
 
-class DisplacedSurface;
-struct PullBackScratch;
-/// Takes the points back from the deformed body to the one at rest, see pull_back.h; the summary of those that stay.
-using PullBack = InsideSummary (*)(const scene::Shape&, const DisplacedSurface&, RegionPoints&,
-                                   PullBackScratch&) noexcept;
-
 /// Detection for one shape of body.
 struct Detection {
   FindInside find_inside = nullptr;
@@ -47,8 +37,8 @@ struct Detection {
   MeasureDepths measure_depths = nullptr;
   ExitDistance exit_distance_m = nullptr;
 };
-/// For bodies of that shape, as scene::body_shape makes them.
-[[nodiscard]] Detection detection_for(scene::BodyShape shape) noexcept;
+/// For bodies of that class, one of scene::Solids.
+[[nodiscard]] Detection detection_for(const scene::Shape& shape) noexcept;
 
 /// Direction of deformation the rest surface asks for: against the mean of its normals.
 /// Falls back on `otherwise` where the normals cancel (a tool around the middle of the body).

@@ -69,7 +69,8 @@ class ClusterScratch {
     std::int32_t first = -1;  ///< point, -1 for a cell without points
     std::int32_t cluster = -1;
   };
-  friend struct ClusterCount cluster(const ClusterGrid&, RegionPoints&, ClusterScratch&, std::span<Cluster>) noexcept;
+  friend struct ClusterCount cluster(const ClusterGrid& grid, RegionPoints& all, ClusterScratch& scratch,
+                                     std::span<Cluster> out) noexcept;
   [[nodiscard]] std::int32_t root(std::int32_t cell) noexcept;
   void join(std::int32_t a, std::int32_t b) noexcept;
   /// Whether a point's sample of cell a is nearer than r_th to one of cell b.

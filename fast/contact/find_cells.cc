@@ -3,6 +3,7 @@
 #include "fast/contact/cell_batch.h"
 #include "fast/contact/rest_distance.h"
 #include "fast/contact/tool_samples.h"
+#include "scene/shape/solids.h"
 
 #include <algorithm>
 #include <array>
@@ -219,7 +220,8 @@ class CellFinder {
     asked_ = 0;
     batch_.pad();
     place_batch(at_, batch_);
-    if (beyond_batch(body_, batch_)) {
+    if constexpr (knows_beyond<Body>) {
+      beyond_batch(body_, batch_);
       std::size_t kept = 0;
       for (std::size_t i = 0; i < batch_.count; ++i) {
         if (batch_.beyond[i] > 0.0) continue;
@@ -414,8 +416,6 @@ class CellFinder {
   std::array<Cut, CellBatch::size> cut_;
 };
 
-}  // namespace
-
 template <class Body>
 InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, const Placement& at, const CellRule& rule,
                          double margin_m, RegionPoints& points, CellScratch& scratch) noexcept {
@@ -463,14 +463,11 @@ InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, con
   }
 }
 
-template InsideSummary find_cells<scene::Box>(const scene::Shape&, const ToolSamples&, const Placement&,
-                                              const CellRule&, double, RegionPoints&, CellScratch&) noexcept;
-template InsideSummary find_cells<scene::Sphere>(const scene::Shape&, const ToolSamples&, const Placement&,
-                                                 const CellRule&, double, RegionPoints&, CellScratch&) noexcept;
-template InsideSummary find_cells<scene::Ellipsoid>(const scene::Shape&, const ToolSamples&, const Placement&,
-                                                    const CellRule&, double, RegionPoints&, CellScratch&) noexcept;
-template InsideSummary find_cells<scene::Revolution>(const scene::Shape&, const ToolSamples&, const Placement&,
-                                                     const CellRule&, double, RegionPoints&, CellScratch&) noexcept;
+}  // namespace
+
+FindCells find_cells_for(const scene::Shape& shape) noexcept {
+  return scene::as_solid<FindCells>(shape, []<class Body>() -> FindCells { return &find_cells<Body>; });
+}
 
 CellScratch::CellScratch(int samples)
     : halves_(samples > 0 ? 2 * max_cells : 0),

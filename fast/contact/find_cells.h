@@ -78,8 +78,8 @@ class CellScratch {
 /// part and with its area. Where the points are too few (also for the lever of the mass centre), or too much of the
 /// area is in cut cells, all cells near the body are halved, and again, as far as there is room.
 /// @param margin_m what lies outside, but for less than that, are points too, of negative depth
-template <class Body>
-InsideSummary find_cells(const scene::Shape&, const ToolSamples&, const Placement&, const CellRule&, double margin_m,
-                         RegionPoints&, CellScratch&) noexcept;
+using FindCells = InsideSummary (*)(const scene::Shape&, const ToolSamples&, const Placement&, const CellRule&,
+                                    double margin_m, RegionPoints&, CellScratch&) noexcept;
+[[nodiscard]] FindCells find_cells_for(const scene::Shape&) noexcept;
 
 }  // namespace touchstone::fast

@@ -64,51 +64,21 @@ void keep_facing(const Vec3& d_T, RegionPoints& points) noexcept {
   points.count = kept;
 }
 
-TOUCHSTONE_WIDE_LOOPS
-void set_depths(const BoxExit& way_out_m, RegionPoints& p) noexcept {
-  const Numbers center = numbers(way_out_m.center_m()), half = numbers(way_out_m.half_m()),
-                sign = numbers(way_out_m.sign()), per = numbers(way_out_m.per_speed());
+// The shapes' own formulas, of copies that no column overlaps.
+
+template <class WayOut>
+TOUCHSTONE_INLINE void set_depths_by(const WayOut way_out_m, RegionPoints& p) noexcept {
   const auto count = static_cast<std::size_t>(p.count);
 #pragma GCC ivdep
-  for (std::size_t i = 0; i < count; ++i) {
-    const double x = (half.x - sign.x * (p.x_W_m[i] - center.x)) * per.x,
-                 y = (half.y - sign.y * (p.y_W_m[i] - center.y)) * per.y,
-                 z = (half.z - sign.z * (p.z_W_m[i] - center.z)) * per.z;
-    const double exit_m = smaller(smaller(x, y), z);
-    p.depth_m[i] = exit_m > 0.0 ? exit_m : 0.0;
-  }
+  for (std::size_t i = 0; i < count; ++i) p.depth_m[i] = way_out_m(p.x_W_m[i], p.y_W_m[i], p.z_W_m[i]);
 }
 
 TOUCHSTONE_WIDE_LOOPS
-void set_depths(const SphereExit& way_out_m, RegionPoints& p) noexcept {
-  const Numbers center = numbers(way_out_m.center_m()), to = numbers(way_out_m.direction());
-  const double radius2_m2 = way_out_m.radius2_m2();
-  const auto count = static_cast<std::size_t>(p.count);
-#pragma GCC ivdep
-  for (std::size_t i = 0; i < count; ++i) {
-    const double x = p.x_W_m[i] - center.x, y = p.y_W_m[i] - center.y, z = p.z_W_m[i] - center.z;
-    const double along_m = x * to.x + y * to.y + z * to.z, inside_m2 = radius2_m2 - (x * x + y * y + z * z);
-    const double way_m = std::sqrt(larger(along_m * along_m + inside_m2, 0.0)) - along_m;
-    p.depth_m[i] = inside_m2 > 0.0 ? way_m : 0.0;
-  }
-}
-
+void set_depths(const scene::BoxExit& way_out_m, RegionPoints& p) noexcept { set_depths_by(way_out_m, p); }
 TOUCHSTONE_WIDE_LOOPS
-void set_depths(const EllipsoidExit& way_out_m, RegionPoints& p) noexcept {
-  const Numbers center = numbers(way_out_m.center_m()), per = numbers(way_out_m.per_axis()),
-                to = numbers(way_out_m.direction());
-  const double a = way_out_m.a();
-  const auto count = static_cast<std::size_t>(p.count);
-#pragma GCC ivdep
-  for (std::size_t i = 0; i < count; ++i) {
-    const double x = (p.x_W_m[i] - center.x) * per.x, y = (p.y_W_m[i] - center.y) * per.y,
-                 z = (p.z_W_m[i] - center.z) * per.z;
-    const double inside = 1.0 - (x * x + y * y + z * z), along = x * to.x + y * to.y + z * to.z;
-    const double root = std::sqrt(larger(along * along + a * inside, 0.0));
-    const double way_m = along > 0.0 ? inside / (root + along) : (root - along) / a;
-    p.depth_m[i] = inside > 0.0 ? way_m : 0.0;
-  }
-}
+void set_depths(const scene::SphereExit& way_out_m, RegionPoints& p) noexcept { set_depths_by(way_out_m, p); }
+TOUCHSTONE_WIDE_LOOPS
+void set_depths(const scene::EllipsoidExit& way_out_m, RegionPoints& p) noexcept { set_depths_by(way_out_m, p); }
 
 TOUCHSTONE_WIDE_LOOPS
 void set_rises(const Mat3& R_WT, const Vec3& d, RegionPoints& p) noexcept {
@@ -119,18 +89,14 @@ void set_rises(const Mat3& R_WT, const Vec3& d, RegionPoints& p) noexcept {
 }
 
 TOUCHSTONE_WIDE_LOOPS
-void set_rises(const BoxExit& way_out, const Mat3& R_WT, const Vec3& d, RegionPoints& p) noexcept {
+void set_rises(const scene::BoxExit& given, const Mat3& R_WT, const Vec3& d, RegionPoints& p) noexcept {
   const Rises rises(R_WT, d);
-  const Numbers center = numbers(way_out.center_m()), half = numbers(way_out.half_m()), sign = numbers(way_out.sign()),
-                per = numbers(way_out.per_speed());
+  const scene::BoxExit way_out = given;
   const auto count = static_cast<std::size_t>(p.count);
 #pragma GCC ivdep
   for (std::size_t i = 0; i < count; ++i) {
-    const double x = (half.x - sign.x * (p.x_W_m[i] - center.x)) * per.x,
-                 y = (half.y - sign.y * (p.y_W_m[i] - center.y)) * per.y,
-                 z = (half.z - sign.z * (p.z_W_m[i] - center.z)) * per.z;
-    const bool by_x = (x <= y) & (x <= z), by_y = !by_x & (y <= z);
-    rises.set(by_x ? sign.x : 0.0, by_y ? sign.y : 0.0, by_x | by_y ? 0.0 : sign.z, p, i);
+    const scene::BoxExit::Face face = way_out.face(p.x_W_m[i], p.y_W_m[i], p.z_W_m[i]);
+    rises.set(face.nx, face.ny, face.nz, p, i);
   }
 }
 

@@ -5,6 +5,7 @@
 #include "fast/contact/contact_law.h"
 #include "fast/contact/region_points.h"
 #include "fast/contact/rest_distance.h"
+#include "scene/shape/solids.h"
 
 #include <cstddef>
 
@@ -19,9 +20,9 @@ void set_depths(const WayOut& way_out_m, RegionPoints& points) noexcept {
   for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i)
     points.depth_m[i] = way_out_m(points.p_W_m(i));
 }
-void set_depths(const BoxExit& way_out_m, RegionPoints& points) noexcept;
-void set_depths(const SphereExit& way_out_m, RegionPoints& points) noexcept;
-void set_depths(const EllipsoidExit& way_out_m, RegionPoints& points) noexcept;
+void set_depths(const scene::BoxExit& way_out_m, RegionPoints& points) noexcept;
+void set_depths(const scene::SphereExit& way_out_m, RegionPoints& points) noexcept;
+void set_depths(const scene::EllipsoidExit& way_out_m, RegionPoints& points) noexcept;
 
 /// How the depth changes along a way in the tool's surface, which d leads from to a tangent plane of the rest surface.
 /// @param exit_normal of that plane, outward
@@ -34,7 +35,8 @@ void set_depths(const EllipsoidExit& way_out_m, RegionPoints& points) noexcept;
 /// point.
 void set_rises(const scene::Mat3& R_WT, const scene::Vec3& d, RegionPoints& points) noexcept;
 /// The same where it leads to a face of the box.
-void set_rises(const BoxExit& way_out, const scene::Mat3& R_WT, const scene::Vec3& d, RegionPoints& points) noexcept;
+void set_rises(const scene::BoxExit& way_out, const scene::Mat3& R_WT, const scene::Vec3& d,
+               RegionPoints& points) noexcept;
 
 /// Whether some of the depths, with their spread, goes beyond a limit.
 [[nodiscard]] bool reaches_limit(double limit_m, const RegionPoints& points) noexcept;
@@ -46,7 +48,7 @@ inline constexpr double near_the_line = -1.0;
 /// the depth what its change over that part and that of 1 / r make together.
 void set_shares(const scene::Vec3& d_T, RegionPoints& points) noexcept;
 
-/// F_i and d_i of the points [begin, begin + count). @param spread RegionPoints::spread
+/// F_i and d_i of the points [begin, begin + count). @tparam spread RegionPoints::spread
 template <bool spread>
 void point_forces(const DuffingLaw& law, const RegionPoints& points, double depth_scale, std::size_t begin,
                   std::size_t count, double* force_n, double* depth_m) noexcept;

@@ -2,6 +2,7 @@
 
 #include "fast/contact/rest_distance.h"
 #include "fast/realtime/wide_loops.h"
+#include "scene/shape/solids.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,32 +28,6 @@ constexpr int steps_max = 6;
 constexpr double bend_max = 0.015;
 /// How far aside from its foot a point may stand, in parts of its distance.
 constexpr double foot_off_max = 0.05;
-
-SurfaceQuery closest(const scene::Shape& shape, const Vec3& p_m) noexcept { return shape.query(p_m); }
-SurfaceQuery closest(const scene::Ellipsoid& ellipsoid, const Vec3& p_m) noexcept {
-  const RestDistance rest = rest_distance(ellipsoid, p_m);
-  const Vec3& n = rest.normal;
-  const int patch = (n.x() < 0.0 ? 1 : 0) | (n.y() < 0.0 ? 2 : 0) | (n.z() < 0.0 ? 4 : 0);
-  return {rest.signed_distance_m, p_m - rest.signed_distance_m * n, n, patch};
-}
-/// Of a point inside the box or straight over a face, without a branch.
-inline SurfaceQuery closest(const scene::Box& box, const Vec3& p_m) noexcept {
-  const Vec3 local = p_m - box.center_m(), above_face = local.cwiseAbs() - box.half_m();
-  if ((above_face.x() > 0.0) + (above_face.y() > 0.0) + (above_face.z() > 0.0) > 1) return box.query(p_m);
-  const bool x = above_face.x() >= above_face.y() && above_face.x() >= above_face.z();
-  const bool y = !x && above_face.y() >= above_face.z();
-  const bool z = !x && !y;
-  const bool low = (x ? local.x() : y ? local.y() : local.z()) < 0.0;
-  const Vec3 face_m = box.center_m() + (low ? Vec3(-box.half_m()) : box.half_m());
-  const double sign = low ? -1.0 : 1.0;
-  return {above_face.maxCoeff(),
-          {x ? face_m.x() : p_m.x(), y ? face_m.y() : p_m.y(), z ? face_m.z() : p_m.z()},
-          {x ? sign : 0.0, y ? sign : 0.0, z ? sign : 0.0},
-          (x   ? 0
-           : y ? 2
-               : 4) +
-              (low ? 0 : 1)};
-}
 
 Vec3 at_lane(const PointLanes::Lane3& lane, std::size_t v) noexcept { return {lane[0][v], lane[1][v], lane[2][v]}; }
 void set_lane(PointLanes::Lane3& lane, std::size_t v, const Vec3& x) noexcept {
@@ -232,28 +207,6 @@ bool may_be_inside(const Vec3& off_m, const Vec3& normal) noexcept {
   return !(over_m > 0.0 && 2.0 * over_m * over_m > off_m.squaredNorm());
 }
 
-}  // namespace
-
-QuadraticFit::QuadraticFit() {
-  for (std::size_t v = 0; v < PointLanes::size; ++v) {
-    // A grid of 6 by 5, and the middle.
-    const double a = v < 30 ? -1.0 + 0.4 * static_cast<double>(v % 6) : 0.0;
-    const double b = v < 30 ? -1.0 + 0.5 * static_cast<double>(v / 6) : 0.0;
-    place[v] = {a, b};
-    terms.row(static_cast<Eigen::Index>(v)) << 1.0, a, b, a * a, a * b, b * b;
-  }
-  solve = (terms.transpose() * terms).ldlt().solve(terms.transpose());
-}
-
-PullBackScratch::PullBackScratch(int points) : foot(static_cast<std::size_t>(points)), height_m(foot.size()) {
-  seeking.reserve(foot.size());
-  near.reserve(foot.size());
-}
-
-std::size_t PullBackScratch::memory_bytes() const noexcept {
-  return sizeof(PullBackScratch) + foot.size() * (sizeof(Foot) + sizeof(double) + 2 * sizeof(std::int32_t));
-}
-
 template <class Body>
 InsideSummary pull_back(const scene::Shape& shape, const DisplacedSurface& surface, RegionPoints& points,
                         PullBackScratch& scratch) noexcept {
@@ -362,13 +315,30 @@ InsideSummary pull_back(const scene::Shape& shape, const DisplacedSurface& surfa
   return summary;
 }
 
-template InsideSummary pull_back<scene::Box>(const scene::Shape&, const DisplacedSurface&, RegionPoints&,
-                                             PullBackScratch&) noexcept;
-template InsideSummary pull_back<scene::Sphere>(const scene::Shape&, const DisplacedSurface&, RegionPoints&,
-                                                PullBackScratch&) noexcept;
-template InsideSummary pull_back<scene::Ellipsoid>(const scene::Shape&, const DisplacedSurface&, RegionPoints&,
-                                                   PullBackScratch&) noexcept;
-template InsideSummary pull_back<scene::Revolution>(const scene::Shape&, const DisplacedSurface&, RegionPoints&,
-                                                    PullBackScratch&) noexcept;
+}  // namespace
+
+QuadraticFit::QuadraticFit() {
+  for (std::size_t v = 0; v < PointLanes::size; ++v) {
+    // A grid of 6 by 5, and the middle.
+    const double a = v < 30 ? -1.0 + 0.4 * static_cast<double>(v % 6) : 0.0;
+    const double b = v < 30 ? -1.0 + 0.5 * static_cast<double>(v / 6) : 0.0;
+    place[v] = {a, b};
+    terms.row(static_cast<Eigen::Index>(v)) << 1.0, a, b, a * a, a * b, b * b;
+  }
+  solve = (terms.transpose() * terms).ldlt().solve(terms.transpose());
+}
+
+PullBackScratch::PullBackScratch(int points) : foot(static_cast<std::size_t>(points)), height_m(foot.size()) {
+  seeking.reserve(foot.size());
+  near.reserve(foot.size());
+}
+
+std::size_t PullBackScratch::memory_bytes() const noexcept {
+  return sizeof(PullBackScratch) + foot.size() * (sizeof(Foot) + sizeof(double) + 2 * sizeof(std::int32_t));
+}
+
+PullBack pull_back_for(const scene::Shape& shape) noexcept {
+  return scene::as_solid<PullBack>(shape, []<class Body>() -> PullBack { return &pull_back<Body>; });
+}
 
 }  // namespace touchstone::fast

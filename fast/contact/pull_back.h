@@ -71,8 +71,8 @@ struct PullBackScratch {
 /// The initial guess of c comes from a quadratic fit of the displacement across the region; Newton's method on the
 /// displaced surface then improves it.
 /// @param points with depth_m to the rest surface
-template <class Body>
-InsideSummary pull_back(const scene::Shape& shape, const DisplacedSurface& surface, RegionPoints& points,
-                        PullBackScratch& scratch) noexcept;
+using PullBack = InsideSummary (*)(const scene::Shape&, const DisplacedSurface&, RegionPoints&,
+                                   PullBackScratch&) noexcept;
+[[nodiscard]] PullBack pull_back_for(const scene::Shape&) noexcept;
 
 }  // namespace touchstone::fast

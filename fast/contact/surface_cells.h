@@ -48,7 +48,7 @@ struct alignas(64) SurfaceCell {
   Band band;
 };
 
-/// Flat cell. @param corners three or four, counterclockwise from outside
+/// Flat cell. @param corners_T_m three or four, counterclockwise from outside
 [[nodiscard]] SurfaceCell flat_cell(std::span<const scene::Vec3> corners_T_m) noexcept;
 [[nodiscard]] SurfaceCell band_cell(const Band& band) noexcept;
 

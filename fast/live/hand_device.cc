@@ -2,9 +2,10 @@
 
 #include "fast/live/scripted_device.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace touchstone::live {
 namespace {
@@ -23,14 +24,12 @@ HandDevice::HandDevice(std::vector<scene::Waypoint> track, const scene::LiveSett
   // The roots of z^2 - (2 - a - b) z + (1 - b) leave the unit circle.
   const double a = stiffness_n_per_m_ * period_s_ * period_s_ / mass_kg_, b = damping_n_s_per_m_ * period_s_ / mass_kg_;
   if (!(a + 2.0 * b < 4.0) || !(b < 2.0)) {
-    char text[240];
-    std::snprintf(text, sizeof text,
-                  "live.hand_mass_kg = %g is too light for hand_stiffness_n_per_m = %g and hand_damping_n_s_per_m = %g "
-                  "at %g Hz; expected at least %g",
-                  mass_kg_, stiffness_n_per_m_, damping_n_s_per_m_, 1.0 / period_s_,
-                  std::max(0.25 * (stiffness_n_per_m_ * period_s_ + 2.0 * damping_n_s_per_m_) * period_s_,
-                           0.5 * damping_n_s_per_m_ * period_s_));
-    throw scene::InputError(text);
+    throw scene::InputError(fmt::format(
+        "live.hand_mass_kg = {:g} is too light for hand_stiffness_n_per_m = {:g} and hand_damping_n_s_per_m = {:g} "
+        "at {:g} Hz; expected at least {:g}",
+        mass_kg_, stiffness_n_per_m_, damping_n_s_per_m_, 1.0 / period_s_,
+        std::max(0.25 * (stiffness_n_per_m_ * period_s_ + 2.0 * damping_n_s_per_m_) * period_s_,
+                 0.5 * damping_n_s_per_m_ * period_s_)));
   }
 }
 

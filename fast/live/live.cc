@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <memory>
 #include <thread>
@@ -131,13 +130,10 @@ void read_shapes(const std::stop_token& stop, TripleBuffer<ShapeFrame>& shapes, 
 }
 
 std::string progress_text(const LoopProgress& progress, const LoopTime& time) {
-  char text[160];
   const std::int64_t ticks = progress.ticks.load(std::memory_order_relaxed);
   const std::int64_t missed = progress.missed.load(std::memory_order_relaxed);
-  std::snprintf(text, sizeof text, "live: %.1f s, %lld ticks, %lld missed, force %.3g N", time.time_s(ticks + missed),
-                static_cast<long long>(ticks), static_cast<long long>(missed),
-                progress.force_n.load(std::memory_order_relaxed));
-  return text;
+  return fmt::format("live: {:.1f} s, {} ticks, {} missed, force {:.3g} N", time.time_s(ticks + missed), ticks, missed,
+                     progress.force_n.load(std::memory_order_relaxed));
 }
 
 }  // namespace
@@ -232,11 +228,7 @@ scene::Figures figures(const LiveResult& result, const LiveOptions& options) {
       {"live.missed", static_cast<double>(ledger.missed), "", ""},
   };
   const auto add = [&](const std::string& key, const fast::DurationHistogram& histogram) {
-    const fast::Percentiles p = histogram.percentiles();
-    list.push_back({key + ".p50", p.p50_us, "", "us"});
-    list.push_back({key + ".p99", p.p99_us, "", "us"});
-    list.push_back({key + ".p999", p.p999_us, "", "us"});
-    list.push_back({key + ".max", p.max_us, "", "us"});
+    fast::add_figures(key, histogram.percentiles(), list);
   };
   add("live.lateness_us", ledger.lateness);
   add("live.step_us", ledger.step);
@@ -258,9 +250,7 @@ scene::Figures figures(const LiveResult& result, const LiveOptions& options) {
       {"live.status", 0.0, fast::status_text(ledger.status), ""},
   };
   list.insert(list.end(), rest.begin(), rest.end());
-  char hash[20];
-  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(result.answer_hash));
-  list.push_back({"live.answer_hash", 0.0, hash, ""});
+  list.push_back({"live.answer_hash", 0.0, fmt::format("{:016x}", result.answer_hash), ""});
   if (result.replay) {
     list.push_back({"live.replay_compared", static_cast<double>(result.replay->compared), "", ""});
     list.push_back({"live.replay_unequal", static_cast<double>(result.replay->unequal), "", ""});

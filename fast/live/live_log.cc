@@ -1,5 +1,6 @@
 #include "fast/live/live_log.h"
 
+#include "scene/base/csv.h"
 #include "scene/base/error.h"
 #include "scene/base/input.h"
 #include "scene/base/text.h"
@@ -8,6 +9,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <string_view>
 
 namespace touchstone::live {
@@ -53,16 +55,6 @@ void append(const Vec3& v, std::string& text) {
   }
 }
 
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> cells;
-  while (true) {
-    const std::size_t end = std::min(line.find(','), line.size());
-    cells.push_back(line.substr(0, end));
-    if (end == line.size()) return cells;
-    line.remove_prefix(end + 1);
-  }
-}
-
 /// Where reading stands, for the one error.
 struct Place {
   const std::filesystem::path& file;
@@ -74,23 +66,21 @@ struct Place {
 
 double number_in(std::string_view cell, Column column, const Place& place) {
   const bool free = column >= tool_x && column <= tool_qz;
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size() || !(free || std::isfinite(value))) {
+  const std::optional<double> value = scene::parsed<double>(cell);
+  if (!value || !(free || std::isfinite(*value))) {
     place.refuse(std::string(column_names[column]) + " = \"" + scene::shortened(cell, 40) + "\"; expected a " +
                  (free ? "number" : "finite number"));
   }
-  return value;
+  return *value;
 }
 
 std::int64_t count_in(std::string_view cell, Column column, std::int64_t largest, const Place& place) {
-  std::int64_t value = -1;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size() || value < 0 || value > largest) {
+  const std::optional<std::int64_t> value = scene::parsed<std::int64_t>(cell);
+  if (!value || *value < 0 || *value > largest) {
     place.refuse(std::string(column_names[column]) + " = \"" + scene::shortened(cell, 40) +
                  "\"; expected a whole number in [0, " + std::to_string(largest) + "]");
   }
-  return value;
+  return *value;
 }
 
 std::int64_t nanoseconds(double us) { return std::llround(1e3 * std::clamp(us, 0.0, 1e12)); }
@@ -133,17 +123,13 @@ void append_log_line(const TickRecord& record, std::string& text) {
 
 LiveLog read_log(const std::filesystem::path& file) {
   const std::string content = scene::require_input(file, scene::log_input, "the log");
-  std::string_view text = scene::without_mark(content);
   Place place{file};
   std::array<std::size_t, column_count> at{};
   std::size_t width = 0;
   LiveLog log;
-  while (!text.empty()) {
-    ++place.line;
-    std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(line.size() + 1, text.size()));
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    const std::vector<std::string_view> cells = split(line);
+  for (scene::CsvRows rows(content); rows.next();) {
+    place.line = rows.line();
+    const std::vector<std::string_view>& cells = rows.cells();
     if (width == 0) {
       width = cells.size();
       for (std::size_t c = 0; c < column_count; ++c) {

@@ -6,23 +6,24 @@
 #include "scene/base/error.h"
 #include "scene/base/nearest_name.h"
 
+#include <fmt/format.h>
+
 #include <iostream>
 #include <memory>
-#include <sstream>
 
 namespace touchstone::live {
 namespace {
 
 /// What to type for this run again.
 std::string command_line(const fast::VerbOptions& options, const LiveOptions& live, const std::string& command) {
-  std::ostringstream text;
-  text << command << ' ' << fast::shell_word(options.scene_file.string()) << " --device " << name_of(live.device);
-  for (const std::string& setting : options.overrides) text << " --set " << fast::shell_word(setting);
-  if (live.seconds) text << " --seconds " << *live.seconds;
-  if (live.rate_hz) text << " --rate " << *live.rate_hz;
-  if (!live.log.empty()) text << " --log " << fast::shell_word(live.log.string());
-  if (live.scheduling.processor) text << " --processor " << *live.scheduling.processor;
-  return text.str();
+  std::string text =
+      fmt::format("{} {} --device {}", command, fast::shell_word(options.scene_file.string()), name_of(live.device));
+  for (const std::string& setting : options.overrides) text += " --set " + fast::shell_word(setting);
+  if (live.seconds) text += fmt::format(" --seconds {:g}", *live.seconds);
+  if (live.rate_hz) text += fmt::format(" --rate {}", *live.rate_hz);
+  if (!live.log.empty()) text += " --log " + fast::shell_word(live.log.string());
+  if (live.scheduling.processor) text += fmt::format(" --processor {}", *live.scheduling.processor);
+  return text;
 }
 
 }  // namespace
@@ -57,32 +58,30 @@ int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const s
   return result.replay && !result.replay->equal() ? fast::answer_is_no : fast::done;
 }
 
-void add_live_verb(CLI::App& app, fast::VerbOptions& options, LiveOptions& live, int& exit_code,
-                   const WritePage& page) {
-  const std::string program = app.get_name();
-  CLI::App* verb = fast::add_verb(
-      app, "live", "the real-time pipeline in the wall clock, driven by a device",
-      "meshes/scenes/ball-on-cube-press.toml --device hand --seconds 10", options,
-      [&options, &live, program, page] { return live_verb(options, live, program + " live", page); }, exit_code);
-  verb->add_option_function<std::string>(
+void add_live_verb(fast::Command& program, fast::VerbOptions& options, LiveOptions& live, const WritePage& page) {
+  fast::Command verb = fast::add_verb(program, "live", "the real-time pipeline in the wall clock, driven by a device",
+                                      "meshes/scenes/ball-on-cube-press.toml --device hand --seconds 10", options,
+                                      [&options, &live, name = program.program_name(), page] {
+                                        return live_verb(options, live, name + " live", page);
+                                      });
+  verb.option(
           "--device",
-          [&live](const std::string& name) {
+          [&live](const std::string& name) -> std::string {
             std::vector<std::string> names;
             for (const DeviceKind kind : {DeviceKind::scripted, DeviceKind::replay, DeviceKind::hand}) {
               live.device = kind;
-              if (name == name_of(kind)) return;
+              if (name == name_of(kind)) return "";
               names.emplace_back(name_of(kind));
             }
-            throw CLI::ValidationError("--device", "expected scripted, replay or hand, found \"" + name + '"' +
-                                                       scene::did_you_mean(name, names));
+            return "expected scripted, replay or hand, found \"" + name + '"' + scene::did_you_mean(name, names);
           },
           "scripted (default): the track; replay: a log; hand: a virtual hand on the track")
-      ->type_name("scripted|replay|hand");
-  verb->add_option("--seconds", live.seconds, "length (default the track's or the log's; 10 for hand)");
-  verb->add_option("--rate", live.rate_hz, "ticks per second, 1 to 10000 (default 1000, or the log's)");
-  verb->add_option("--log", live.log, "replay: live.csv of an earlier run");
-  verb->add_option("--processor", live.scheduling.processor, "for the loop's thread (default the last allowed)");
-  verb->add_option("--out", options.out, "result folder (default out/<scene>-live)");
+      .type("scripted|replay|hand");
+  verb.option("--seconds", live.seconds, "length (default the track's or the log's; 10 for hand)");
+  verb.option("--rate", live.rate_hz, "ticks per second, 1 to 10000 (default 1000, or the log's)");
+  verb.option("--log", live.log, "replay: live.csv of an earlier run");
+  verb.option("--processor", live.scheduling.processor, "for the loop's thread (default the last allowed)");
+  verb.option("--out", options.out, "result folder (default out/<scene>-live)");
 }
 
 }  // namespace touchstone::live

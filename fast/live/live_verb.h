@@ -23,8 +23,7 @@ using WritePage = std::function<std::filesystem::path(const std::filesystem::pat
 int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const std::string& command,
               const WritePage& page);
 
-/// Adds the verb with its options to a command line. `options`, `live` and `exit_code` must outlive the parse.
-void add_live_verb(CLI::App& app, fast::VerbOptions& options, LiveOptions& live, int& exit_code,
-                   const WritePage& page = {});
+/// Adds the command; its variables must outlive Program::run.
+void add_live_verb(fast::Command& program, fast::VerbOptions& options, LiveOptions& live, const WritePage& page = {});
 
 }  // namespace touchstone::live

@@ -24,4 +24,11 @@ Percentiles percentiles(std::vector<double> sample_us) {
   return {at_rank(sample_us, 0.5), at_rank(sample_us, 0.99), at_rank(sample_us, 0.999), at_rank(sample_us, 1.0)};
 }
 
+void add_figures(const std::string& key, const Percentiles& percentiles, scene::Figures& figures) {
+  figures.push_back({key + ".p50", percentiles.p50_us, "", "us"});
+  figures.push_back({key + ".p99", percentiles.p99_us, "", "us"});
+  figures.push_back({key + ".p999", percentiles.p999_us, "", "us"});
+  figures.push_back({key + ".max", percentiles.max_us, "", "us"});
+}
+
 }  // namespace touchstone::fast

@@ -1,6 +1,9 @@
 // What is said about a sample of durations.
 #pragma once
 
+#include "scene/output/figures.h"
+
+#include <string>
 #include <vector>
 
 namespace touchstone::fast {
@@ -15,5 +18,8 @@ struct Percentiles {
 [[nodiscard]] double percentile_us(std::vector<double> sample_us, double part);
 
 [[nodiscard]] Percentiles percentiles(std::vector<double> sample_us);
+
+/// <key>.p50, .p99, .p999 and .max.
+void add_figures(const std::string& key, const Percentiles& percentiles, scene::Figures& figures);
 
 }  // namespace touchstone::fast

@@ -2,20 +2,14 @@
 #include "fast/step/engine.h"
 #include "scene/model/rest_depth.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <initializer_list>
 
 namespace touchstone::fast {
 namespace {
-
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char buffer[200];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
 
 /// What a tick costs at the track's deepest instant, by the clock.
 struct Measured {
@@ -28,15 +22,9 @@ struct Measured {
   [[nodiscard]] std::string cost(std::initializer_list<Stage> stages) const {
     double sum_us = 0.0;
     for (const Stage stage : stages) sum_us += stage_us[static_cast<std::size_t>(stage)];
-    return contact ? text("%.2f us a tick, measured", sum_us) : "no contact at the track's instants";
+    return contact ? fmt::format("{:.2f} us a tick, measured", sum_us) : "no contact at the track's instants";
   }
 };
-
-double median(std::vector<double>& sample) {
-  const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
-  std::nth_element(sample.begin(), middle, sample.end());
-  return *middle;
-}
 
 Measured measure(const scene::Scene& scene, Engine& engine) {
   const std::vector<double> times_s = scene::instants_s(scene);
@@ -67,8 +55,8 @@ Measured measure(const scene::Scene& scene, Engine& engine) {
       sum_us += stage_us[s].back();
     }
   }
-  for (std::size_t s = 0; s < stage_count; ++s) measured.stage_us[s] = median(stage_us[s]);
-  measured.step_us = median(step_us);
+  for (std::size_t s = 0; s < stage_count; ++s) measured.stage_us[s] = percentile_us(std::move(stage_us[s]), 0.5);
+  measured.step_us = percentile_us(std::move(step_us), 0.5);
   measured.contact = state.in_contact();
   for (int i = 0; i < state.region_count; ++i)
     measured.points += state.regions[static_cast<std::size_t>(i)].points.count;
@@ -94,7 +82,7 @@ std::string one_region_text(const scene::Tool& tool) {
   if (!tool.mesh) return touch;
   const scene::Bounds bounds = tool.mesh->bounds();
   const double dent_m = scene::convex_tolerance_rel * (bounds.upper_m - bounds.lower_m).norm();
-  return touch + text("; the tool's mesh has no dent deeper than %.2g mm", dent_m * 1e3);
+  return touch + fmt::format("; the tool's mesh has no dent deeper than {:.2g} mm", dent_m * 1e3);
 }
 
 }  // namespace
@@ -114,24 +102,26 @@ scene::Plan plan(const scene::Scene& scene) {
   const auto leaves_out = [&](const char* part, std::string reason) {
     plan.push_back({part, false, std::move(reason), "nothing"});
   };
-  models("contact detection",
-         text("%d %s of the tool, %.3g mm apart, against the exact rest shape%s; %d points inside at the track's "
-              "deepest instant",
-              model.tool.count(), elements.c_str(), model.tool.spacing_m * 1e3,
-              published ? "" : ", and smaller ones where few are inside", measured.points) +
-             (measured.deepest_m > 0.0 && !measured.contact
-                  ? text("; CONTACT MISSED: the tool is %.3g mm deep there, so the force is missing; raise "
-                         "fast.tool_samples",
-                         measured.deepest_m * 1e3)
-                  : ""),
-         measured.cost({Stage::detection}));
+  models(
+      "contact detection",
+      fmt::format("{} {} of the tool, {:.3g} mm apart, against the exact rest shape{}; {} points inside at the track's "
+                  "deepest instant",
+                  model.tool.count(), elements, model.tool.spacing_m * 1e3,
+                  published ? "" : ", and smaller ones where few are inside", measured.points) +
+          (measured.deepest_m > 0.0 && !measured.contact
+               ? fmt::format("; CONTACT MISSED: the tool is {:.3g} mm deep there, so the force is missing; raise "
+                             "fast.tool_samples",
+                             measured.deepest_m * 1e3)
+               : ""),
+      measured.cost({Stage::detection}));
   if (model.max_regions > 1) {
     models("several regions",
-           text("the tool's mesh is not convex: up to %d, %d at the track's instants, told apart at %.3g mm; each "
-                "meets the body as the earlier ones left it",
-                model.max_regions, measured.regions, scene.fast.r_th_m * 1e3) +
-               (scene.fast.r_th_m < 2.0 * model.tool.spacing_m
-                    ? "; ONE CONTACT MAY FALL INTO SEVERAL: fast.r_th_m is less than twice the distance between " +
+           fmt::format(
+               "the tool's mesh is not convex: up to {}, {} at the track's instants, told apart at {:.3g} mm; each "
+               "meets the body as the earlier ones left it",
+               model.max_regions, measured.regions, scene.contact.r_th_m * 1e3) +
+               (scene.contact.r_th_m < 2.0 * model.tool.spacing_m
+                    ? "; ONE CONTACT MAY FALL INTO SEVERAL: contact.r_th_m is less than twice the distance between " +
                           elements + "; raise fast.tool_samples"
                     : ""),
            measured.cost({Stage::regions}));
@@ -144,41 +134,43 @@ scene::Plan plan(const scene::Scene& scene) {
          measured.cost({Stage::force}));
   if (model.friction) {
     models("friction",
-           text("stuck up to %.3g F_n^%.3g, sliding at %.3g F_n, ", scene.contact.friction->K,
-                scene.contact.friction->beta, scene.contact.friction->mu_D) +
-               (published ? "C1 to C4 as printed"
-                          : text("%.3g times as stiff along the surface while stuck as into it, by return mapping",
-                                 scene.contact.friction->stiffness_ratio)),
+           fmt::format("stuck up to {:.3g} F_n^{:.3g}, sliding at {:.3g} F_n, ", scene.contact.friction->K,
+                       scene.contact.friction->beta, scene.contact.friction->mu_D) +
+               (published
+                    ? "C1 to C4 as printed"
+                    : fmt::format("{:.3g} times as stiff along the surface while stuck as into it, by return mapping",
+                                  scene.contact.friction->stiffness_ratio)),
            measured.cost({Stage::friction}));
   } else {
     leaves_out("friction", "the scene has no [contact.friction]; the force is along the direction of deformation");
   }
-  models("beam skeleton",
-         text("%d beams, %d of them ending on the support, anchor points: ",
-              static_cast<int>(model.skeleton.anchor_m.size()), static_cast<int>(held)) +
-             anchors_text(*model.anchors) + "; force split " + printed,
-         measured.cost({Stage::skeleton}));
+  models(
+      "beam skeleton",
+      fmt::format("{} beams, {} of them ending on the support, anchor points: ", model.skeleton.anchor_m.size(), held) +
+          anchors_text(*model.anchors) + "; force split " + printed,
+      measured.cost({Stage::skeleton}));
   if (!scene.body.inclusions.empty()) {
-    models("inclusions", text("%d: a beam is cut where it crosses one", static_cast<int>(scene.body.inclusions.size())),
+    models("inclusions", fmt::format("{}: a beam is cut where it crosses one", scene.body.inclusions.size()),
            "within the beam skeleton");
   } else {
     leaves_out("inclusions", "the body is of one material, every beam one segment");
   }
   models("surface",
-         text("%d triangles, %d rest points, ", model.surface.triangle_count(), model.surface.vertex_count()) +
+         fmt::format("{} triangles, {} rest points, ", model.surface.triangle_count(), model.surface.vertex_count()) +
              (published ? "lengths and angles interpolated" : "displacement vectors interpolated"),
          measured.cost({Stage::interpolation}));
   if (model.formulas.local_factor()) {
-    models("local factor",
-           text("C_n = %.3g inside %.3g mm of the contact, ", scene.fast.C_n, scene.fast.r_R_m * 1e3) + printed,
-           measured.cost({Stage::local_factor}));
+    models(
+        "local factor",
+        fmt::format("C_n = {:.3g} inside {:.3g} mm of the contact, ", scene.fast.C_n, scene.fast.r_R_m * 1e3) + printed,
+        measured.cost({Stage::local_factor}));
   } else {
     leaves_out("local factor", "C_n = 0");
   }
   models("normals", "of the deformed surface", measured.cost({Stage::normals}));
-  models("whole step", "all of it", text("%.1f us a tick, measured", measured.step_us));
+  models("whole step", "all of it", fmt::format("{:.1f} us a tick, measured", measured.step_us));
   models("memory", "model and state, taken before the first tick",
-         text("%.1f MB", static_cast<double>(engine.memory_bytes()) / 1e6));
+         fmt::format("{:.1f} MB", static_cast<double>(engine.memory_bytes()) / 1e6));
   leaves_out("time dependence", "the paper's law is the static force; the track's speed does not enter");
   return plan;
 }

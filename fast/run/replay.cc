@@ -6,7 +6,7 @@
 namespace touchstone::fast {
 
 Replay::Replay(const scene::Scene& scene, std::size_t bytes_max)
-    : engine_(scene), r_th_m_(scene.fast.r_th_m), recorded_(record_one_region(engine_.model(), scene, bytes_max)) {
+    : engine_(scene), r_th_m_(scene.contact.r_th_m), recorded_(record_one_region(engine_.model(), scene, bytes_max)) {
   if (recorded_) engine_.restart(1);
 }
 
@@ -14,7 +14,7 @@ std::vector<scene::Vec3> Replay::forces_n(const scene::Scene& scene) {
   engine_.set_constants(scene);
   std::vector<scene::Vec3> force_n;
   // Which samples belong together hangs on r_th.
-  if (recorded_ && scene.fast.r_th_m != r_th_m_) recorded_.reset();
+  if (recorded_ && scene.contact.r_th_m != r_th_m_) recorded_.reset();
   if (!recorded_) {
     engine_.restart();
     Ticks ticks(scene);

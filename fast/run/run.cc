@@ -5,10 +5,10 @@
 #include "fast/run/ticks.h"
 #include "fast/step/engine.h"
 #include "fast/step/order_spread.h"
+#include "scene/base/stopwatch.h"
 #include "scene/model/rest_depth.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace touchstone::fast {
 namespace {
@@ -37,10 +37,10 @@ constexpr double missed_depth_rel = 1e-6;
 }  // namespace
 
 Run run(const scene::Scene& scene, const std::function<void(double)>& progress) {
-  const auto start = std::chrono::steady_clock::now();
+  const scene::Stopwatch watch;
   Engine engine(scene);
   Run run;
-  run.setup_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  run.setup_s = watch.wall_s();
   const FastModel& model = engine.model();
   FastState& state = engine.state();
   run.surface = model.surface;

@@ -202,25 +202,10 @@ SplitForce split_force_of(scene::Formulation formulation, const BeamSkeleton& sk
   return one_material ? split_force_corrected : split_force_in_parts_corrected;
 }
 
-void split_force_published(const SkeletonView& view, const Vec3& p0_W_m, const Vec3& force_n,
-                           const Vec3& displacement_m, BeamEnds& ends) noexcept {
-  split_published<beam_to>(view, p0_W_m, force_n, displacement_m, ends);
-}
-
-void split_force_corrected(const SkeletonView& view, const Vec3& p0_W_m, const Vec3& force_n,
-                           const Vec3& displacement_m, BeamEnds& ends) noexcept {
-  split_corrected<beam_to>(view, p0_W_m, force_n, displacement_m, ends);
-}
-
-void split_force_in_parts_published(const SkeletonView& view, const Vec3& p0_W_m, const Vec3& force_n,
-                                    const Vec3& displacement_m, BeamEnds& ends) noexcept {
-  split_published<beam_in_parts_published>(view, p0_W_m, force_n, displacement_m, ends);
-}
-
-void split_force_in_parts_corrected(const SkeletonView& view, const Vec3& p0_W_m, const Vec3& force_n,
-                                    const Vec3& displacement_m, BeamEnds& ends) noexcept {
-  split_corrected<beam_in_parts_corrected>(view, p0_W_m, force_n, displacement_m, ends);
-}
+const SplitForce split_force_published = split_published<beam_to>;
+const SplitForce split_force_corrected = split_corrected<beam_to>;
+const SplitForce split_force_in_parts_published = split_published<beam_in_parts_published>;
+const SplitForce split_force_in_parts_corrected = split_corrected<beam_in_parts_corrected>;
 
 Vec3 support_force_n(const BeamEnds& ends) noexcept {
   Vec3 sum = Vec3::Zero();

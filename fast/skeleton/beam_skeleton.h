@@ -89,33 +89,29 @@ struct BeamEnds {
 using SplitForce = void (*)(const SkeletonView&, const scene::Vec3& p0_W_m, const scene::Vec3& force_n,
                             const scene::Vec3& displacement_m, BeamEnds&) noexcept;
 
-/// The split of a formulation for a skeleton: the plain functions below where all beams are of one material.
+/// The split of a formulation for a skeleton: the plain ones below where all beams are of one material.
 [[nodiscard]] SplitForce split_force_of(scene::Formulation formulation, const BeamSkeleton& skeleton) noexcept;
 
 /// Equations (4) to (6) as printed, errata E8: 2n + 1 equations for 2n unknowns. Equation (4) fixes all F_x up to one
 /// factor a, equation (5) all F_y up to one factor b; a, b >= 0 are the least-squares solution of equation (6), of
 /// minimum norm where a symmetric contact leaves their ratio open. Equation (6) keeps a residual.
 /// Delta x_i has the bending's delta x of section V-C taken out (errata E19, as printed).
-void split_force_published(const SkeletonView&, const scene::Vec3& p0_W_m, const scene::Vec3& force_n,
-                           const scene::Vec3& displacement_m, BeamEnds&) noexcept;
+extern const SplitForce split_force_published;
 
 /// Errata E8: the common end moves by u with K u = F, K = sum_i [E s_i / l_i x x^T + 3 E I_i / l_i^3 (1 - x x^T)], and
 /// F_i = K_i u. Equations (2), (3) and (6) hold exactly and no y axis is needed. Every free anchor point then moves
 /// by u.
-void split_force_corrected(const SkeletonView&, const scene::Vec3& p0_W_m, const scene::Vec3& force_n,
-                           const scene::Vec3& displacement_m, BeamEnds&) noexcept;
+extern const SplitForce split_force_corrected;
 
 /// Section V-D as printed: equations (13) and (14), with the printed k in the split and in the anchor point's
 /// displacement alike (errata E13), and (12) closed by equal strain (errata E14).
-void split_force_in_parts_published(const SkeletonView&, const scene::Vec3& p0_W_m, const scene::Vec3& force_n,
-                                    const scene::Vec3& displacement_m, BeamEnds&) noexcept;
+extern const SplitForce split_force_in_parts_published;
 
 /// The same K u = F with each beam's own stiffnesses: the integral of (l - x)^2 / (E I) across (errata E12, E13),
 /// springs in series along (E14). The anchor point is the other end of its beam, so it moves by u along and by u times
 /// Beam::release_ratio across. With one compliance for both ends every anchor point would move by u, and no inclusion
 /// could make the shape lean to one side, as the paper's Fig. 18 shows it.
-void split_force_in_parts_corrected(const SkeletonView&, const scene::Vec3& p0_W_m, const scene::Vec3& force_n,
-                                    const scene::Vec3& displacement_m, BeamEnds&) noexcept;
+extern const SplitForce split_force_in_parts_corrected;
 
 /// Reaction of the support on the body [N]: the beams' fixed ends together, -sum F_i. In balance with the contact
 /// force where equation (6) holds.

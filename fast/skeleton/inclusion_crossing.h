@@ -12,23 +12,6 @@
 
 namespace touchstone::fast {
 
-/// The part of a straight line inside a shape, as distances from the line's beginning [m]; none where leave <= enter.
-struct Crossing {
-  double enter_m = 0.0, leave_m = 0.0;
-
-  [[nodiscard]] bool empty() const noexcept { return !(leave_m > enter_m); }
-};
-
-/// The part of the line between two points that lies inside a convex shape. Free of heap use.
-using Cross = Crossing (*)(const scene::Shape& shape, const scene::Vec3& from_m, const scene::Vec3& to_m) noexcept;
-
-/// By the shape's exact signed distance alone, which is convex along a line: its least value by the tangents at both
-/// ends, then Newton's method from outside on either side, where it never overshoots. To 1e-12 of the line's length.
-[[nodiscard]] Crossing cross_convex(const scene::Shape&, const scene::Vec3& from_m, const scene::Vec3& to_m) noexcept;
-
-/// The closed form of the shape, or cross_convex() where there is none.
-[[nodiscard]] Cross crossing_of(const scene::Shape& shape) noexcept;
-
 inline constexpr std::size_t inclusions_max = 16;
 inline constexpr std::size_t segments_max = 2 * inclusions_max + 1;
 
@@ -36,7 +19,6 @@ inline constexpr std::size_t segments_max = 2 * inclusions_max + 1;
 struct Inclusion {
   std::shared_ptr<const scene::Shape> shape;
   double youngs_modulus_pa = 0.0;
-  Cross cross = nullptr;
 };
 
 /// The body's inclusions, in the scene's order; at most inclusions_max, which the scene's rules see to.

@@ -40,7 +40,7 @@ Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
 
 FastModel::FastModel(const scene::Scene& scene)
     : body(scene::body_shape(scene.body)),
-      detection(detection_for(scene.body.shape)),
+      detection(detection_for(*body)),
       tool(samples_of(scene)),
       law(scene.contact),
       friction(scene.contact.friction ? std::optional<FrictionLaw>(*scene.contact.friction) : std::nullopt),
@@ -52,7 +52,7 @@ FastModel::FastModel(const scene::Scene& scene)
       normals(normal_stencils(surface)),
       formulas(formulas_of(scene, skeleton)),
       max_regions(scene.tool.convex() ? 1 : scene.fast.max_regions) {
-  if (max_regions > 1) clusters = std::make_unique<const ClusterGrid>(cluster_grid(tool, scene.fast.r_th_m));
+  if (max_regions > 1) clusters = std::make_unique<const ClusterGrid>(cluster_grid(tool, scene.contact.r_th_m));
 }
 
 void FastModel::set_constants(const scene::Scene& scene) {
@@ -61,8 +61,8 @@ void FastModel::set_constants(const scene::Scene& scene) {
   skeleton.set_constants(scene.fast);
   local = {scene.fast.C_n, scene.fast.C_r_m, scene.fast.r_R_m};
   formulas = formulas_of(scene, skeleton);
-  if (max_regions > 1 && clusters->r_th_m != scene.fast.r_th_m)
-    clusters = std::make_unique<const ClusterGrid>(cluster_grid(tool, scene.fast.r_th_m));
+  if (max_regions > 1 && clusters->r_th_m != scene.contact.r_th_m)
+    clusters = std::make_unique<const ClusterGrid>(cluster_grid(tool, scene.contact.r_th_m));
 }
 
 std::size_t FastModel::memory_bytes() const noexcept {

@@ -77,7 +77,7 @@ const LocalConstants* local_constants(const FastModel& model) noexcept {
 
 /// A deformation origin on the shape of the regions in the stack.
 Vec3 displaced(const FastModel& model, const DeformationOrigin& origin, const ShapeStack& shapes) noexcept {
-  if (shapes.count == 0) return origin.p0_W_m;
+  if (shapes.count() == 0) return origin.p0_W_m;
   return origin.p0_W_m + model.formulas.several.displacement_at(model.rest, *model.anchors, shapes,
                                                                 local_constants(model),
                                                                 {0.0, origin.p0_W_m, origin.normal, origin.patch});
@@ -99,7 +99,7 @@ StepStatus track_regions(const FastModel& model, RegionPoints& points, FastState
 
 void meet_deformed_body(const FastModel& model, ContactRegion& region, FastState& state) noexcept {
   SeveralRegionsState& several = *state.several;
-  if (several.shapes.count > 0) {
+  if (several.shapes.count() > 0) {
     const StackedSurface surface(model, local_constants(model), several.shapes);
     region.inside = model.detection.pull_back(*model.body, surface, region.points, several.pull_back);
   } else {
@@ -114,7 +114,7 @@ StepStatus deform_body(const FastModel& model, std::size_t k, FastState& state) 
   SeveralRegionsState& several = *state.several;
   ContactRegion& region = state.regions[k];
   ShapeStack& shapes = several.shapes;
-  const bool first = shapes.count == 0;
+  const bool first = shapes.count() == 0;
   const SkeletonView skeleton = first ? SkeletonView(model.skeleton) : several.ends.view(model.skeleton);
   StepStatus status = StepStatus::ok;
   if (region.pressing()) status = load_beams(model, skeleton, displaced(model, region.origin, shapes), region);
@@ -126,7 +126,7 @@ StepStatus deform_body(const FastModel& model, std::size_t k, FastState& state) 
   shape.p0_W_m = region.origin.p0_W_m;
   shape.size = {region.points.count, region.extent.area_m2};
   model.formulas.several.add(model.rest, local_constants(model), shape, shapes);
-  const bool last = static_cast<int>(shapes.count) == state.region_count;
+  const bool last = static_cast<int>(shapes.count()) == state.region_count;
   if (!last) several.ends.update(model.skeleton, shapes.anchor_total_m);
   state.lap(Stage::skeleton);
   return status;

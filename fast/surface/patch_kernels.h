@@ -87,6 +87,24 @@ std::array<scene::Vec3, corners_max> corner_displacements(const Patch& patch, co
   return u;
 }
 
+/// W(p) q of a quantity at the corners.
+inline double at_place(const std::array<double, corners_max>& corner, const PatchPlace& place) noexcept {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < corners_max; ++k) sum += place.weight[k] * corner[k];
+  return sum;
+}
+
+/// W(p) U for the anchor points' displacements.
+template <class Displacements>
+scene::Vec3 vector_at(const SurfacePatches& rest, const Displacements& anchor_m, std::size_t patch,
+                      const PatchPlace& place) noexcept {
+  scene::Vec3 sum = scene::Vec3::Zero();
+  for (std::size_t k = 0; k < corners_max; ++k) {
+    sum += place.weight[k] * anchor_m[static_cast<std::size_t>(rest.patches[patch].anchor[k])];
+  }
+  return sum;
+}
+
 /// Angle between a direction and a normal.
 inline double angle_to(const scene::Vec3& direction, const scene::Vec3& normal) noexcept {
   return std::atan2(direction.cross(normal).norm(), direction.dot(normal));

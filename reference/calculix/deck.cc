@@ -3,6 +3,9 @@
 #include "reference/calculix/tool.h"
 #include "reference/run/model_choice.h"
 #include "reference/tool/tool_gap.h"
+#include "scene/base/in_space.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -283,12 +286,9 @@ class Writer {
     }
     set(deck_surface_set, nodes[Boundary::free]);
     deck_.surface_nodes.assign(nodes[Boundary::free].begin(), nodes[Boundary::free].end());
-    deck_.surface_points_m.setZero(3, static_cast<Eigen::Index>(deck_.surface_nodes.size()));
+    deck_.surface_points_m.resize(3, static_cast<Eigen::Index>(deck_.surface_nodes.size()));
     for (std::size_t k = 0; k < deck_.surface_nodes.size(); ++k) {
-      const Point place_m = mesh.points_m.col(deck_.surface_nodes[k] - 1);
-      deck_.surface_points_m(0, k) = place_m[0];
-      deck_.surface_points_m(2, k) = place_m[dim - 1];
-      if constexpr (dim == 3) deck_.surface_points_m(1, k) = place_m[1];
+      deck_.surface_points_m.col(k) = scene::in_space<dim>(mesh.points_m.col(deck_.surface_nodes[k] - 1));
     }
     text_ << "*BOUNDARY\n" << support_set << ", 1, " << dim << '\n';
     if (!nodes[Boundary::plane_x].empty()) text_ << "PLANE_X, 1, 1\n";
@@ -299,14 +299,6 @@ class Writer {
   void set(const std::string& name, const std::set<int>& nodes) {
     text_ << "*NSET, NSET=" << name << '\n';
     list(nodes);
-  }
-
-  [[nodiscard]] static Vec3 in_space(const Point& place_m) {
-    if constexpr (dim == 3) {
-      return place_m;
-    } else {
-      return {place_m[0], 0.0, place_m[1]};
-    }
   }
 
   /// Whether the tool ever comes as near to a place of the body at rest as it goes deep.
@@ -328,7 +320,7 @@ class Writer {
     for (const auto& face : mesh.faces) {
       if (face.boundary != Boundary::free) continue;
       if (std::none_of(face.nodes.begin(), face.nodes.end(),
-                       [&](int n) { return reached(in_space(mesh.points_m.col(n))); })) {
+                       [&](int n) { return reached(scene::in_space<dim>(mesh.points_m.col(n))); })) {
         continue;
       }
       const auto [cell, side] = sides.at(face.nodes[Mesh<dim>::nodes_per_face / 2]);
@@ -461,11 +453,10 @@ std::vector<scene::Fault> unsupported_in_deck(const Scene& scene) {
   std::vector<scene::Fault> faults;
   const auto check = [&](const std::string& key, const scene::Material& material) {
     if (material.poissons_ratio <= largest_deck_poissons_ratio) return;
-    std::ostringstream text;
-    text << key << ": CalculiX needs a finite bulk modulus; expected at most " << largest_deck_poissons_ratio
-         << ", found " << material.poissons_ratio << "; --set " << key << '=' << largest_deck_poissons_ratio
-         << " writes the scene nearest to it";
-    faults.push_back({"", 0, 0, text.str()});
+    faults.push_back({"", 0, 0,
+                      fmt::format("{0}: CalculiX needs a finite bulk modulus; expected at most {1:g}, found {2:g}; "
+                                  "--set {0}={1:g} writes the scene nearest to it",
+                                  key, largest_deck_poissons_ratio, material.poissons_ratio)});
   };
   check("body.material.poissons_ratio", scene.body.material);
   for (std::size_t i = 0; i < scene.body.inclusions.size(); ++i) {

@@ -1,7 +1,7 @@
 // From displacements to nodal forces and the global matrix.
 #include "reference/contact/contact_problem.h"
 #include "reference/contact/contact_shares.h"
-#include "reference/linear/stopwatch.h"
+#include "scene/base/stopwatch.h"
 
 #include <algorithm>
 #include <thread>
@@ -320,7 +320,7 @@ Eigen::VectorXd ContactProblem<dim>::sum_of_lanes() {
 
 template <int dim>
 Eigen::VectorXd ContactProblem<dim>::assemble_tangent(const State<dim>& state, Tangent tangent) {
-  const Stopwatch watch(assembly_s_);
+  const scene::CpuTimeAdder watch(assembly_s_);
   if (matrix_.column_begin.empty()) {
     jointly(Order::pattern, [&] {
       ranks::send(prescribed_);

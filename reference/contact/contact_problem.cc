@@ -1,7 +1,7 @@
 #include "reference/contact/contact_problem.h"
 
 #include "reference/contact/contact_shares.h"
-#include "reference/linear/stopwatch.h"
+#include "scene/base/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -384,7 +384,7 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
       state.u_m = before.u_m + share * du_m;
       state.p_pa = before.p_pa + share * dp_pa;
       {
-        const Stopwatch watch_forces(assembly_s_);
+        const scene::CpuTimeAdder watch_forces(assembly_s_);
         current = forces(state);
       }
       if (current.admissible) break;

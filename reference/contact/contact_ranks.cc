@@ -11,58 +11,21 @@
 namespace touchstone::reference {
 namespace {
 
-/// Everything of a mesh and its materials, as one run of bytes.
-template <int dim>
-Record to_record(const Mesh<dim>& mesh, const scene::Material& material, scene::Kinematics kinematics,
-                 const Numerics& numerics) {
-  Record record;
-  record.put(mesh.node_count());
-  record.put(mesh.points_m.data(), static_cast<std::size_t>(mesh.points_m.size()));
-  const auto put_all = [&](const auto& list) {
-    record.put(static_cast<int>(list.size()));
-    record.put(list.data(), list.size());
-  };
-  put_all(mesh.cells);
-  put_all(mesh.faces);
-  record.put(static_cast<int>(mesh.hanging.size()));
-  for (const auto& hanging : mesh.hanging) {
-    record.put(hanging.node);
-    put_all(hanging.masters);
-  }
-  put_all(mesh.materials);
-  put_all(mesh.inclusion_materials);
-  record.put(&material, 1);
-  record.put(&kinematics, 1);
-  record.put(&numerics, 1);
-  return record;
-}
-
-template <int dim>
-std::unique_ptr<ranks::Part> from_record(Record record) {
-  Mesh<dim> mesh;
-  mesh.points_m.resize(dim, record.take_int());
-  record.take(mesh.points_m.data(), static_cast<std::size_t>(mesh.points_m.size()));
-  const auto take_all = [&](auto& list) {
-    list.resize(static_cast<std::size_t>(record.take_int()));
-    record.take(list.data(), list.size());
-  };
-  take_all(mesh.cells);
-  take_all(mesh.faces);
-  mesh.hanging.resize(static_cast<std::size_t>(record.take_int()));
+/// Everything of a mesh and its materials.
+template <class Archive>
+void serialize(Archive& archive, auto& mesh, auto& material, auto& kinematics, auto& numerics) {
+  int nodes = mesh.node_count();
+  archive(nodes);
+  if constexpr (Archive::reads) mesh.points_m.resize(mesh.points_m.rows(), nodes);
+  archive(mesh.points_m);
+  archive.sized(mesh.cells, mesh.faces);
+  archive.size(mesh.hanging);
   for (auto& hanging : mesh.hanging) {
-    hanging.node = record.take_int();
-    take_all(hanging.masters);
+    archive(hanging.node);
+    archive.sized(hanging.masters);
   }
-  take_all(mesh.materials);
-  take_all(mesh.inclusion_materials);
-  scene::Material material;
-  scene::Kinematics kinematics;
-  record.take(&material, 1);
-  record.take(&kinematics, 1);
-  Numerics numerics;
-  record.take(&numerics, 1);
-  return std::make_unique<ContactProblem<dim>>(std::move(mesh), material, kinematics, false, false, ranks::threads(),
-                                               numerics);
+  archive.sized(mesh.materials, mesh.inclusion_materials);
+  archive(material, kinematics, numerics);
 }
 
 template <int dim>
@@ -71,7 +34,14 @@ std::unique_ptr<ranks::Part> receive_part() {
   ranks::receive(&size, sizeof size);
   std::string bytes(size, '\0');
   ranks::receive(bytes);
-  return from_record<dim>(Record(std::move(bytes)));
+  RecordReader record(std::move(bytes));
+  Mesh<dim> mesh;
+  scene::Material material;
+  scene::Kinematics kinematics;
+  Numerics numerics;
+  serialize(record, mesh, material, kinematics, numerics);
+  return std::make_unique<ContactProblem<dim>>(std::move(mesh), material, kinematics, false, false, ranks::threads(),
+                                               numerics);
 }
 
 }  // namespace
@@ -81,7 +51,8 @@ void follow_first_rank() { ranks::follow_orders({{2, receive_part<2>}, {3, recei
 template <int dim>
 std::unique_ptr<ranks::Lead> ContactProblem<dim>::make_parts() const {
   if (ranks::count() == 1 || !ranks::first()) return nullptr;
-  const Record record = to_record(mesh_, material_, kinematics_, numerics_);
+  RecordWriter record;
+  serialize(record, mesh_, material_, kinematics_, numerics_);
   const std::size_t size = record.bytes().size();
   auto lead = std::make_unique<ranks::Lead>(dim);
   ranks::send(&size, sizeof size);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "reference/contact/contact_problem.h"
+#include "scene/base/in_space.h"
 
-#include <sstream>
+#include <fmt/format.h>
+
 #include <string>
 
 namespace touchstone::reference {
@@ -29,27 +31,19 @@ std::string stuck_contact_text(const ContactProblem<dim>& problem, const State<d
     worst = node;
     worst_n = F.col(node).norm();
   }
-  std::ostringstream text;
-  text.precision(3);
-  const auto add_place = [&](const scene::Vec3& at_m) {
-    text << '(' << at_m.x() << ", " << at_m.y() << ", " << at_m.z() << ") m";
-  };
   const std::vector<ContactRegion> regions = problem.observe(state, region_gap_m).regions;
   if (worst < 0 || regions.empty()) return "no contact region has formed";
-  scene::Vec3 worst_m = scene::Vec3::Zero();
-  const Eigen::Matrix<double, dim, 1> place_m = mesh.points_m.col(worst) + state.u_m.col(worst);
-  worst_m[0] = place_m[0];
-  worst_m[2] = place_m[dim - 1];
-  if constexpr (dim == 3) worst_m[1] = place_m[1];
+  const scene::Vec3 worst_m = scene::in_space<dim>(mesh.points_m.col(worst) + state.u_m.col(worst));
   std::size_t nearest = 0;
   for (std::size_t r = 1; r < regions.size(); ++r) {
     if ((regions[r].center_m - worst_m).norm() < (regions[nearest].center_m - worst_m).norm()) nearest = r;
   }
-  text << "contact region " << nearest + 1 << " of " << regions.size() << ", around ";
-  add_place(regions[nearest].center_m);
-  text << " with " << regions[nearest].force_n.norm() << " N, next to the largest out-of-balance force at ";
-  add_place(worst_m);
-  return text.str();
+  const auto place = [](const scene::Vec3& at_m) {
+    return fmt::format("({:.3g}, {:.3g}, {:.3g}) m", at_m.x(), at_m.y(), at_m.z());
+  };
+  return fmt::format("contact region {} of {}, around {} with {:.3g} N, next to the largest out-of-balance force at {}",
+                     nearest + 1, regions.size(), place(regions[nearest].center_m), regions[nearest].force_n.norm(),
+                     place(worst_m));
 }
 
 }  // namespace touchstone::reference

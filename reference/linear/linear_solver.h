@@ -54,7 +54,8 @@ class LinearSolver {
   ///                       older one like it: the residual as an energy
   /// @param x in: b; out: the solution, or still b when there is none
   /// @returns false when K is not positive definite
-  [[nodiscard]] virtual bool solve(const SymmetricMatrix& K, double /*tolerance_rel*/, Eigen::VectorXd& x) {
+  [[nodiscard]] virtual bool solve(const SymmetricMatrix& K, [[maybe_unused]] double tolerance_rel,
+                                   Eigen::VectorXd& x) {
     if (!factorise(K)) return false;
     solve(x);
     return true;

@@ -1,6 +1,5 @@
 #include "reference/linear/tangent_solver.h"
-
-#include "reference/linear/stopwatch.h"
+#include "scene/base/stopwatch.h"
 
 #include <Eigen/IterativeLinearSolvers>
 
@@ -87,14 +86,14 @@ TangentSolver::TangentSolver(int threads) : cholesky_(threads) {}
 
 void TangentSolver::analyse(const SymmetricMatrix& pattern) {
   forget();
-  const Stopwatch watch(work_.analysis_s);
+  const scene::CpuTimeAdder watch(work_.analysis_s);
   cholesky_.analyse(pattern);
 }
 
 void TangentSolver::forget() noexcept { has_factor_ = factor_is_current_ = false; }
 
 bool TangentSolver::factorise(const SymmetricMatrix& K) {
-  const Stopwatch watch(work_.factorisation_s);
+  const scene::CpuTimeAdder watch(work_.factorisation_s);
   ++work_.factorisations;
   has_factor_ = factor_is_current_ = cholesky_.factorise(K);
   solves_ = 1;
@@ -104,7 +103,7 @@ bool TangentSolver::factorise(const SymmetricMatrix& K) {
 }
 
 void TangentSolver::solve(Eigen::VectorXd& x) {
-  const Stopwatch watch(work_.iteration_s);
+  const scene::CpuTimeAdder watch(work_.iteration_s);
   cholesky_.solve(x);
 }
 
@@ -122,7 +121,7 @@ bool TangentSolver::solve(const SymmetricMatrix& K, double tolerance_rel, Eigen:
 }
 
 bool TangentSolver::iterate(const SymmetricMatrix& K, double tolerance_rel, Eigen::VectorXd& x) {
-  const Stopwatch watch(work_.iteration_s);
+  const scene::CpuTimeAdder watch(work_.iteration_s);
   const Tangent tangent(K, cholesky_);
   Eigen::VectorXd right = x;
   cholesky_.solve_lower(right);

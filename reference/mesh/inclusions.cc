@@ -1,6 +1,7 @@
 #include "reference/mesh/inclusions.h"
 
 #include "reference/fe/element.h"
+#include "scene/base/in_space.h"
 
 #include <algorithm>
 #include <memory>
@@ -12,12 +13,6 @@ namespace {
 using scene::BodyShape;
 using scene::Inclusion;
 using scene::Vec3;
-
-template <int dim>
-Vec3 in_space(const Eigen::Matrix<double, dim, 1>& x_m) {
-  if constexpr (dim == 3) return x_m;
-  return Vec3(x_m[0], 0.0, x_m[dim - 1]);
-}
 
 bool revolved_about_own_axis(const scene::Solid& solid) {
   return solid.shape == BodyShape::sphere || solid.shape == BodyShape::revolution ||
@@ -49,7 +44,7 @@ void embed_inclusions(const scene::Body& body, Mesh<dim>& mesh) {
     for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) X_m.col(a) = mesh.points_m.col(cell[a]);
     auto& materials = mesh.materials.emplace_back();
     for (std::size_t q = 0; q < at_points.size(); ++q) {
-      const Vec3 place_m = in_space<dim>(X_m * at_points[q].value);
+      const Vec3 place_m = scene::in_space<dim>(X_m * at_points[q].value);
       const auto inside = std::find_if(shapes.begin(), shapes.end(),
                                        [&](const auto& shape) { return shape->signed_distance_m(place_m) < 0.0; });
       materials[q] = inside == shapes.end() ? 0 : static_cast<std::uint8_t>(inside - shapes.begin() + 1);
@@ -61,9 +56,10 @@ template <int dim>
 void refine_at_inclusions(const scene::Body& body, double cells, Grading<dim>& grading) {
   for (const Inclusion& inclusion : body.inclusions) {
     const std::shared_ptr<const scene::Shape> shape = solid_shape(inclusion, inclusion.center_m);
-    grading.sets.push_back(
-        {[shape](const Eigen::Matrix<double, dim, 1>& x_m) { return shape->signed_distance_m(in_space<dim>(x_m)); },
-         -shape->signed_distance_m(inclusion.center_m) / cells});
+    grading.sets.push_back({[shape](const Eigen::Matrix<double, dim, 1>& x_m) {
+                              return shape->signed_distance_m(scene::in_space<dim>(x_m));
+                            },
+                            -shape->signed_distance_m(inclusion.center_m) / cells});
   }
 }
 

@@ -1,10 +1,11 @@
 #include "reference/mesh/round_mesh.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <sstream>
 
 namespace touchstone::reference {
 namespace {
@@ -365,10 +366,10 @@ std::string round_fault(const RoundSpec& spec) {
     const double share = length_m(shape, section) / whole_m;
     if (share >= smallest_share) continue;
     const double z_m = shape.meridian(section.piece, section.begin).rz_m.y() - shape.piece(0).start_m.y();
-    std::ostringstream text;
-    text << "between the corners, joints and the support's edge the reference needs " << smallest_share
-         << " of the profile's length everywhere, not " << share << " at z = " << z_m << " m";
-    return text.str();
+    return fmt::format(
+        "between the corners, joints and the support's edge the reference needs {:g} of the profile's length "
+        "everywhere, not {:g} at z = {:g} m",
+        smallest_share, share, z_m);
   }
   return {};
 }

@@ -1,9 +1,9 @@
 #include "reference/run/cost.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 
 namespace touchstone::reference {
 namespace {
@@ -50,23 +50,14 @@ double Pace::factor() const noexcept {
 }
 
 std::string duration_text(double seconds) {
-  std::ostringstream text;
-  text << std::fixed;
-  if (seconds < 99.5) {
-    text << std::setprecision(seconds < 9.95 ? 1 : 0) << seconds << " s";
-  } else if (seconds < 99.5 * 60.0) {
-    text << std::setprecision(seconds < 600.0 ? 1 : 0) << seconds / 60.0 << " min";
-  } else {
-    text << std::setprecision(seconds < 36e3 ? 1 : 0) << seconds / 3600.0 << " h";
-  }
-  return text.str();
+  if (seconds < 99.5) return fmt::format("{:.{}f} s", seconds, seconds < 9.95 ? 1 : 0);
+  if (seconds < 99.5 * 60.0) return fmt::format("{:.{}f} min", seconds / 60.0, seconds < 600.0 ? 1 : 0);
+  return fmt::format("{:.{}f} h", seconds / 3600.0, seconds < 36e3 ? 1 : 0);
 }
 
 std::string memory_text(double bytes) {
   const double gibibytes = bytes / (1024.0 * 1024.0 * 1024.0);
-  std::ostringstream text;
-  text << std::setprecision(2) << gibibytes << " GiB";
-  return gibibytes < 100.0 ? text.str() : std::to_string(std::lround(gibibytes)) + " GiB";
+  return gibibytes < 100.0 ? fmt::format("{:.2g} GiB", gibibytes) : fmt::format("{} GiB", std::lround(gibibytes));
 }
 
 }  // namespace touchstone::reference

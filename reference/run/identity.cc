@@ -88,7 +88,7 @@ std::string identity_text(const Scene& scene) {
     add_material(inclusion.material);
   }
   text << "tool " << tool_text(scene.tool) << '\n'
-       << "regions " << scene.fast.r_th_m << " apart\n"
+       << "regions " << scene.contact.r_th_m << " apart\n"
        << "kinematics " << (scene.reference.kinematics == scene::Kinematics::finite ? "finite" : "small") << " element "
        << (scene.reference.element_size_m ? std::to_string(*scene.reference.element_size_m * 1e9) + " nm" : "automatic")
        << '\n';

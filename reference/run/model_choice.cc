@@ -6,12 +6,13 @@
 #include "reference/tool/tool_symmetry.h"
 #include "scene/shape/surface.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 #include <set>
-#include <sstream>
 
 namespace touchstone::reference {
 namespace {
@@ -31,7 +32,7 @@ void expect_contacts(const Scene& scene, ModelChoice& choice) {
     const scene::Pose pose = scene::pose_at(scene.track, time_s);
     std::vector<ContactPatch> now;
     if (points) {
-      now = contact_patches(*body, *points, pose, scene.fast.r_th_m);
+      now = contact_patches(*body, *points, pose, scene.contact.r_th_m);
     } else if (const double depth_m = scene::rest_depth_m(*body, scene.tool, pose); depth_m > 0.0) {
       const Vec3 center_m = pose.position_m - pose.orientation * scene.tool.mass_center_m.value_or(Vec3::Zero());
       const scene::SurfaceQuery nearest = body->query(center_m);
@@ -208,11 +209,10 @@ std::vector<scene::Fault> unsupported_parts(const Scene& scene) {
   const auto add = [&](const std::string& message) { faults.push_back({"", 0, 0, message}); };
   if (scene.tool.shape == scene::ToolShape::cylinder &&
       scene.tool.edge_radius_m < smallest_fillet_share * scene.tool.radius_m) {
-    std::ostringstream text;
-    text << "tool.edge_radius_m: a sharp rim has unbounded pressure and the reference stops converging; expected at "
-            "least a quarter of the radius, "
-         << smallest_fillet_share * scene.tool.radius_m << " m, found " << scene.tool.edge_radius_m << " m";
-    add(text.str());
+    add(fmt::format(
+        "tool.edge_radius_m: a sharp rim has unbounded pressure and the reference stops converging; expected at "
+        "least a quarter of the radius, {:g} m, found {:g} m",
+        smallest_fillet_share * scene.tool.radius_m, scene.tool.edge_radius_m));
   }
   if (!faults.empty()) return faults;
   if (scene.body.shape != BodyShape::box) {
@@ -227,12 +227,11 @@ std::vector<scene::Fault> unsupported_parts(const Scene& scene) {
     const double depth_m = scene::rest_depth_m(*body, scene.tool, pose);
     if (depth_m <= 0.0) continue;
     const bool round = scene.tool.shape == scene::ToolShape::sphere || scene.tool.shape == scene::ToolShape::capsule;
-    std::ostringstream where;
-    where << "track, t = " << time_s << " s: ";
+    const std::string where = fmt::format("track, t = {:g} s: ", time_s);
     if (round && depth_m >= scene.tool.radius_m) {
-      add(where.str() + "the tool's centre is inside the body's rest shape; press less deep");
+      add(where + "the tool's centre is inside the body's rest shape; press less deep");
     } else if (lowest_m(scene.tool, pose) < body->bounds().lower_m.z()) {
-      add(where.str() + "the tool reaches below the support; keep it above z = 0");
+      add(where + "the tool reaches below the support; keep it above z = 0");
     } else {
       continue;
     }

@@ -51,7 +51,7 @@ std::vector<double> region_depths_m(const Scene& scene, const scene::Shape& body
 /// @param before  the tool's place at the instant before, or nullptr
 void add_regions(const Scene& scene, const scene::Shape& body, const std::vector<ContactRegion>& regions,
                  const scene::Pose* before, RegionIds& ids, scene::InstantRecord& record) {
-  double reach_m = scene.fast.r_th_m;
+  double reach_m = scene.contact.r_th_m;
   if (before) {
     double lever_m = 0.0;
     for (const ContactRegion& region : regions) {

@@ -15,29 +15,22 @@
 #include "reference/run/store.h"
 #include "reference/run/uncertainty.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <memory>
 #include <new>
 #include <optional>
-#include <sstream>
 
 namespace touchstone::reference {
 namespace {
 
 using scene::Scene;
-using Clock = std::chrono::steady_clock;
 
 constexpr int fewest_levels = 3, most_levels = 9;
-
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-double cpu_seconds_since(std::clock_t begin) { return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC; }
 
 double physical_memory_bytes() {
   return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
@@ -53,7 +46,7 @@ template <int dim>
 class Run {
  public:
   Run(const Scene& scene, const ModelChoice& choice, const Eigen::Matrix3Xd& rest_points_m, const Options& options,
-      Clock::time_point begin)
+      const scene::Stopwatch& begin)
       : scene_(scene),
         choice_(choice),
         rest_points_m_(rest_points_m),
@@ -118,7 +111,7 @@ class Run {
     if (options_.progress) options_.progress(progress);
   }
 
-  [[nodiscard]] double seconds_to_go() const { return options_.seconds_limit - seconds_since(begin_); }
+  [[nodiscard]] double seconds_to_go() const { return options_.seconds_limit - begin_.wall_s(); }
   [[nodiscard]] bool out_of_time() const { return seconds_to_go() < 0.0; }
   void check_time() const {
     if (out_of_time()) throw TimeIsUp();
@@ -236,18 +229,17 @@ class Run {
     }
     result_.refinement.reached = small_enough(result_.force_uncertainty_rel) &&
                                  small_enough(result_.shape_uncertainty_rel) && solved_levels() >= fewest_levels;
-    std::ostringstream text;
     if (result_.refinement.reached) {
-      text << "force and shape are known to " << 100.0 * scene_.reference.error << " % after "
-           << meshes_text(solved_levels());
-      return stop_at(EndedBy::done, text.str());
+      return stop_at(EndedBy::done, fmt::format("force and shape are known to {:g} % after {}",
+                                                100.0 * scene_.reference.error, meshes_text(solved_levels())));
     }
     if (const Sensitivity* one = too_sensitive()) {
-      text << not_started(solved_levels()) << "finer meshes do not help, since " << one->part << ' ' << one->change
-           << " changes the force by " << number_text(100.0 * one->force_rel) << " % and the shape by "
-           << number_text(100.0 * one->shape_rel) << " %";
-      if (one->carries == Carries::first_order) text << "; more instants would";
-      return stop_at(EndedBy::sensitivity, text.str());
+      return stop_at(
+          EndedBy::sensitivity,
+          fmt::format(
+              "{}finer meshes do not help, since {} {} changes the force by {:.3g} % and the shape by {:.3g} %{}",
+              not_started(solved_levels()), one->part, one->change, 100.0 * one->force_rel, 100.0 * one->shape_rel,
+              one->carries == Carries::first_order ? "; more instants would" : ""));
     }
     return true;
   }
@@ -294,16 +286,9 @@ class Run {
     if (level == 0) {
       throw LimitReached("no answer, since mesh 1 is not finished: " + limit.why +
                          ". Allow more, or make the cells larger with reference.element_size_m (now " +
-                         number_text(element_size_m(scene_, choice_, 0)) + " m).");
+                         fmt::format("{:.3g} m).", element_size_m(scene_, choice_, 0)));
     }
     return stop_at(limit.by, not_started(level) + limit.why + (level < fewest_levels ? needs_more() : ""));
-  }
-
-  [[nodiscard]] static std::string number_text(double value) {
-    std::ostringstream text;
-    text.precision(3);
-    text << value;
-    return text.str();
   }
 
   [[nodiscard]] double memory_limit_bytes() const {
@@ -323,18 +308,18 @@ class Run {
     const int missing = missing_steps(store, level);
     if (missing == 0) return std::nullopt;
     const Cost needed = cost(unknowns_of(mesh), missing);
-    std::ostringstream text;
-    text << "its " << std::lround(unknowns_of(mesh)) << " unknowns would take about ";
+    const std::string its = fmt::format("its {} unknowns would take about ", std::lround(unknowns_of(mesh)));
     if (needed.memory_bytes > memory_limit_bytes()) {
-      text << memory_text(needed.memory_bytes) << " of memory, more than " << memory_text(memory_limit_bytes());
-      return Limit{EndedBy::memory, text.str()};
+      return Limit{EndedBy::memory, fmt::format("{}{} of memory, more than {}", its, memory_text(needed.memory_bytes),
+                                                memory_text(memory_limit_bytes()))};
     }
     const double needed_s = pace_.factor() * needed.seconds;
     if (needed_s > seconds_to_go()) {
-      text << duration_text(needed_s) << " for " << missing << (missing == 1 ? " load step" : " load steps")
-           << ", more than the " << duration_text(std::max(0.0, seconds_to_go())) << " left"
-           << all_meshes_text(level, needed_s, pace_.factor() * expected_after_s(level, mesh, store));
-      return Limit{EndedBy::time, text.str()};
+      return Limit{
+          EndedBy::time,
+          fmt::format("{}{} for {} load step{}, more than the {} left{}", its, duration_text(needed_s), missing,
+                      missing == 1 ? "" : "s", duration_text(std::max(0.0, seconds_to_go())),
+                      all_meshes_text(level, needed_s, pace_.factor() * expected_after_s(level, mesh, store)))};
     }
     return std::nullopt;
   }
@@ -342,11 +327,11 @@ class Run {
   /// That the time was up within a level, what is kept of it, and how long the rest probably takes.
   [[nodiscard]] std::string time_up_text(int level, const Mesh<dim>& mesh, const Store& store, int finished) const {
     const double mesh_s = pace_.factor() * cost(unknowns_of(mesh), missing_steps(store, level)).seconds;
-    std::ostringstream text;
-    text << "the time was up after " << finished << " of its " << count()
-         << " instants, which are kept; the next run goes on from there, and needs about " << duration_text(mesh_s)
-         << " for this mesh" << all_meshes_text(level, mesh_s, pace_.factor() * expected_after_s(level, mesh, store));
-    return text.str();
+    return fmt::format(
+        "the time was up after {} of its {} instants, which are kept; the next run goes on from there, and needs about "
+        "{} for this mesh{}",
+        finished, count(), duration_text(mesh_s),
+        all_meshes_text(level, mesh_s, pace_.factor() * expected_after_s(level, mesh, store)));
   }
 
   void take(int level, Level& answer) {
@@ -409,7 +394,8 @@ class Run {
     for (int instant = 0; instant < count(); ++instant) {
       check_stop();
       std::optional<std::pair<Solved<dim>, Step>> found;
-      if (std::optional<Record> record = store.read(level, instant)) found = from_record<dim>(std::move(*record), mesh);
+      if (std::optional<std::string> record = store.read(level, instant))
+        found = from_record<dim>(std::move(*record), mesh);
       if (!found) {
         check_time();
         result_.from_store = false;
@@ -417,7 +403,7 @@ class Run {
                                                            [](double depth_m) { return depth_m > 0.0; }));
         if (!problem) {
           problem.emplace(mesh, scene_.body.material, scene_.reference.kinematics, choice_.mirror_x, choice_.mirror_y);
-          if (scene_.contact.friction) problem->set_friction(*scene_.contact.friction, scene_.fast.r_th_m);
+          if (scene_.contact.friction) problem->set_friction(*scene_.contact.friction, scene_.contact.r_th_m);
           if (level > 0 && !scene_.contact.friction) prolongation.emplace(*coarser_, mesh);
           ahead.later_s = expected_after_s(level, mesh, store);
           show({.level = level + 1,
@@ -459,7 +445,7 @@ class Run {
   /// The coarser level's solution on this level's mesh; nothing when the tool did not touch there.
   [[nodiscard]] std::optional<State<dim>> start_state(const Prolongation<dim>& prolongation, const Store& store,
                                                       int level, int instant) const {
-    std::optional<Record> record = store.read(level - 1, instant);
+    std::optional<std::string> record = store.read(level - 1, instant);
     const auto coarse = record ? from_record<dim>(std::move(*record), *coarser_) : std::nullopt;
     if (!coarse || !coarse->first.touching) return std::nullopt;
     return prolongation(coarse->first.state);
@@ -479,8 +465,7 @@ class Run {
                                              std::optional<State<dim>> start, const std::optional<Solved<dim>>& before,
                                              const std::optional<Solved<dim>>& current, const Ahead& ahead) {
     const double time_s = times_s_[instant];
-    const Clock::time_point begin = Clock::now();
-    const std::clock_t cpu_begin = std::clock();
+    const scene::Stopwatch begin;
     std::pair<Solved<dim>, Step> result{{time_s, problem.rest(), false}, {}};
     auto& [solved, step] = result;
     step.unknowns = problem.unknowns();
@@ -492,7 +477,7 @@ class Run {
     const auto watch = [&](int iteration, double residual_rel) {
       progress.newton = iteration;
       progress.residual_rel = residual_rel;
-      progress.seconds_left = seconds_left(ahead, seconds_since(begin));
+      progress.seconds_left = seconds_left(ahead, begin.wall_s());
       show(progress);
       check_stop();
       check_time();
@@ -515,26 +500,24 @@ class Run {
       const Solved<dim> from = current ? *current : Solved<dim>{time_s - lead_s, problem.rest(), false};
       const AdvanceReport report =
           path.advance(before ? &*before : nullptr, from, time_s, solved, watch, [&](double failed_s) {
-            std::ostringstream note;
-            note << "load step halved at t = " << failed_s << " s";
             Progress halved = progress;
-            halved.note = note.str();
+            halved.note = fmt::format("load step halved at t = {:g} s", failed_s);
             show(halved);
           });
       step.newton_iterations += report.newton_iterations;
       step.halvings = report.halvings;
       step.indefinite += report.indefinite;
       if (!report.converged) {
-        const std::string where = stuck_contact_text(problem, path.stuck()->state, scene_.fast.r_th_m);
+        const std::string where = stuck_contact_text(problem, path.stuck()->state, scene_.contact.r_th_m);
         throw NotConverged(not_converged_text(level, instant, report, where));
       }
     }
     if (solved.touching) {
-      step.seen = problem.observe(solved.state, scene_.fast.r_th_m);
+      step.seen = problem.observe(solved.state, scene_.contact.r_th_m);
       step.linear_solver = problem.linear_solver();
     }
-    step.wall_s = seconds_since(begin);
-    step.cpu_s = cpu_seconds_since(cpu_begin);
+    step.wall_s = begin.wall_s();
+    step.cpu_s = begin.cpu_s();
     return result;
   }
 
@@ -546,7 +529,7 @@ class Run {
     const std::vector<SensitivityWork> missing = missing_sensitivities(coarsest_, store);
     if (std::optional<Limit> limit = limit_before(missing)) return limit;
     const auto stored = [&](int which) {
-      std::optional<Record> record = which < 0 ? std::nullopt : store.read(0, which);
+      std::optional<std::string> record = which < 0 ? std::nullopt : store.read(0, which);
       return record ? from_record<dim>(std::move(*record), coarsest_) : std::nullopt;
     };
     const auto at = stored(instant), before = stored(instant - 1);
@@ -555,7 +538,7 @@ class Run {
     const double later_s =
         missing.empty() ? 0.0 : expected_after_s(solved_levels() - 1, *coarser_, store) - expected_s(missing, 0);
     std::size_t now = missing.size();  // the one being measured
-    Clock::time_point began;
+    scene::Stopwatch began;
     const auto watch = [&](const std::string& part, int) {
       result_.from_store = false;
       check_stop();
@@ -564,12 +547,12 @@ class Run {
       if (next) {
         now = std::find_if(missing.begin(), missing.end(), [&](const auto& one) { return one.part == part; }) -
               missing.begin();
-        began = Clock::now();
+        began = {};
       }
       const Ahead ahead{.step_s = expected_s(missing, now) - expected_s(missing, now + 1),
                         .later_s = expected_s(missing, now + 1) + later_s};
       show({.instants = count(),
-            .seconds_left = seconds_left(ahead, seconds_since(began)),
+            .seconds_left = seconds_left(ahead, began.wall_s()),
             .event = next,
             .note = "sensitivity to the " + part});
     };
@@ -633,15 +616,13 @@ class Run {
 
   [[nodiscard]] std::string not_converged_text(int level, int instant, const AdvanceReport& report,
                                                const std::string& where) const {
-    std::ostringstream text;
-    text << "instant " << instant + 1 << " of " << count() << " (t = " << times_s_[instant] << " s, depth "
-         << depth_m(times_s_[instant]) << " m) did not converge on level " << level + 1 << ": " << report.last.trouble
-         << ", residual " << report.last.residual_rel
-         << " of the acting forces (asked: " << ContactProblem<dim>::force_tolerance
-         << "), stuck at t = " << report.stuck_time_s << " s after " << report.halvings << " halvings, " << where
-         << ". Finished steps are kept. Try a smaller reference.element_size_m (now "
-         << element_size_m(scene_, choice_, 0) << " m on the coarsest level), more instants, or less depth.";
-    return text.str();
+    return fmt::format(
+        "instant {} of {} (t = {:g} s, depth {:g} m) did not converge on level {}: {}, residual {:g} of the acting "
+        "forces (asked: {:g}), stuck at t = {:g} s after {} halvings, {}. Finished steps are kept. Try a smaller "
+        "reference.element_size_m (now {:g} m on the coarsest level), more instants, or less depth.",
+        instant + 1, count(), times_s_[instant], depth_m(times_s_[instant]), level + 1, report.last.trouble,
+        report.last.residual_rel, ContactProblem<dim>::force_tolerance, report.stuck_time_s, report.halvings, where,
+        element_size_m(scene_, choice_, 0));
   }
 
   const Scene& scene_;
@@ -650,7 +631,7 @@ class Run {
   const Options& options_;
   std::unique_ptr<const scene::Shape> body_;
   std::vector<double> times_s_;
-  Clock::time_point begin_;
+  scene::Stopwatch begin_;
   std::vector<double> depths_m_;  // of the tool in the body at rest, per instant
   Pace pace_;
   Result result_;
@@ -663,7 +644,7 @@ class Run {
 }  // namespace
 
 Result run(const Scene& scene, const ModelChoice& choice, const Eigen::Matrix3Xd& rest_points_m, const Options& options,
-           std::chrono::steady_clock::time_point begin) {
+           const scene::Stopwatch& begin) {
   if (choice.dim == 2) return Run<2>(scene, choice, rest_points_m, options, begin).answer();
   return Run<3>(scene, choice, rest_points_m, options, begin).answer();
 }

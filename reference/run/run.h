@@ -4,8 +4,7 @@
 #include "reference/run/model_choice.h"
 #include "reference/run/options.h"
 #include "reference/run/result.h"
-
-#include <chrono>
+#include "scene/base/stopwatch.h"
 
 namespace touchstone::reference {
 
@@ -17,6 +16,6 @@ namespace touchstone::reference {
 /// its path, the body follows the track from the instant before.
 /// @param begin  from when Options::seconds_limit counts
 [[nodiscard]] Result run(const scene::Scene& scene, const ModelChoice& choice, const Eigen::Matrix3Xd& rest_points_m,
-                         const Options& options, std::chrono::steady_clock::time_point begin);
+                         const Options& options, const scene::Stopwatch& begin);
 
 }  // namespace touchstone::reference

@@ -6,10 +6,9 @@
 #include "reference/run/step_record.h"
 #include "reference/run/uncertainty.h"
 #include "reference/tool/distance_grid.h"
+#include "scene/base/stopwatch.h"
 
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -83,12 +82,11 @@ class Repeat {
 
   /// The instant's solution with one choice changed. @throws NotConverged
   std::pair<Solved<dim>, Step> solve(const Change& change, const Mesh<dim>& mesh) const {
-    const auto begin = std::chrono::steady_clock::now();
-    const std::clock_t cpu_begin = std::clock();
+    const scene::Stopwatch time;
     const scene::Scene& scene = given_.scene;
     ContactProblem<dim> problem(mesh, scene.body.material, scene.reference.kinematics, given_.choice.mirror_x,
                                 given_.choice.mirror_y, ranks::threads(), change.numerics);
-    if (scene.contact.friction) problem.set_friction(*scene.contact.friction, scene.fast.r_th_m);
+    if (scene.contact.friction) problem.set_friction(*scene.contact.friction, scene.contact.r_th_m);
     const auto tool = change.tool ? change.tool() : given_.choice.tool;
     const auto tool_anywhere = [&](double time_s) { return RigidTool<dim>(tool, scene::pose_at(scene.track, time_s)); };
     LoadPath<dim> path(
@@ -142,11 +140,11 @@ class Repeat {
       throw NotConverged(std::string("the sensitivity to the ") + change.part +
                          " did not converge: " + report.last.trouble);
     }
-    step.seen = problem.observe(solved.state, scene.fast.r_th_m);
+    step.seen = problem.observe(solved.state, scene.contact.r_th_m);
     step.unknowns = problem.unknowns();
     step.linear_solver = problem.linear_solver();
-    step.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    step.cpu_s = static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC;
+    step.wall_s = time.wall_s();
+    step.cpu_s = time.cpu_s();
     return result;
   }
 
@@ -207,7 +205,7 @@ std::vector<Sensitivity> sensitivities(const SensitivityCase<dim>& given, const 
     const Mesh<dim> mesh = changed_mesh(given.scene, given.choice, given.mesh, change);
     std::optional<std::pair<Solved<dim>, Step>> found;
     const std::string name = name_of(change);
-    if (std::optional<Record> record = store.read(name)) found = from_record<dim>(std::move(*record), mesh);
+    if (std::optional<std::string> record = store.read(name)) found = from_record<dim>(std::move(*record), mesh);
     if (!found) {
       found = repeat.solve(change, mesh);
       store.write(name, to_record(found->first, found->second));

@@ -1,111 +1,70 @@
 #include "reference/run/step_record.h"
 
+#include "reference/linear/record.h"
+
 #include <stdexcept>
+#include <utility>
 
 namespace touchstone::reference {
 namespace {
 
-/// Friction's history, at the end of a record and only where there is one.
-template <int dim>
-void put_friction(const State<dim>& state, const Observation& seen, Record& record) {
-  record.put(state.slipping.data(), state.slipping.size());
-  record.put(state.sliding.data(), state.sliding.size());
-  record.put(state.on_tool_m.data(), static_cast<std::size_t>(state.on_tool_m.size()));
-  record.put(state.dissipated_j);
-  for (const ContactRegion& region : seen.regions) {
-    record.put(region.friction_n.data(), 3);
-    record.put(region.stuck_share);
+/// What is kept of a step, in its order. A reader's state has the mesh's size already.
+template <class Archive>
+void serialize(Archive& archive, auto& solved, auto& step) {
+  auto& state = solved.state;
+  auto& seen = step.seen;
+  int touching = solved.touching;
+  archive(solved.time_s, touching);
+  if constexpr (Archive::reads) solved.touching = touching != 0;
+  archive.same(static_cast<int>(state.u_m.cols()));
+  archive.same(static_cast<int>(state.p_pa.cols()));
+  archive(state.u_m, state.p_pa, state.touching);
+  archive(seen.force_n, seen.torque_nm, seen.support_force_n, seen.area_m2, seen.contact_radius_m,
+          seen.node_penetration_m, seen.between_nodes_penetration_m, seen.equilibrium_rel, seen.volume_change_rel);
+  archive(step.wall_s, step.cpu_s, step.unknowns, step.newton_iterations, step.halvings, step.indefinite);
+  archive.size(seen.regions);
+  for (auto& region : seen.regions) archive(region.force_n, region.torque_nm, region.center_m, region.area_m2);
+  archive.sized(step.linear_solver);
+  // Friction's history, only where there is one.
+  if (!archive.more(state.on_tool_m.cols() > 0)) return;
+  if constexpr (Archive::reads) {
+    state.slipping = state.sliding = state.touching;
+    state.on_tool_m.resize(3, state.u_m.cols());
   }
-}
-
-template <int dim>
-void take_friction(Record& record, int nodes, State<dim>& state, Observation& seen) {
-  state.slipping.resize(nodes);
-  state.sliding.resize(nodes);
-  state.on_tool_m.resize(3, nodes);
-  record.take(state.slipping.data(), state.slipping.size());
-  record.take(state.sliding.data(), state.sliding.size());
-  record.take(state.on_tool_m.data(), static_cast<std::size_t>(state.on_tool_m.size()));
-  seen.dissipated_j = state.dissipated_j = record.take_double();
-  for (ContactRegion& region : seen.regions) {
-    record.take(region.friction_n.data(), 3);
-    region.stuck_share = record.take_double();
-  }
+  archive(state.slipping, state.sliding, state.on_tool_m, state.dissipated_j);
+  for (auto& region : seen.regions) archive(region.friction_n, region.stuck_share);
 }
 
 }  // namespace
 
 template <int dim>
-Record to_record(const Solved<dim>& solved, const Step& step) {
-  Record record;
-  record.put(solved.time_s);
-  record.put(solved.touching ? 1 : 0);
-  record.put(static_cast<int>(solved.state.u_m.cols()));
-  record.put(static_cast<int>(solved.state.p_pa.cols()));
-  record.put(solved.state.u_m.data(), static_cast<std::size_t>(solved.state.u_m.size()));
-  record.put(solved.state.p_pa.data(), static_cast<std::size_t>(solved.state.p_pa.size()));
-  record.put(solved.state.touching.data(), solved.state.touching.size());
-  record.put(step.seen.force_n.data(), 3);
-  record.put(step.seen.torque_nm.data(), 3);
-  record.put(step.seen.support_force_n.data(), 3);
-  for (const double value : {step.seen.area_m2, step.seen.contact_radius_m, step.seen.node_penetration_m,
-                             step.seen.between_nodes_penetration_m, step.seen.equilibrium_rel,
-                             step.seen.volume_change_rel, step.wall_s, step.cpu_s}) {
-    record.put(value);
-  }
-  for (const int value : {step.unknowns, step.newton_iterations, step.halvings, step.indefinite}) record.put(value);
-  record.put(static_cast<int>(step.seen.regions.size()));
-  for (const ContactRegion& region : step.seen.regions) {
-    for (const scene::Vec3& vector : {region.force_n, region.torque_nm, region.center_m}) record.put(vector.data(), 3);
-    record.put(region.area_m2);
-  }
-  record.put(std::string_view(step.linear_solver));
-  if (solved.state.on_tool_m.cols() > 0) put_friction(solved.state, step.seen, record);
-  return record;
+std::string to_record(const Solved<dim>& solved, const Step& step) {
+  RecordWriter record;
+  serialize(record, solved, step);
+  return record.bytes();
 }
 
 template <int dim>
-std::optional<std::pair<Solved<dim>, Step>> from_record(Record record, const Mesh<dim>& mesh) {
+std::optional<std::pair<Solved<dim>, Step>> from_record(std::string bytes, const Mesh<dim>& mesh) {
+  std::pair<Solved<dim>, Step> result;
+  auto& [solved, step] = result;
+  solved.state.u_m.resize(dim, mesh.node_count());
+  solved.state.p_pa.resize(dim + 1, mesh.cell_count());
+  solved.state.touching.resize(mesh.node_count());
   try {
-    std::pair<Solved<dim>, Step> result;
-    auto& [solved, step] = result;
-    solved.time_s = record.take_double();
-    solved.touching = record.take_int() != 0;
-    if (record.take_int() != mesh.node_count() || record.take_int() != mesh.cell_count()) return std::nullopt;
-    solved.state.u_m.resize(dim, mesh.node_count());
-    solved.state.p_pa.resize(dim + 1, mesh.cell_count());
-    solved.state.touching.resize(mesh.node_count());
-    record.take(solved.state.u_m.data(), static_cast<std::size_t>(solved.state.u_m.size()));
-    record.take(solved.state.p_pa.data(), static_cast<std::size_t>(solved.state.p_pa.size()));
-    record.take(solved.state.touching.data(), solved.state.touching.size());
-    record.take(step.seen.force_n.data(), 3);
-    record.take(step.seen.torque_nm.data(), 3);
-    record.take(step.seen.support_force_n.data(), 3);
-    for (double* value : {&step.seen.area_m2, &step.seen.contact_radius_m, &step.seen.node_penetration_m,
-                          &step.seen.between_nodes_penetration_m, &step.seen.equilibrium_rel,
-                          &step.seen.volume_change_rel, &step.wall_s, &step.cpu_s}) {
-      *value = record.take_double();
-    }
-    for (int* value : {&step.unknowns, &step.newton_iterations, &step.halvings, &step.indefinite}) {
-      *value = record.take_int();
-    }
-    for (int regions = record.take_int(); regions > 0; --regions) {
-      ContactRegion& region = step.seen.regions.emplace_back();
-      for (scene::Vec3* vector : {&region.force_n, &region.torque_nm, &region.center_m}) record.take(vector->data(), 3);
-      region.area_m2 = record.take_double();
-    }
-    step.linear_solver = record.take_text();
-    if (!record.at_end()) take_friction(record, mesh.node_count(), solved.state, step.seen);
-    if (!record.at_end()) return std::nullopt;
-    return result;
+    RecordReader record(std::move(bytes));
+    serialize(record, solved, step);
+    if (record.more()) return std::nullopt;
   } catch (const std::out_of_range&) {
     return std::nullopt;
   }
+  step.seen.dissipated_j = solved.state.dissipated_j;
+  return result;
 }
 
-template Record to_record(const Solved<2>&, const Step&);
-template Record to_record(const Solved<3>&, const Step&);
-template std::optional<std::pair<Solved<2>, Step>> from_record(Record, const Mesh<2>&);
-template std::optional<std::pair<Solved<3>, Step>> from_record(Record, const Mesh<3>&);
+template std::string to_record(const Solved<2>&, const Step&);
+template std::string to_record(const Solved<3>&, const Step&);
+template std::optional<std::pair<Solved<2>, Step>> from_record(std::string, const Mesh<2>&);
+template std::optional<std::pair<Solved<3>, Step>> from_record(std::string, const Mesh<3>&);
 
 }  // namespace touchstone::reference

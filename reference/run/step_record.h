@@ -3,7 +3,6 @@
 
 #include "reference/contact/contact_problem.h"
 #include "reference/contact/load_path.h"
-#include "reference/run/store.h"
 
 #include <optional>
 #include <string>
@@ -23,10 +22,10 @@ struct Step {
 };
 
 template <int dim>
-[[nodiscard]] Record to_record(const Solved<dim>& solved, const Step& step);
+[[nodiscard]] std::string to_record(const Solved<dim>& solved, const Step& step);
 
 /// @returns nothing when the record does not belong to this mesh
 template <int dim>
-[[nodiscard]] std::optional<std::pair<Solved<dim>, Step>> from_record(Record record, const Mesh<dim>& mesh);
+[[nodiscard]] std::optional<std::pair<Solved<dim>, Step>> from_record(std::string bytes, const Mesh<dim>& mesh);
 
 }  // namespace touchstone::reference

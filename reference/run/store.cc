@@ -45,24 +45,24 @@ std::filesystem::path Store::step_file(int level, int instant) const {
   return folder_ / ("level-" + std::to_string(level + 1)) / ("instant-" + std::to_string(instant + 1) + ".step");
 }
 
-void Store::write(int level, int instant, const Record& record) const { write(step_file(level, instant), record); }
+void Store::write(int level, int instant, std::string_view record) const { write(step_file(level, instant), record); }
 
-void Store::write(const std::string& name, const Record& record) const { write(folder_ / (name + ".step"), record); }
+void Store::write(const std::string& name, std::string_view record) const { write(folder_ / (name + ".step"), record); }
 
-std::optional<Record> Store::read(int level, int instant) const { return read(step_file(level, instant)); }
+std::optional<std::string> Store::read(int level, int instant) const { return read(step_file(level, instant)); }
 
-std::optional<Record> Store::read(const std::string& name) const { return read(folder_ / (name + ".step")); }
+std::optional<std::string> Store::read(const std::string& name) const { return read(folder_ / (name + ".step")); }
 
 std::string Store::checksum(const std::filesystem::path& file, std::string_view bytes) const {
   std::string text = folder_.filename().string() + ' ' + file.lexically_relative(folder_).generic_string() + '\n';
   return scene::hash_text(text += bytes);
 }
 
-void Store::write(const std::filesystem::path& file, const Record& record) const {
+void Store::write(const std::filesystem::path& file, std::string_view record) const {
   std::string content(magic);
-  content += checksum(file, record.bytes());
+  content += checksum(file, record);
   content += '\n';
-  content += record.bytes();
+  content += record;
   try {
     std::filesystem::create_directories(file.parent_path());
     scene::write_file(file, content);
@@ -73,13 +73,13 @@ void Store::write(const std::filesystem::path& file, const Record& record) const
   }
 }
 
-std::optional<Record> Store::read(const std::filesystem::path& file) const {
+std::optional<std::string> Store::read(const std::filesystem::path& file) const {
   const std::optional<std::string> content = scene::read_file(file);
   if (!content) return std::nullopt;
   const std::size_t head = magic.size() + checksum_size + 1;
   if (content->size() >= head && content->starts_with(magic)) {
     std::string bytes = content->substr(head);
-    if (content->compare(magic.size(), checksum_size, checksum(file, bytes)) == 0) return Record(std::move(bytes));
+    if (content->compare(magic.size(), checksum_size, checksum(file, bytes)) == 0) return bytes;
   }
   std::filesystem::remove(file);
   return std::nullopt;

@@ -1,7 +1,6 @@
 // Results on disk, addressed by content: one folder per scene answer, one checked file per finished load step.
 #pragma once
 
-#include "reference/linear/record.h"
 #include "scene/base/files.h"
 
 #include <filesystem>
@@ -29,20 +28,20 @@ class Store {
   [[nodiscard]] static std::string key(const std::string& identity);
 
   /// Keeps a finished step. @throws std::filesystem::filesystem_error; the step is then absent
-  void write(int level, int instant, const Record& record) const;
+  void write(int level, int instant, std::string_view record) const;
 
   /// The same for a solution that is no step of a level, by name.
-  void write(const std::string& name, const Record& record) const;
-  [[nodiscard]] std::optional<Record> read(const std::string& name) const;
+  void write(const std::string& name, std::string_view record) const;
+  [[nodiscard]] std::optional<std::string> read(const std::string& name) const;
 
   /// The step, or nothing when it is missing, torn, altered or another step's; such a file is removed.
-  [[nodiscard]] std::optional<Record> read(int level, int instant) const;
+  [[nodiscard]] std::optional<std::string> read(int level, int instant) const;
 
   [[nodiscard]] std::filesystem::path step_file(int level, int instant) const;
 
  private:
-  void write(const std::filesystem::path& file, const Record& record) const;
-  [[nodiscard]] std::optional<Record> read(const std::filesystem::path& file) const;
+  void write(const std::filesystem::path& file, std::string_view record) const;
+  [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& file) const;
   [[nodiscard]] std::string checksum(const std::filesystem::path& file, std::string_view bytes) const;
   std::filesystem::path folder_;
   std::optional<scene::FolderLock> lock_;

@@ -1,6 +1,7 @@
 #include "reference/tool/tool_distance.h"
 
 #include "reference/tool/distance_grid.h"
+#include "scene/base/in_space.h"
 
 #include <algorithm>
 #include <cmath>
@@ -154,10 +155,7 @@ RigidTool<dim> ball_tool(double radius_m, const Eigen::Matrix<double, dim, 1>& c
   scene::Tool tool;
   tool.radius_m = radius_m;
   scene::Pose pose;
-  if constexpr (dim == 3)
-    pose.position_m = center_m;
-  else
-    pose.position_m = {center_m.x(), 0.0, center_m.y()};
+  pose.position_m = scene::in_space<dim>(center_m);
   return {tool_distance(tool), pose};
 }
 

@@ -1,5 +1,7 @@
 #include "reference/tool/tool_gap.h"
 
+#include "scene/base/in_space.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,15 +9,6 @@ namespace touchstone::reference {
 namespace {
 
 using scene::Vec3;
-
-template <int dim>
-Vec3 in_space(const Eigen::Matrix<double, dim, 1>& p) {
-  if constexpr (dim == 3) {
-    return p;
-  } else {
-    return {p[0], 0.0, p[1]};
-  }
-}
 
 /// First place of the line p + s direction on the surface, coming from s = -infinity; infinite when it passes by.
 double first_hit_m(const ToolDistance& distance, const Vec3& p_m, const Vec3& direction) {
@@ -50,12 +43,12 @@ RigidTool<dim>::RigidTool(std::shared_ptr<const ToolDistance> distance, const sc
 
 template <int dim>
 Vec3 RigidTool<dim>::in_tool_frame(const Point& x_m) const {
-  return to_world_.transpose() * (in_space<dim>(x_m) - pose_.position_m);
+  return to_world_.transpose() * (scene::in_space<dim>(x_m) - pose_.position_m);
 }
 
 template <int dim>
 Vec3 RigidTool<dim>::turned_into_tool_frame(const Point& direction) const {
-  return to_world_.transpose() * in_space<dim>(direction);
+  return to_world_.transpose() * scene::in_space<dim>(direction);
 }
 
 template <int dim>

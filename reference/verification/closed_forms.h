@@ -9,9 +9,9 @@
 
 namespace touchstone::verification {
 
-/// E / (1 - nu^2): modulus of contact with a rigid tool [Pa].
+/// Modulus of contact with a rigid tool [Pa].
 inline double contact_modulus_pa(double youngs_modulus_pa, double poissons_ratio) {
-  return youngs_modulus_pa / (1.0 - poissons_ratio * poissons_ratio);
+  return scene::Material{youngs_modulus_pa, poissons_ratio}.contact_modulus_pa();
 }
 
 /// Force of a contact and the radius of its edge.

@@ -8,12 +8,12 @@
 #include "reference/verification/shifted_ball.h"
 #include "reference/verification/solids.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <numbers>
 #include <tuple>
@@ -29,12 +29,6 @@ using scene::Material;
 using Vec3 = Eigen::Vector3d;
 
 constexpr double E_pa = 3e6, R_m = 0.01;
-
-std::string text_of(double value, const char* format = "%.3g") {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 double E_star_pa(double nu) { return contact_modulus_pa(E_pa, nu); }
 
@@ -67,11 +61,25 @@ double domain_part(HalfSpaceProblem problem) {
   return indent_half_space(problem).force_n / whole_n - 1.0;
 }
 
+/// Checks a quantity on successive meshes.
+void check(Findings& findings, const std::string& what, const char* unit, double exact, double limit,
+           const std::vector<HalfSpaceAnswer>& answers, const auto& value_of) {
+  findings.checks.push_back(from_levels(what, unit, exact, limit, values_of(answers, value_of)));
+}
+
+/// Checks the force and the radius of the contact's edge.
+void check_indentation(Findings& findings, const std::string& at, const Indentation& exact, double limit_of_force,
+                       double limit_of_radius, const std::vector<HalfSpaceAnswer>& answers) {
+  check(findings, "force, " + at, "N", exact.force_n, limit_of_force, answers, force_of);
+  check(findings, "contact radius, " + at, "m", exact.contact_radius_m, limit_of_radius, answers, radius_of);
+}
+
 std::string domain_note(const HalfSpaceProblem& problem, const Effort& effort, const std::string& what) {
   effort.tell(what + ", half the domain");
-  return what + ": the half space is a cylinder of " + text_of(problem.domain_over_patch) +
-         " contact radii; its end adds " + text_of(100.0 * domain_part(problem)) +
-         " % to the force, the difference to one of half the size.";
+  return fmt::format(
+      "{}: the half space is a cylinder of {:.3g} contact radii; its end adds {:.3g} % to the force, the difference to "
+      "one of half the size.",
+      what, problem.domain_over_patch, 100.0 * domain_part(problem));
 }
 
 std::string mesh_note(int meshes) {
@@ -87,7 +95,7 @@ Findings contact_patch(const Effort& effort) {
   Findings findings;
   for (const double nu : {0.3, 0.5}) {
     if (effort.quick && nu == 0.3) continue;
-    effort.tell("rigid flat on a block, nu = " + text_of(nu));
+    effort.tell(fmt::format("rigid flat on a block, nu = {:.3g}", nu));
     const Material material{E_pa, nu};
     const Mesh<3> mesh = graded_cube(side_m);
     ContactProblem<3> body(mesh, material, Kinematics::finite, true, true);
@@ -103,7 +111,7 @@ Findings contact_patch(const Effort& effort) {
     const State<3> state = solve_in_steps<3>(body, 2, "contact patch test", [&](double share) {
       body.set_tool({distance, {Vec3(0.0, 0.0, side_m * (5.0 - share * squeeze)), Eigen::Quaterniond::Identity()}});
     });
-    const std::string at = ", nu = " + text_of(nu);
+    const std::string at = fmt::format(", nu = {:.3g}", nu);
     // The quarter stands for the whole: four times its area.
     findings.checks.push_back({"force over area" + at,
                                "Pa",
@@ -138,21 +146,19 @@ Findings hertz_small(const Effort& effort) {
   for (const double nu : {0.0, 0.3, 0.5}) {
     if (effort.quick && nu == 0.0) continue;
     const HalfSpaceProblem problem{{E_pa, nu}, ball_punch(R_m, d_over_R * R_m), d_over_R * R_m};
-    const std::string at = "nu = " + text_of(nu);
+    const std::string at = fmt::format("nu = {:.3g}", nu);
     const auto answers = on_meshes(problem, meshes, effort, at);
     const Indentation exact = hertz(E_star_pa(nu), R_m, problem.depth_m);
-    findings.checks.push_back(
-        from_levels("force, " + at, "N", exact.force_n, limit_of_closed_form, values_of(answers, force_of)));
-    findings.checks.push_back(from_levels("contact radius, " + at, "m", exact.contact_radius_m, limit_of_edge,
-                                          values_of(answers, radius_of)));
-    findings.checks.push_back(from_levels("peak pressure, " + at, "Pa", hertz_peak_pressure_pa(exact),
-                                          limit_of_closed_form, values_of(answers, peak_of)));
+    check_indentation(findings, at, exact, limit_of_closed_form, limit_of_edge, answers);
+    check(findings, "peak pressure, " + at, "Pa", hertz_peak_pressure_pa(exact), limit_of_closed_form, answers,
+          peak_of);
     findings.notes.push_back(domain_note(problem, effort, at));
   }
   const Indentation ball = sneddon(1.0, 1.0, d_over_R), paraboloid = hertz(1.0, 1.0, d_over_R);
-  findings.notes.push_back("The tool is a ball: by Sneddon's exact solution that is " +
-                           text_of(100.0 * (ball.force_n / paraboloid.force_n - 1.0)) +
-                           " % of the force of Hertz's paraboloid at d/R = " + text_of(d_over_R) + ".");
+  findings.notes.push_back(
+      fmt::format("The tool is a ball: by Sneddon's exact solution that is {:.3g} % of the force of Hertz's paraboloid "
+                  "at d/R = {:.3g}.",
+                  100.0 * (ball.force_n / paraboloid.force_n - 1.0), d_over_R));
   findings.notes.push_back(mesh_note(meshes));
   return findings;
 }
@@ -164,13 +170,10 @@ Findings sneddon_ball(const Effort& effort) {
     for (const double d_over_R : {0.05, 0.3, 0.6, 1.0}) {
       if (effort.quick && d_over_R != (nu == 0.3 ? 0.6 : 1.0)) continue;
       HalfSpaceProblem problem{{E_pa, nu}, ball_punch(R_m, d_over_R * R_m), d_over_R * R_m};
-      const std::string at = "d/R = " + text_of(d_over_R) + ", nu = " + text_of(nu);
+      const std::string at = fmt::format("d/R = {:.3g}, nu = {:.3g}", d_over_R, nu);
       const auto answers = on_meshes(problem, meshes, effort, at);
       const Indentation exact = sneddon(E_star_pa(nu), R_m, problem.depth_m);
-      findings.checks.push_back(
-          from_levels("force, " + at, "N", exact.force_n, limit_of_closed_form, values_of(answers, force_of)));
-      findings.checks.push_back(from_levels("contact radius, " + at, "m", exact.contact_radius_m, limit_of_edge,
-                                            values_of(answers, radius_of)));
+      check_indentation(findings, at, exact, limit_of_closed_form, limit_of_edge, answers);
     }
   }
   findings.notes.push_back(mesh_note(meshes));
@@ -185,20 +188,17 @@ Findings hertz_finite(const Effort& effort) {
     constexpr double a_over_R = 0.03;
     HalfSpaceProblem problem{
         {E_pa, nu}, ball_punch(R_m, a_over_R * a_over_R * R_m), a_over_R * a_over_R * R_m, Kinematics::finite};
-    const std::string at = "nu = " + text_of(nu);
+    const std::string at = fmt::format("nu = {:.3g}", nu);
     const auto answers = on_meshes(problem, meshes, effort, at);
     const Indentation exact = hertz(E_star_pa(nu), R_m, problem.depth_m);
-    findings.checks.push_back(
-        from_levels("force, " + at, "N", exact.force_n, limit_of_small_strain, values_of(answers, force_of)));
-    findings.checks.push_back(from_levels("contact radius, " + at, "m", exact.contact_radius_m, limit_of_edge,
-                                          values_of(answers, radius_of)));
+    check_indentation(findings, at, exact, limit_of_small_strain, limit_of_edge, answers);
     effort.tell(at + ", small strain");
     problem.kinematics = Kinematics::small;
     problem.level = meshes - 2;
     const double small_n = indent_half_space(problem).force_n;
-    findings.notes.push_back(at + ": finite strain is " +
-                             text_of(100.0 * (answers[problem.level].force_n / small_n - 1.0)) +
-                             " % of the small-strain force on the same mesh, at a/R = " + text_of(a_over_R) + ".");
+    findings.notes.push_back(
+        fmt::format("{}: finite strain is {:.3g} % of the small-strain force on the same mesh, at a/R = {:.3g}.", at,
+                    100.0 * (answers[problem.level].force_n / small_n - 1.0), a_over_R));
   }
   findings.notes.push_back(mesh_note(meshes));
   return findings;
@@ -210,15 +210,14 @@ Findings flat(const Effort& effort) {
   for (const double nu : {0.3, 0.5}) {
     HalfSpaceProblem problem{{E_pa, nu}, flat_punch(R_m), 0.01 * R_m};
     problem.radii_m = R_m * Eigen::Vector3d(1.5, 2.0, 5.0);
-    const std::string at = "nu = " + text_of(nu);
+    const std::string at = fmt::format("nu = {:.3g}", nu);
     const auto answers = on_meshes(problem, meshes, effort, at);
-    findings.checks.push_back(from_levels("force, " + at, "N", flat_punch_force_n(E_star_pa(nu), R_m, problem.depth_m),
-                                          limit_of_table, values_of(answers, force_of)));
+    check(findings, "force, " + at, "N", flat_punch_force_n(E_star_pa(nu), R_m, problem.depth_m), limit_of_table,
+          answers, force_of);
     for (int k = 0; k < problem.radii_m.size(); ++k) {
-      findings.checks.push_back(
-          from_levels("settlement at r/a = " + text_of(problem.radii_m[k] / R_m) + ", " + at, "m",
-                      flat_punch_settlement_m(R_m, problem.depth_m, problem.radii_m[k]), limit_of_table,
-                      values_of(answers, [k](const HalfSpaceAnswer& answer) { return answer.settlement_m[k]; })));
+      check(findings, fmt::format("settlement at r/a = {:.3g}, {}", problem.radii_m[k] / R_m, at), "m",
+            flat_punch_settlement_m(R_m, problem.depth_m, problem.radii_m[k]), limit_of_table, answers,
+            [k](const HalfSpaceAnswer& answer) { return answer.settlement_m[k]; });
     }
     findings.notes.push_back(domain_note(problem, effort, at));
   }
@@ -237,12 +236,9 @@ Findings rounded(const Effort& effort) {
       if (effort.quick && (nu == 0.3) != (a_over_R == 0.92)) continue;
       const RoundedPunch exact = rounded_punch(E_star_pa(nu), R_m - fillet_m, fillet_m, a_over_R * R_m);
       const HalfSpaceProblem problem{{E_pa, nu}, rounded_punch(R_m, fillet_m, exact.depth_m), exact.depth_m};
-      const std::string at = "a/R = " + text_of(a_over_R) + ", nu = " + text_of(nu);
+      const std::string at = fmt::format("a/R = {:.3g}, nu = {:.3g}", a_over_R, nu);
       const auto answers = on_meshes(problem, meshes, effort, at);
-      findings.checks.push_back(
-          from_levels("force, " + at, "N", exact.force_n, limit_of_closed_form, values_of(answers, force_of)));
-      findings.checks.push_back(
-          from_levels("contact radius, " + at, "m", a_over_R * R_m, limit_of_edge, values_of(answers, radius_of)));
+      check_indentation(findings, at, {exact.force_n, a_over_R * R_m}, limit_of_closed_form, limit_of_edge, answers);
     }
   }
   findings.notes.push_back(mesh_note(meshes) + " Finer in the fillet.");
@@ -256,25 +252,22 @@ Findings cones(const Effort& effort) {
   for (const double degrees : {60.0, 80.0}) {
     if (effort.quick && degrees == 80.0) continue;
     const double half_angle = degrees * std::numbers::pi / 180.0;
-    const std::string at = "half angle " + text_of(degrees) + " degrees";
+    const std::string at = fmt::format("half angle {:.3g} degrees", degrees);
     const HalfSpaceProblem problem{{E_pa, nu}, cone_punch(half_angle, 0.0, depth_m), depth_m};
     const auto answers = on_meshes(problem, meshes, effort, at);
     const Indentation exact = cone(E_star_pa(nu), half_angle, depth_m);
-    findings.checks.push_back(
-        from_levels("force, " + at, "N", exact.force_n, limit_of_table, values_of(answers, force_of)));
-    findings.checks.push_back(from_levels("contact radius, " + at, "m", exact.contact_radius_m, limit_of_table,
-                                          values_of(answers, radius_of)));
+    check_indentation(findings, at, exact, limit_of_table, limit_of_table, answers);
     // The same with a round tip, against its own closed form.
     const double tip_m = 0.2 * exact.contact_radius_m / std::cos(half_angle);
     double round_depth_m = 0.0;
     const Indentation round = rounded_cone(E_star_pa(nu), half_angle, tip_m, exact.contact_radius_m, round_depth_m);
     const HalfSpaceProblem blunt{{E_pa, nu}, cone_punch(half_angle, tip_m, round_depth_m), round_depth_m};
     const auto blunt_answers = on_meshes(blunt, meshes, effort, at + ", round tip");
-    findings.checks.push_back(from_levels("force, " + at + ", round tip", "N", round.force_n, limit_of_closed_form,
-                                          values_of(blunt_answers, force_of)));
-    findings.notes.push_back(at + ": rounding the tip over a fifth of the contact's radius changes the force at that " +
-                             "radius by " + text_of(100.0 * (round.force_n / exact.force_n - 1.0)) +
-                             " % and the depth by " + text_of(100.0 * (round_depth_m / depth_m - 1.0)) + " %.");
+    check(findings, "force, " + at + ", round tip", "N", round.force_n, limit_of_closed_form, blunt_answers, force_of);
+    findings.notes.push_back(
+        fmt::format("{}: rounding the tip over a fifth of the contact's radius changes the force at that radius by "
+                    "{:.3g} % and the depth by {:.3g} %.",
+                    at, 100.0 * (round.force_n / exact.force_n - 1.0), 100.0 * (round_depth_m / depth_m - 1.0)));
   }
   findings.notes.push_back(mesh_note(meshes));
   return findings;
@@ -318,7 +311,7 @@ PressedBall press_half_ball(double radius_m, const Material& material, double de
 Findings pressed_ball(const Effort& effort) {
   constexpr double radius_m = 0.05, depth_m = 0.002;
   const Material material{20e9, 0.3};
-  const double E_star = contact_modulus_pa(material.youngs_modulus_pa, material.poissons_ratio);
+  const double E_star = material.contact_modulus_pa();
   const int meshes = effort.quick ? 3 : 4;
   // At the printed depth a/R is 0.2, at the others half and a quarter of it. Hertz is the limit of small load: that of
   // the parabola in a/R through the three.
@@ -329,17 +322,17 @@ Findings pressed_ball(const Effort& effort) {
     const Indentation exact = hertz(E_star, radius_m, d_m);
     PressedBall finest;
     for (int mesh = 0; mesh < meshes; ++mesh) {
-      effort.tell("depth " + text_of(1e3 * d_m) + " mm, mesh " + std::to_string(mesh + 1));
+      effort.tell(fmt::format("depth {:.3g} mm, mesh {}", 1e3 * d_m, mesh + 1));
       finest = press_half_ball(radius_m, material, d_m, Kinematics::finite, mesh);
       peak[k].push_back(finest.peak_pa / hertz_peak_pressure_pa(exact));
       radius[k].push_back(finest.contact_radius_m / exact.contact_radius_m);
     }
     const Indentation of_force = hertz(E_star, radius_m, d_m * std::pow(finest.force_n / exact.force_n, 2.0 / 3.0));
-    findings.notes.push_back("a/R = " + text_of(exact.contact_radius_m / radius_m) + ": peak pressure " +
-                             text_of(1e-6 * finest.peak_pa, "%.5g") + " MPa, " +
-                             text_of(100.0 * (peak[k].back() - 1.0)) + " % over Hertz at this depth; " +
-                             text_of(100.0 * (finest.peak_pa / hertz_peak_pressure_pa(of_force) - 1.0)) +
-                             " % over Hertz at this force, which leaves the half ball's give out.");
+    findings.notes.push_back(
+        fmt::format("a/R = {:.3g}: peak pressure {:.5g} MPa, {:.3g} % over Hertz at this depth; {:.3g} % over Hertz at "
+                    "this force, which leaves the half ball's give out.",
+                    exact.contact_radius_m / radius_m, 1e-6 * finest.peak_pa, 100.0 * (peak[k].back() - 1.0),
+                    100.0 * (finest.peak_pa / hertz_peak_pressure_pa(of_force) - 1.0)));
   }
   for (const auto& [what, shares, limit] :
        {std::tuple("peak pressure over Hertz, to small load", &peak, limit_of_table),
@@ -387,7 +380,7 @@ Findings cattaneo(const Effort& effort) {
   }
   for (std::size_t k = 0; k < shifts_m.size(); ++k) {
     findings.checks.push_back(
-        from_levels("Q / (mu P) at " + text_of(shifts_m[k] / slides_m) + " of the gross-slip shift", "",
+        from_levels(fmt::format("Q / (mu P) at {:.3g} of the gross-slip shift", shifts_m[k] / slides_m), "",
                     reference::mindlin_force(problem, shifts_m[k]), limit_of_table, shares[k]));
   }
   findings.notes.emplace_back(
@@ -456,7 +449,7 @@ Findings scene_problem(const Effort& effort) {
   Findings findings;
   for (std::size_t i = 1; i < result.instants.size(); ++i) {
     const double depth_m = result.instants[i].depth_m, force_n = result.instants[i].force_n().norm();
-    Check check{"force at " + text_of(depth_m / deepest_m) + " of the depth",
+    Check check{fmt::format("force at {:.3g} of the depth", depth_m / deepest_m),
                 "N",
                 hertz(E_star_pa(nu), R_m, depth_m).force_n,
                 force_n,

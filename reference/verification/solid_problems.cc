@@ -4,9 +4,10 @@
 #include "reference/verification/problem.h"
 #include "reference/verification/solids.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace touchstone::verification {
 namespace {
@@ -16,13 +17,6 @@ using reference::Mesh;
 using reference::State;
 using scene::Kinematics;
 using Vec3 = Eigen::Vector3d;
-
-/// A number as it stands in a table or a sentence.
-std::string text_of(double value, const char* format = "%.3g") {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 Findings patch(const Effort& effort) {
   effort.tell("uniform strain on distorted cells");
@@ -43,9 +37,9 @@ Findings uniaxial(const Effort& effort) {
   Findings findings;
   for (const double nu : {0.3, 0.5}) {
     for (const double stretch : {0.7, 0.85, 1.5}) {
-      effort.tell("stretch " + text_of(stretch) + ", nu = " + text_of(nu));
+      effort.tell(fmt::format("stretch {:.3g}, nu = {:.3g}", stretch, nu));
       const scene::Material rubber{3e6, nu};
-      findings.checks.push_back({"stress at stretch " + text_of(stretch) + ", nu = " + text_of(nu),
+      findings.checks.push_back({fmt::format("stress at stretch {:.3g}, nu = {:.3g}", stretch, nu),
                                  "Pa",
                                  neo_hookean_bar_pa(rubber, stretch),
                                  pull_bar(rubber, stretch).nominal_stress_pa,
@@ -94,14 +88,14 @@ Findings thick_sphere(const Effort& effort) {
     std::vector<double> pressures, errors;
     double exact = 0.0;
     for (const int n : {4, 8, 16}) {
-      effort.tell("inner stretch " + text_of(stretch) + ", " + std::to_string(n) + " cells through the wall");
+      effort.tell(fmt::format("inner stretch {:.3g}, {} cells through the wall", stretch, n));
       const InflatedSphere sphere = inflate_sphere(stretch, n);
       pressures.push_back(sphere.inner_pressure_pa / sphere.shear_modulus_pa);
       errors.push_back(sphere.displacement_error_l2);
       exact = sphere.exact_pressure_pa / sphere.shear_modulus_pa;
     }
-    findings.checks.push_back(
-        from_levels("pressure / mu at stretch " + text_of(stretch), "", exact, limit_of_closed_form, pressures));
+    findings.checks.push_back(from_levels(fmt::format("pressure / mu at stretch {:.3g}", stretch), "", exact,
+                                          limit_of_closed_form, pressures));
     if (stretch > 1.25) continue;
     Check order{"order of the displacement's error",
                 "",
@@ -237,9 +231,9 @@ Findings cantilever(const Effort& effort) {
   Findings findings;
   for (const double ratio : {1.0, 1.0 / 89.0, 89.0}) {
     if (effort.quick && ratio != 89.0) continue;
-    const std::string at = "E ratio " + text_of(ratio);
+    const std::string at = fmt::format("E ratio {:.3g}", ratio);
     const auto tip = [&](double slenderness, int cells_high) {
-      effort.tell(at + ", " + text_of(slenderness) + " heights long, " + std::to_string(cells_high) + " cells high");
+      effort.tell(fmt::format("{}, {:.3g} heights long, {} cells high", at, slenderness, cells_high));
       const int cells_along = static_cast<int>(0.3 * slenderness) * cells_high;
       return cantilever_over_beam(slenderness * height_m, height_m, ratio, cells_along, cells_high);
     };
@@ -247,10 +241,11 @@ Findings cantilever(const Effort& effort) {
     for (const int cells_high : {1, 2, 4}) tips.push_back(tip(slender, cells_high));
     findings.checks.push_back(from_levels("tip over the beam formula, " + at, "", 1.0, limit_of_closed_form, tips));
     const double shorter = tip(0.5 * slender, 4);
-    findings.notes.push_back(at + ": off by " + text_of(100.0 * (tips.back() - 1.0)) + " % with a length of " +
-                             text_of(slender) + " heights and by " + text_of(100.0 * (shorter - 1.0)) + " % with " +
-                             text_of(0.5 * slender) + " on like cells: ends and joints, where a solid is no beam. " +
-                             "Without them, " + text_of(100.0 * (2.0 * tips.back() - shorter - 1.0)) + " %.");
+    findings.notes.push_back(
+        fmt::format("{}: off by {:.3g} % with a length of {:.3g} heights and by {:.3g} % with {:.3g} on like cells: "
+                    "ends and joints, where a solid is no beam. Without them, {:.3g} %.",
+                    at, 100.0 * (tips.back() - 1.0), slender, 100.0 * (shorter - 1.0), 0.5 * slender,
+                    100.0 * (2.0 * tips.back() - shorter - 1.0)));
   }
   return findings;
 }

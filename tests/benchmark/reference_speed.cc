@@ -2,8 +2,8 @@
 // LEVEL counts from 1; of the track's instants the first INSTANTS in which the tool is in the body at rest are solved.
 #include "reference/contact/contact_problem.h"
 #include "reference/contact/load_path.h"
-#include "reference/linear/stopwatch.h"
 #include "reference/run/model_choice.h"
+#include "scene/base/stopwatch.h"
 #include "scene/input/scene_io.h"
 
 #include <cstdio>
@@ -27,7 +27,7 @@ void measure(const scene::Scene& scene, const ModelChoice& choice, int level, in
     return scene::rest_depth_m(*body, scene.tool, scene::pose_at(scene.track, time_s));
   };
   {
-    const Stopwatch watch(all_s);
+    const scene::CpuTimeAdder watch(all_s);
     LoadPath<dim> path(problem, [&](double time_s) -> std::optional<RigidTool<dim>> {
       if (depth_m(time_s) <= 0.0) return std::nullopt;
       return RigidTool<dim>(choice.tool, scene::pose_at(scene.track, time_s));

@@ -10,7 +10,7 @@ using scene::Formulation;
 using scene::Vec3;
 
 scene::Scene with_area_law(scene::Scene scene, double k1_per_radius_n_per_m2 = 8e6) {
-  scene.contact = {};
+  scene.contact = {.r_th_m = scene.contact.r_th_m};
   scene.contact.law = scene::ContactLaw::area_aware;
   scene.contact.k1_per_radius_n_per_m2 = k1_per_radius_n_per_m2;
   scene.fast.s_c_m2 = scene::stiff_beam_area_m2(scene.body);
@@ -46,7 +46,7 @@ TEST(AreaLawExtremes, LengthsOverThreeDecades) {
       scene::Scene scene = extremes::cube(formulation);
       scene.body.size_m *= factor;
       scene.tool.radius_m *= factor;
-      for (double* length_m : {&scene.fast.r_th_m, &scene.fast.r_R_m, &scene.fast.C_r_m}) *length_m *= factor;
+      for (double* length_m : {&scene.contact.r_th_m, &scene.fast.r_R_m, &scene.fast.C_r_m}) *length_m *= factor;
       scene::Pose pose = test::pressed(0.00307);
       pose.position_m *= factor;
       EXPECT_NEAR(force_n(with_area_law(scene), pose) / usual_n, factor * factor, 1e-9 * factor * factor) << factor;

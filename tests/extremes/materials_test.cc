@@ -247,7 +247,8 @@ TEST(MaterialExtremes, AreaAwareLawWithVanishingArea) {
     double before_n = 1e300;
     for (const double side_m : {1e-2, 1e-4, 1e-6, 1e-8}) {
       scene::Scene scene = extremes::punch_on_cube(formulation, side_m);
-      scene.contact = contact;
+      scene.contact.law = contact.law;
+      scene.contact.k1_per_radius_n_per_m2 = contact.k1_per_radius_n_per_m2;
       scene.contact.k3_n_per_m3 = 0.0;
       Rig rig(scene);
       rig.may = StepStatus::anchors_limited;

@@ -103,7 +103,7 @@ scene::Scene hollow_on_cube(Formulation formulation, double hollow_m) {
   extremes::add_box(Vec3(-0.006, -0.004, hollow_m), Vec3(0.006, 0.004, 0.02), mesh);
   extremes::use_mesh(std::move(mesh), scene);
   scene.fast.max_regions = 10;
-  scene.fast.r_th_m = 0.002;
+  scene.contact.r_th_m = 0.002;
   scene.fast.tool_samples = 8000;  // closer than half of r_th
   scene.fast.s_c_m2 = 0.03;
   return scene;
@@ -221,7 +221,7 @@ TEST(RegionExtremes, ExactlyTheThresholdApart) {
               Vec3(tool.x_T_m[i] - tool.x_T_m[k], tool.y_T_m[i] - tool.y_T_m[k], tool.z_T_m[i] - tool.z_T_m[k]).norm());
         }
       }
-      scene.fast.r_th_m = gap_m * (1.0 + off);
+      scene.contact.r_th_m = gap_m * (1.0 + off);
       Rig rig(scene);
       rig.may = StepStatus::anchors_limited;
       for (int i = -2; i <= 20; ++i) rig.to(extremes::sunk(0.0001 * i));

@@ -139,7 +139,7 @@ scene::Scene scaled(scene::Scene scene, double s) {
   scene.tool.radius_m *= s;
   scene.contact.k1_n_per_m *= s;
   scene.contact.k3_n_per_m3 /= s;
-  scene.fast.r_th_m *= s;
+  scene.contact.r_th_m *= s;
   scene.fast.r_R_m *= s;
   scene.fast.C_r_m *= s;
   scene.fast.s_c_m2 *= s * s;

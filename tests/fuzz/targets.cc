@@ -9,6 +9,7 @@
 #include "compare/report/result_folder.h"
 #include "fast/live/live_log.h"
 #include "reference/run/step_record.h"
+#include "reference/run/store.h"
 #include "scene/base/error.h"
 #include "scene/base/files.h"
 #include "scene/base/hash.h"
@@ -153,7 +154,7 @@ void store_record(const std::string& bytes) {
   reference::Mesh<2> mesh;
   mesh.points_m.setZero(2, reference::Mesh<2>::nodes_per_cell);
   mesh.cells.resize(1);
-  (void)reference::from_record<2>(reference::Record(bytes), mesh);
+  (void)reference::from_record<2>(bytes, mesh);
 }
 
 /// The same bytes as a file of the store, whose checksum is wrong.

@@ -31,7 +31,7 @@ TEST_P(DetectionWithoutHeap, FindsSplitsFollowsAndTakesBack) {
   scene.tool.shape = scene::ToolShape::box;  // laid across the top it meets it in up to two places
   scene.tool.size_m = Vec3(0.08, 0.01, 0.01);
   const auto body = scene::body_shape(scene.body);
-  const Detection detection = detection_for(GetParam());
+  const Detection detection = detection_for(*body);
   const ToolSamples tool = cell_tool(scene.tool, 2000);
   const ClusterGrid grid = cluster_grid(tool, 0.002);
   ClusterScratch scratch(grid, tool.count());

@@ -172,14 +172,14 @@ scene::Contact random_contact(double modulus_pa, double size_m, Random& random) 
   return contact;
 }
 
-scene::FastSettings random_settings(Formulation formulation, double size_m, Random& random) {
-  scene::FastSettings fast;
+void set_random_settings(scene::Scene& scene, Formulation formulation, double size_m, Random& random) {
+  scene::FastSettings& fast = scene.fast;
   fast.formulation = formulation;
   fast.triangles = static_cast<int>(random.decades(12.0, 2000.0));
   fast.tool_samples = static_cast<int>(random.decades(1.0, 2000.0));
   fast.rate_hz = 1000.0;
   fast.max_regions = 1 + random.below(12);
-  fast.r_th_m = std::min(0.9, size_m * random.decades(1e-2, 1.0));
+  scene.contact.r_th_m = std::min(0.9, size_m * random.decades(1e-2, 1.0));
   fast.r_R_m = size_m * random.decades(1e-2, 2.0);
   fast.C_r_m = size_m * random.decades(1e-3, 1.0);
   // In the corrected form up to where the local factor would turn negative (errata E16).
@@ -188,7 +188,6 @@ scene::FastSettings random_settings(Formulation formulation, double size_m, Rand
     fast.C_n = std::min(
         999.0, formulation == Formulation::corrected ? random.uniform(0.0, 0.999) * most : random.decades(1e-2, 10.0));
   fast.s_c_m2 = size_m * size_m * random.decades(1e-4, 1e3);
-  return fast;
 }
 
 scene::LiveSettings random_hand(Random& random) {
@@ -226,7 +225,7 @@ scene::Scene random_scene(int index, const ToolMeshes& meshes, Random& random) {
     const double ratio = random.chance(0.5) ? random.decades(0.05, 2.0) : random.decades(1e-3, 1e3);
     scene.tool = random_tool(static_cast<ToolShape>(index / 4 % 5), ratio * size_m, meshes, random);
     scene.contact = random_contact(scene.body.material.youngs_modulus_pa, size_m, random);
-    scene.fast = random_settings(static_cast<Formulation>(index / 20 % 2), size_m, random);
+    set_random_settings(scene, static_cast<Formulation>(index / 20 % 2), size_m, random);
     scene.live = random_hand(random);
     scene.compare.instants = 2;
     const scene::Pose far{Vec3(0.0, 0.0, 100.0), Eigen::Quaterniond::Identity()};

@@ -299,22 +299,19 @@ int soak_all(const Options& options) {
 
 int main(int argc, char** argv) {
   return fast::guarded([&] {
-    CLI::App app("Many ticks of the fast model in virtual time, random device over random scenes; exit 1 at a fault.");
+    fast::Program program(
+        "Many ticks of the fast model in virtual time, random device over random scenes; exit 1 at a fault.",
+        "soak_run");
     Options options;
-    app.add_option("--ticks", options.ticks, "of the whole run, such as 1e8")
-        ->capture_default_str()
-        ->check(CLI::Range(1e3, 1e11));
-    app.add_option("--seed", options.seed, "equal seeds give equal runs")->capture_default_str();
-    app.add_option("--scene", options.only_scene, "this one alone, to look at a fault")->check(CLI::Range(0, 1 << 30));
-    app.add_option("--scene-ticks", options.scene_ticks,
-                   "of each scene; a thousandth of all, 2500 to 100000, if not given")
-        ->check(CLI::Range(1000, 1 << 30));
-    app.add_flag("--quiet", options.quiet, "no progress");
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? static_cast<int>(fast::done) : static_cast<int>(fast::bad_input);
-    }
-    return soak_all(options);
+    program.option("--ticks", options.ticks, "of the whole run, such as 1e8").shows_default().range(1e3, 1e11);
+    program.option("--seed", options.seed, "equal seeds give equal runs").shows_default();
+    program.option("--scene", options.only_scene, "this one alone, to look at a fault").range(0, 1 << 30);
+    program
+        .option("--scene-ticks", options.scene_ticks,
+                "of each scene; a thousandth of all, 2500 to 100000, if not given")
+        .range(1000, 1 << 30);
+    program.flag("--quiet", options.quiet, "no progress");
+    program.action([&options] { return soak_all(options); });
+    return program.run(argc, argv);
   });
 }

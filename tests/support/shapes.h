@@ -1,8 +1,7 @@
 // One of every kind of shape, for tests of what all of them promise.
 #pragma once
 
-#include "scene/shape/revolution.h"
-#include "scene/shape/shape.h"
+#include "scene/shape/solids.h"
 
 #include <memory>
 #include <string>

@@ -27,7 +27,7 @@ scene::Scene ball_on_cube(int instants, int triangles) {
   scene.fast.triangles = triangles;
   scene.fast.tool_samples = 500;
   scene.fast.rate_hz = 1000.0;
-  scene.fast.r_th_m = 0.004;
+  scene.contact.r_th_m = 0.004;
   scene.fast.r_R_m = 0.015;
   scene.fast.C_n = 0.2;
   scene.fast.C_r_m = 0.002;

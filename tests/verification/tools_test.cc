@@ -164,7 +164,7 @@ TEST(Tools, TwoPinsFarApart) {
                  {2.0, pose_at_angle(0.25 * angle)},
                  {3.0, pose_at_angle(0.0)},
                  {4.0, pose_at_angle(-angle)}};
-  scene.fast.r_th_m = 0.004;
+  scene.contact.r_th_m = 0.004;
   scene.compare.instants = 5;
   scene.reference.levels = 1;
   scene.reference.element_size_m = 0.0012;

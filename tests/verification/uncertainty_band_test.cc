@@ -39,7 +39,7 @@ class UncertaintyBand : public testing::Test {
     ModelChoice choice = choose_model(scene_);
     EXPECT_EQ(choice.dim, 2);
     choice.dim = dim;
-    return run(scene_, choice, points_m_, {root_ / store, {}, nullptr}, std::chrono::steady_clock::now());
+    return run(scene_, choice, points_m_, {root_ / store, {}, nullptr}, scene::Stopwatch());
   }
 
   /// The scene in the meridian plane, on a mesh that is finer everywhere.

@@ -2,6 +2,8 @@
 
 #include "scene/base/text.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace touchstone::scene {
@@ -11,9 +13,7 @@ bool Range::contains(double value) const noexcept {
 }
 
 std::string Range::text() const {
-  char out[80];
-  std::snprintf(out, sizeof out, "%c%g, %g%c", low_open ? '(' : '[', low, high, high_open ? ')' : ']');
-  return out;
+  return fmt::format("{}{:g}, {:g}{}", low_open ? '(' : '[', low, high, high_open ? ')' : ']');
 }
 
 std::optional<Eigen::Quaterniond> orientation_of(const Eigen::Quaterniond& q) {

@@ -1,21 +1,15 @@
 #include "scene/base/text.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <cstdio>
 #include <cstdlib>
 
 namespace touchstone::scene {
 namespace {
 
 unsigned byte(std::string_view text, std::size_t at) { return static_cast<unsigned char>(text[at]); }
-
-std::string hexadecimal(const char* format, unsigned value) {
-  char text[8];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 /// A control character, whose number is that of its last byte, as TOML and JSON write it.
 std::string escaped(unsigned control) {
@@ -27,7 +21,7 @@ std::string escaped(unsigned control) {
     case '\r':
       return "\\r";
     default:
-      return hexadecimal("\\u%04x", control);
+      return fmt::format("\\u{:04x}", control);
   }
 }
 
@@ -68,7 +62,7 @@ std::string visible(std::string_view text) {
   while (!text.empty()) {
     const std::size_t length = utf8_length(text);
     if (length == 0) {
-      out += hexadecimal("\\x%02x", byte(text, 0));
+      out += fmt::format("\\x{:02x}", byte(text, 0));
     } else if (is_control(text, length)) {
       out += escaped(byte(text, length - 1));
     } else {
@@ -105,11 +99,7 @@ std::string toml_quoted(std::string_view text) {
   return out + "\"";
 }
 
-double rounded(double value, int digits) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
-  return std::strtod(text.data(), nullptr);
-}
+double rounded(double value, int digits) { return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr); }
 
 std::string_view without_mark(std::string_view text) noexcept {
   return text.substr(text.starts_with("\xef\xbb\xbf") ? 3 : 0);

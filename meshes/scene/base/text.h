@@ -1,10 +1,13 @@
 // Text from outside: what is UTF-8, and how it is shown in a message or written in a file without escaping from it.
-// Numbers as they are written.
+// Numbers as they are written and read.
 #pragma once
 
+#include <charconv>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace touchstone::scene {
 
@@ -17,8 +20,8 @@ namespace touchstone::scene {
 /// A text that a title or a file name may be: UTF-8 without control characters but tab and line feed.
 [[nodiscard]] bool is_plain_text(std::string_view text) noexcept;
 
-/// The text with control characters and bytes that are no UTF-8 made visible, as \n, \u001b or \xff: no terminal acts
-/// on it and no line breaks.
+/// The text with control characters and bytes that are no UTF-8 made visible, as `\n`, `\u001b` or `\xff`: no terminal
+/// acts on it and no line breaks.
 [[nodiscard]] std::string visible(std::string_view text);
 
 /// Faults that one message shows at most.
@@ -36,6 +39,14 @@ inline constexpr std::size_t faults_shown_max = 40;
 
 /// Shortest text that reads back as the same double and is a TOML float.
 [[nodiscard]] std::string number_text(double value);
+
+/// The number that the whole text is, in the C locale and without blanks; nothing where it is none or out of range.
+template <class Number>
+[[nodiscard]] std::optional<Number> parsed(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
 
 /// The number that is written with so many significant digits.
 [[nodiscard]] double rounded(double value, int digits);

@@ -15,8 +15,35 @@
 
 namespace touchstone::scene {
 
-/// Who reads a key. What `shared` holds changes both sides' answers.
-enum class Side { shared, fast, reference, compare };
+/// Whose answer a key's value changes. The reference's is that on one of its meshes, which is what its store keeps.
+enum class Side {
+  both,
+  fast,
+  reference,
+  refinement,  ///< how many meshes the reference solves; the answer on each of them stays
+  live,        ///< the device loop and its virtual hand alone
+  none         ///< words for the reader
+};
+[[nodiscard]] constexpr bool fast_reads(Side side) { return side == Side::both || side == Side::fast; }
+[[nodiscard]] constexpr bool reference_reads(Side side) { return side == Side::both || side == Side::reference; }
+
+/// Where the tuning takes a key from: which model it is follows from the study; then the force is fitted, then the
+/// shape with the force that was found.
+enum class TuningStage { model, force, shape };
+
+/// Another name under which a constant is tuned: the constant is factor times tool.mass_kg times the value.
+struct PerMass {
+  std::string_view key, unit;
+  double factor;
+};
+
+/// What the tuning needs to know of a key that it may change; its limits are the key's range.
+struct Tunable {
+  TuningStage stage;
+  bool rough = false;                           ///< the fit may have corners or steps in it
+  std::optional<Formulation> formulation = {};  ///< the only one in which it has a meaning; absent: both
+  std::optional<PerMass> per_mass = {};
+};
 
 /// A place whose height may be left open, as [x, y].
 struct OpenPosition {
@@ -70,7 +97,8 @@ struct Field {
   Side side;
   Access<T> access;
   std::optional<Condition<T>> only_when;
-  std::string_view doc;  ///< one line
+  std::string_view doc;                 ///< one line
+  std::optional<Tunable> tunable = {};  ///< absent: the tuning and its files of parameters leave it alone
   /// A default that follows from the scene's other values, and in words; the key then has no other default.
   double (*default_of)(const T&) = nullptr;
   std::string_view default_words = {};
@@ -78,6 +106,12 @@ struct Field {
 
 /// Every key of a scene file but the track's.
 [[nodiscard]] const std::vector<Field<Scene>>& scene_fields();
+
+/// The constant or choice of model that a tuning has under this name, its key or that per mass; null where none has it.
+[[nodiscard]] const Field<Scene>* tunable_field(std::string_view name);
+
+/// The former name's message, "x is y now, ..."; empty for any other. Former names are refused, not read.
+[[nodiscard]] std::string former_name_message(std::string_view key);
 
 /// The keys of one [[track]] row.
 [[nodiscard]] const std::vector<Field<TrackRow>>& track_fields();
@@ -101,6 +135,15 @@ template <class T>
          std::holds_alternative<std::optional<int>& (*)(T&)>(field.access) ||
          std::holds_alternative<std::optional<Vec3>& (*)(T&)>(field.access);
 }
+
+/// Must every scene in which the key applies say it?
+template <class T>
+[[nodiscard]] bool must_be_given(const Field<T>& field) {
+  return !field.default_value && !field.default_of && !optional(field);
+}
+
+/// Does the key apply only in a table that a scene may leave out?
+[[nodiscard]] bool in_optional_table(const Field<Scene>& field);
 
 /// The value as TOML; empty for an optional value that is absent.
 template <class T>

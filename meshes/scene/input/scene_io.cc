@@ -146,6 +146,7 @@ class Reader {
 
   [[nodiscard]] std::string unknown_key_message(const std::string& path, const std::vector<std::string>& known,
                                                 const std::string& row) const {
+    if (std::string former = row.empty() ? former_name_message(path) : ""; !former.empty()) return former;
     if (faults_.size() >= faults_shown_max) return unknown_key(row + path, path, known, faults_.size());
     // Sections are keys too: [boddy] should lead to [body], not to a long key below it.
     std::set<std::string> names(known.begin(), known.end());
@@ -185,7 +186,7 @@ class Reader {
     if (node != nullptr) {
       places_[key] = at(node->source(), "");
       read_value(field, *node, key, object);
-    } else if (!read_default(field, object) && !optional(field) && !field.default_of) {
+    } else if (!read_default(field, object) && must_be_given(field)) {
       if (row.empty()) {
         add_fault(key, "missing; expected " + expected_text(field));
       } else {
@@ -632,7 +633,7 @@ std::string explained_toml(const Scene& scene) {
 std::string scene_hash(const Scene& scene) {
   // A mesh counts by what it holds, not by the name of its file.
   std::string text =
-      toml_text(scene, [](const auto& field) { return field.key != "title" && field.key != "tool.file"; });
+      toml_text(scene, [](const auto& field) { return field.side != Side::none && field.key != "tool.file"; });
   if (scene.tool.mesh) text += mesh_text(*scene.tool.mesh);
   return hash_text(text);
 }

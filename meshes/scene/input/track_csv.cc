@@ -1,11 +1,11 @@
 #include "scene/input/track_csv.h"
 
+#include "scene/base/csv.h"
 #include "scene/base/text.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
+#include <optional>
 #include <string_view>
 
 namespace touchstone::scene {
@@ -25,23 +25,9 @@ const Field<TrackRow>& field_of(std::size_t column) {
                                                    : "orientation_wxyz");
 }
 
-struct Cell {
-  std::string_view text;
-  int column;  ///< 1-based, in characters
-};
-
-std::vector<Cell> split(std::string_view line) {
-  std::vector<Cell> cells;
-  std::size_t begin = 0;
-  while (true) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    std::size_t first = begin, last = end;
-    while (first < last && (line[first] == ' ' || line[first] == '\t')) ++first;
-    while (last > first && (line[last - 1] == ' ' || line[last - 1] == '\t')) --last;
-    cells.push_back({line.substr(first, last - first), static_cast<int>(first) + 1});
-    if (end == line.size()) return cells;
-    begin = end + 1;
-  }
+std::string_view without_blanks(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+  return text.substr(0, text.find_last_not_of(" \t") + 1);
 }
 
 }  // namespace
@@ -52,21 +38,19 @@ std::vector<TrackRow> read_track_csv(std::string_view text, const std::string& n
   std::array<Range, column_names.size()> ranges;
   for (std::size_t i = 0; i < ranges.size(); ++i) ranges[i] = field_of(i).range;
   std::vector<std::size_t> meaning;  // of each column: index into column_names
-  text = without_mark(text);
-  for (int number = 1; !text.empty(); ++number) {
-    std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(line.size() + 1, text.size()));
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    if (line.empty() || line.front() == '#') continue;
-    const std::vector<Cell> cells = split(line);
+  for (CsvRows rows(text); rows.next();) {
+    if (rows.text().empty() || rows.text().starts_with('#')) continue;
+    const int number = rows.line();
+    std::vector<std::string_view> cells = rows.cells();
+    for (std::string_view& cell : cells) cell = without_blanks(cell);
     if (meaning.empty()) {
-      for (const Cell& cell : cells) {
-        const auto found = std::find(column_names.begin(), column_names.end(), cell.text);
+      for (const std::string_view cell : cells) {
+        const auto found = std::find(column_names.begin(), column_names.end(), cell);
         const auto index = static_cast<std::size_t>(found - column_names.begin());
         if (found == column_names.end() || std::find(meaning.begin(), meaning.end(), index) != meaning.end()) {
-          faults.push_back({name, number, cell.column,
-                            "unknown or repeated column " + name_or_nothing(cell.text) + "; expected " +
-                                std::string(expected_header)});
+          faults.push_back(
+              {name, number, rows.column(cell),
+               "unknown or repeated column " + name_or_nothing(cell) + "; expected " + std::string(expected_header)});
           return track;
         }
         meaning.push_back(index);
@@ -91,12 +75,12 @@ std::vector<TrackRow> read_track_csv(std::string_view text, const std::string& n
     std::array<double, 9> value = {0, 0, 0, 0, 1, 0, 0, 0, 0};
     bool good = true;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const std::string_view cell = cells[i].text;
-      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value[meaning[i]]);
-      if (error != std::errc() || end != cell.data() + cell.size() || !ranges[meaning[i]].contains(value[meaning[i]])) {
+      const std::optional<double> one = parsed<double>(cells[i]);
+      value[meaning[i]] = one.value_or(0.0);
+      if (!one || !ranges[meaning[i]].contains(*one)) {
         const std::string_view unit = field_of(meaning[i]).unit;
-        faults.push_back({name, number, cells[i].column,
-                          "\"" + shortened(cell, 40) + "\" for " + std::string(column_names[meaning[i]]) +
+        faults.push_back({name, number, rows.column(cells[i]),
+                          "\"" + shortened(cells[i], 40) + "\" for " + std::string(column_names[meaning[i]]) +
                               "; expected a number in " + ranges[meaning[i]].text() +
                               (unit.empty() ? "" : " " + std::string(unit))});
         good = false;

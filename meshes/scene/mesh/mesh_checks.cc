@@ -1,8 +1,9 @@
 #include "scene/mesh/mesh_checks.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <numbers>
 #include <unordered_map>
@@ -101,11 +102,7 @@ double winding(const RawMesh& mesh, const MeshPiece& piece, const Vec3& from) {
 
 }  // namespace
 
-std::string place_text(const Vec3& p) {
-  char text[96];
-  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", p.x(), p.y(), p.z());
-  return text;
-}
+std::string place_text(const Vec3& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z()); }
 
 RawMesh welded(const RawMesh& mesh) {
   RawMesh out;

@@ -3,11 +3,11 @@
 #include "scene/base/error.h"
 #include "scene/mesh/triangle_mesh.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 
@@ -48,14 +48,11 @@ RawMesh read_stl_text(const std::string& bytes, const std::string& name) {
 /// One corner of an OBJ face: i, i/j, i//k or i/j/k, counted from 1, or back from the last point with a minus.
 std::int32_t obj_index(const TextLines& lines, std::string_view word, std::size_t points) {
   const std::string_view digits = word.substr(0, word.find('/'));
-  long index = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
-  if (error != std::errc() || end != digits.data() + digits.size()) {
-    lines.fail("'" + shortened(word, 40) + "' is not a vertex index");
-  }
-  const long place = index < 0 ? static_cast<long>(points) + index : index - 1;
-  if (index == 0 || place < 0 || place >= static_cast<long>(points)) {
-    lines.fail("vertex index " + std::to_string(index) + " is out of range; there are " + std::to_string(points) +
+  const std::optional<long> index = parsed<long>(digits);
+  if (!index) lines.fail("'" + shortened(word, 40) + "' is not a vertex index");
+  const long place = *index < 0 ? static_cast<long>(points) + *index : *index - 1;
+  if (*index == 0 || place < 0 || place >= static_cast<long>(points)) {
+    lines.fail("vertex index " + std::to_string(*index) + " is out of range; there are " + std::to_string(points) +
                " vertices so far");
   }
   return static_cast<std::int32_t>(place);
@@ -86,13 +83,10 @@ double TextLines::number(std::size_t word) const {
   if (word >= words_.size()) fail("the line is too short, expected a number");
   std::string_view digits = words_[word];
   if (digits.starts_with('+')) digits.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size()) {
-    fail("'" + shortened(words_[word], 40) + "' is not a number");
-  }
-  if (!std::isfinite(value)) fail("a coordinate is not finite: '" + shortened(words_[word], 40) + "'");
-  return value;
+  const std::optional<double> value = parsed<double>(digits);
+  if (!value) fail("'" + shortened(words_[word], 40) + "' is not a number");
+  if (!std::isfinite(*value)) fail("a coordinate is not finite: '" + shortened(words_[word], 40) + "'");
+  return *value;
 }
 
 Vec3 TextLines::point(std::size_t first_word) const {
@@ -210,9 +204,7 @@ void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, doub
   for (Eigen::Index i = 0; i < mesh.points_m.cols(); ++i) {
     // Adding zero turns -0 into 0.
     const Vec3 p = (mesh.points_m.col(i) / unit_m * 1e5).array().round() / 1e5 + 0.0;
-    char line[120];
-    std::snprintf(line, sizeof line, "v %.10g %.10g %.10g\n", p.x(), p.y(), p.z());
-    out << line;
+    out << fmt::format("v {:.10g} {:.10g} {:.10g}\n", p.x(), p.y(), p.z());
   }
   for (const auto& [a, b, c] : mesh.triangles) out << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
   if (!out.flush()) fail(file.string(), "cannot be written");

@@ -1,7 +1,8 @@
 #include "scene/mesh/mesh_formats.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 #include <functional>
 
 namespace touchstone::scene {
@@ -119,10 +120,7 @@ void read_face(const Element& element, const Numbers& numbers, std::size_t point
       const double value = numbers.take(property.type);
       if (!corners) continue;
       if (!(value >= 0.0 && value < static_cast<double>(points)) || value != std::floor(value)) {
-        char text[32];
-        std::snprintf(text, sizeof text, "%.10g", value);
-        numbers.fail("vertex index " + std::string(text) + " is out of range; there are " + std::to_string(points) +
-                     " vertices");
+        numbers.fail(fmt::format("vertex index {:.10g} is out of range; there are {} vertices", value, points));
       }
       face.push_back(static_cast<std::int32_t>(value));
     }

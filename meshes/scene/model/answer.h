@@ -34,10 +34,15 @@ struct InstantRecord {
   Eigen::Matrix3Xd normal;              ///< of the moved surface, unit, per rest point; empty where not computed
   Eigen::Matrix3Xd traction_pa;         ///< on the body, per rest point; empty where not computed
 
-  /// Sum over the regions [N].
-  [[nodiscard]] Vec3 force_n() const {
+  // Sums over the regions.
+  [[nodiscard]] Vec3 force_n() const { return sum(&RegionRecord::force_n); }
+  [[nodiscard]] Vec3 torque_nm() const { return sum(&RegionRecord::torque_nm); }
+  [[nodiscard]] Vec3 friction_n() const { return sum(&RegionRecord::friction_n); }
+
+ private:
+  [[nodiscard]] Vec3 sum(Vec3 RegionRecord::*of) const {
     Vec3 sum = Vec3::Zero();
-    for (const RegionRecord& region : regions) sum += region.force_n;
+    for (const RegionRecord& region : regions) sum += region.*of;
     return sum;
   }
 };

@@ -1,8 +1,9 @@
 #include "scene/model/first_contact.h"
 #include "scene/model/rest_depth.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 
 namespace touchstone::scene {
 
@@ -21,27 +22,24 @@ std::string no_contact_warning(const Scene& scene) {
   for (const Waypoint& w : scene.track) times_s.push_back(w.time_s);
   for (int i = 0; i <= samples; ++i) times_s.push_back(begin_s + (end_s - begin_s) * i / samples);
   double least_m = INFINITY, least_s = begin_s;
-  char text[300];
   for (const double time_s : times_s) {
     const Pose pose = pose_at(scene.track, time_s);
     const double here_m = depth.gap_m(pose);
     if (here_m < 0.0 && touches(pose)) {
-      std::snprintf(text, sizeof text,
-                    "the tool touches the body only between the %d recorded instants, at %.4g s among others; raise "
-                    "compare.instants",
-                    scene.compare.instants, time_s);
-      return text;
+      return fmt::format(
+          "the tool touches the body only between the {} recorded instants, at {:.4g} s among others; raise "
+          "compare.instants",
+          scene.compare.instants, time_s);
     }
     if (here_m < least_m) {
       least_m = here_m;
       least_s = time_s;
     }
   }
-  std::snprintf(text, sizeof text,
-                "the tool never touches the body on this track; the least gap is %.4g mm, at %.4g s, so every force is "
-                "zero",
-                1e3 * std::max(0.0, least_m), least_s);
-  return text;
+  return fmt::format(
+      "the tool never touches the body on this track; the least gap is {:.4g} mm, at {:.4g} s, so every force is "
+      "zero",
+      1e3 * std::max(0.0, least_m), least_s);
 }
 
 }  // namespace touchstone::scene

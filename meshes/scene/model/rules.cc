@@ -3,19 +3,14 @@
 #include "scene/model/rest_depth.h"
 #include "scene/shape/surface.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 
 namespace touchstone::scene {
 namespace {
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 /// The largest rest depth of the track [m]; between rows the track is sampled finely.
 double deepest_m(const Scene& scene, const Shape& body) {
@@ -37,21 +32,21 @@ constexpr double ticks_max = 1e8;
 void check_track(const Scene& scene, std::vector<Violation>& found) {
   if (scene.track.size() < 2) {
     found.push_back(
-        {"track", "a track needs at least two poses, expected 2 or more, found " + std::to_string(scene.track.size())});
+        {"track", fmt::format("a track needs at least two poses, expected 2 or more, found {}", scene.track.size())});
     return;
   }
   for (std::size_t i = 1; i < scene.track.size(); ++i) {
     const double before_s = scene.track[i - 1].time_s, now_s = scene.track[i].time_s;
     if (now_s <= before_s) {
       found.push_back({"track[" + std::to_string(i) + "].time_s",
-                       "time runs backwards: " + number(now_s) + " s after " + number(before_s) +
-                           " s; expected a time above " + number(before_s) + " s"});
+                       fmt::format("time runs backwards: {:.4g} s after {:.4g} s; expected a time above {:.4g} s",
+                                   now_s, before_s, before_s)});
     }
   }
   const double ticks = (scene.track.back().time_s - scene.track.front().time_s) * scene.fast.rate_hz;
   if (found.empty() && ticks > ticks_max) {
-    found.push_back({"track", "takes " + number(ticks) + " ticks at fast.rate_hz = " + number(scene.fast.rate_hz) +
-                                  " Hz; expected at most " + number(ticks_max)});
+    found.push_back({"track", fmt::format("takes {:.4g} ticks at fast.rate_hz = {:.4g} Hz; expected at most {:.4g}",
+                                          ticks, scene.fast.rate_hz, ticks_max)});
   }
 }
 
@@ -61,18 +56,18 @@ constexpr double recorded_triangles_max = 1e7;
 void check_records(const Scene& scene, std::vector<Violation>& found) {
   const double recorded = static_cast<double>(scene.fast.triangles) * scene.compare.instants;
   if (recorded <= recorded_triangles_max) return;
-  found.push_back(
-      {"compare.instants", std::to_string(scene.compare.instants) + " records of " +
-                               std::to_string(scene.fast.triangles) + " triangles (fast.triangles); expected at most " +
-                               std::to_string(static_cast<int>(recorded_triangles_max) / scene.fast.triangles) +
-                               " records of as many"});
+  found.push_back({"compare.instants",
+                   fmt::format("{} records of {} triangles (fast.triangles); expected at most {} records of as many",
+                               scene.compare.instants, scene.fast.triangles,
+                               static_cast<int>(recorded_triangles_max) / scene.fast.triangles)});
 }
 
 void check_start(const Scene& scene, const Shape& body, std::vector<Violation>& found) {
   const double depth_m = rest_depth_m(body, scene.tool, scene.track.front().pose);
   if (depth_m > 0.0) {
-    found.push_back({"track[0].position_m", "the tool starts " + number(depth_m * 1e3) +
-                                                " mm inside the body; expected a first pose with no overlap"});
+    found.push_back({"track[0].position_m",
+                     fmt::format("the tool starts {:.4g} mm inside the body; expected a first pose with no overlap",
+                                 depth_m * 1e3)});
   }
 }
 
@@ -87,10 +82,11 @@ void check_contact_law(const Scene& scene, const std::function<double()>& deepes
     const double peak_m = std::sqrt(c.k1_n_per_m / (-3.0 * c.k3_n_per_m3));
     const double deepest = deepest_m();
     if (deepest > peak_m) {
-      found.push_back({"contact.k3_n_per_m3",
-                       "the softening law peaks at " + number(peak_m * 1e3) + " mm but the track reaches " +
-                           number(deepest * 1e3) +
-                           " mm; expected k3 >= " + number(-c.k1_n_per_m / (3.0 * deepest * deepest)) + " N/m^3"});
+      found.push_back(
+          {"contact.k3_n_per_m3",
+           fmt::format(
+               "the softening law peaks at {:.4g} mm but the track reaches {:.4g} mm; expected k3 >= {:.4g} N/m^3",
+               peak_m * 1e3, deepest * 1e3, -c.k1_n_per_m / (3.0 * deepest * deepest))});
     }
   }
 }
@@ -100,8 +96,11 @@ void check_local_factor(const Scene& scene, std::vector<Violation>& found) {
   const FastSettings& f = scene.fast;
   const double limit = 1.0 / std::log((f.r_R_m + f.C_r_m) / f.C_r_m);
   if (f.formulation == Formulation::corrected && f.C_n > limit) {
-    found.push_back({"fast.C_n", "the local factor turns negative at the contact; expected C_n <= " + number(limit) +
-                                     " with these r_R_m and C_r_m"});
+    found.push_back(
+        {"fast.C_n",
+         fmt::format(
+             "the local factor turns negative at the contact; expected C_n <= {:.4g} with these r_R_m and C_r_m",
+             limit)});
   }
 }
 
@@ -113,8 +112,8 @@ void check_profile(const Solid& solid, const std::string& table, std::vector<Vio
 void check_support(const Body& body, const Shape& shape, std::vector<Violation>& found) {
   const double middle_m = 0.5 * shape.bounds().upper_m.z();
   if (!body.flat_bottom() && body.support_height_m >= middle_m) {
-    found.push_back(
-        {"body.support_height_m", "expected less than the height of the body's middle, " + number(middle_m) + " m"});
+    found.push_back({"body.support_height_m",
+                     fmt::format("expected less than the height of the body's middle, {:.4g} m", middle_m)});
   }
 }
 
@@ -124,8 +123,8 @@ Eigen::Matrix3Xd surface_points_m(const Shape& shape) { return tessellate(shape,
 void check_inclusions(const Body& body, const Shape& shape, std::vector<Violation>& found) {
   // Before the pairs: the effort grows with their number.
   if (body.inclusions.size() > inclusions_max) {
-    found.push_back({"body.inclusion[0]", "expected at most " + std::to_string(inclusions_max) + " inclusions, found " +
-                                              std::to_string(body.inclusions.size())});
+    found.push_back({"body.inclusion[0]",
+                     fmt::format("expected at most {} inclusions, found {}", inclusions_max, body.inclusions.size())});
     return;
   }
   std::vector<std::unique_ptr<const Shape>> inclusions;
@@ -136,8 +135,9 @@ void check_inclusions(const Body& body, const Shape& shape, std::vector<Violatio
     double outermost_m = -1e300;
     for (const auto& p_m : points_m.colwise()) outermost_m = std::max(outermost_m, shape.signed_distance_m(p_m));
     if (outermost_m >= 0.0) {
-      found.push_back({name + ".center_m", "reaches " + number(outermost_m * 1e3) +
-                                               " mm beyond the body's surface; expected it strictly inside"});
+      found.push_back(
+          {name + ".center_m",
+           fmt::format("reaches {:.4g} mm beyond the body's surface; expected it strictly inside", outermost_m * 1e3)});
     }
     for (std::size_t other = 0; other + 1 < inclusions.size(); ++other) {
       double apart_m = 1e300;
@@ -145,8 +145,9 @@ void check_inclusions(const Body& body, const Shape& shape, std::vector<Violatio
       const Eigen::Matrix3Xd others_m = surface_points_m(*inclusions[other]);
       for (const auto& p_m : others_m.colwise()) apart_m = std::min(apart_m, inclusions.back()->signed_distance_m(p_m));
       if (apart_m <= 0.0) {
-        found.push_back({name + ".center_m", "overlaps body.inclusion[" + std::to_string(other) + "] by " +
-                                                 number(-apart_m * 1e3) + " mm; expected them apart"});
+        found.push_back(
+            {name + ".center_m",
+             fmt::format("overlaps body.inclusion[{}] by {:.4g} mm; expected them apart", other, -apart_m * 1e3)});
       }
     }
   }
@@ -158,16 +159,18 @@ void check_tool(const Tool& tool, std::vector<Violation>& found) {
   if (!(tool.length_m > 0.0)) {
     found.push_back({"tool.length_m", "a cylinder needs a length above 0"});
   } else if (tool.edge_radius_m > largest_m) {
-    found.push_back({"tool.edge_radius_m", "the fillet does not fit; expected at most " + number(largest_m) + " m"});
+    found.push_back(
+        {"tool.edge_radius_m", fmt::format("the fillet does not fit; expected at most {:.4g} m", largest_m)});
   }
 }
 
 void check_friction(const Contact& contact, std::vector<Violation>& found) {
   // Errata E5: at beta = 1 no normal force brings the static limit back above the dynamic friction.
   if (contact.friction && contact.friction->beta == 1.0 && contact.friction->mu_D > contact.friction->K) {
-    found.push_back({"contact.friction.mu_D",
-                     "with beta = 1 sliding would rub harder than the static limit; expected mu_D <= K = " +
-                         number(contact.friction->K)});
+    found.push_back(
+        {"contact.friction.mu_D",
+         fmt::format("with beta = 1 sliding would rub harder than the static limit; expected mu_D <= K = {:.4g}",
+                     contact.friction->K)});
   }
 }
 

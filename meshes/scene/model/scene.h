@@ -4,8 +4,7 @@
 
 #include "scene/base/frames.h"
 #include "scene/mesh/triangle_mesh.h"
-#include "scene/shape/revolution.h"
-#include "scene/shape/shape.h"
+#include "scene/shape/solids.h"
 #include "scene/shape/surface.h"
 
 #include <cstdint>
@@ -106,6 +105,7 @@ struct Contact {
   double k1_n_per_m = 0.0;  ///< duffing
   double k3_n_per_m3 = 0.0;
   double k1_per_radius_n_per_m2 = 0.0;    ///< area_aware
+  double r_th_m = 0.0;                    ///< contact points closer than this are one region, for both solvers
   std::optional<Friction> friction = {};  ///< absent: frictionless
 };
 
@@ -116,7 +116,6 @@ struct FastSettings {
   int tool_samples = 0;  ///< points on the tool's surface
   double rate_hz = 0.0;  ///< ticks per second of virtual time
   int max_regions = 1;   ///< contact regions at a time; a convex tool needs one
-  double r_th_m = 0.0;   ///< contact points closer than this are one region
   double r_R_m = 0.0;    ///< radius of the local neighbourhood R
   double C_n = 0.0;      ///< local factor, strength
   double C_r_m = 0.0;    ///< local factor, core radius

@@ -155,11 +155,6 @@ void write_summary(const std::filesystem::path& path, const Figures& figures) {
   write_file(path, json_text(json));
 }
 
-StageTime Stopwatch::read(const std::string& stage) const {
-  return {stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count(),
-          static_cast<double>(std::clock() - cpu_) / CLOCKS_PER_SEC};
-}
-
 std::string kept_tool_name(const Tool& tool) {
   return content_of_file(tool.mesh) != nullptr ? "tool" + std::filesystem::path(tool.file).extension().string() : "";
 }

@@ -2,12 +2,11 @@
 #pragma once
 
 #include "scene/base/files.h"
+#include "scene/base/stopwatch.h"
 #include "scene/model/answer.h"
 #include "scene/model/scene.h"
 #include "scene/output/figures.h"
 
-#include <chrono>
-#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -35,22 +34,6 @@ void write_csv(const std::filesystem::path& path, const std::vector<Column>& col
 /// One flat JSON object, dotted key to number or text, plus "units" with the same keys. A number that is not finite is
 /// null, and its text, which then says why, stands in "reasons" under the same key.
 void write_summary(const std::filesystem::path& path, const Figures& figures);
-
-/// Wall and CPU time of a named stage [s].
-struct StageTime {
-  std::string stage;
-  double wall_s = 0.0, cpu_s = 0.0;
-};
-
-/// Wall and CPU time since construction.
-class Stopwatch {
- public:
-  [[nodiscard]] StageTime read(const std::string& stage) const;
-
- private:
-  std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
-  std::clock_t cpu_ = std::clock();
-};
 
 /// A mesh tool's file as a copy of it is kept: "tool" with the file's ending. Empty for any other tool.
 [[nodiscard]] std::string kept_tool_name(const Tool& tool);

@@ -1,4 +1,6 @@
-#include "scene/shape/shape.h"
+#include "scene/shape/ellipsoid.h"
+
+#include "scene/shape/crossing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +23,10 @@ double ellipsoid_area_m2(Vec3 semi_m) {
 }  // namespace
 
 Ellipsoid::Ellipsoid(const Vec3& center_m, const Vec3& semi_axes_m)
-    : center_m_(center_m), semi_axes_m_(semi_axes_m), area_m2_(ellipsoid_area_m2(semi_axes_m)) {
+    : center_m_(center_m),
+      semi_axes_m_(semi_axes_m),
+      per_axis_per_m_(semi_axes_m.cwiseInverse()),
+      area_m2_(ellipsoid_area_m2(semi_axes_m)) {
   std::stable_sort(longest_first_.begin(), longest_first_.end(),
                    [&](int a, int b) { return semi_axes_m[a] > semi_axes_m[b]; });
   const double least_m = semi_axes_m.minCoeff();
@@ -32,12 +37,7 @@ Ellipsoid::Ellipsoid(const Vec3& center_m, const Vec3& semi_axes_m)
 }
 
 SurfacePoint Ellipsoid::at(int patch, double u, double v) const noexcept {
-  const double azimuth = 0.5 * std::numbers::pi * u;
-  const double polar = 0.5 * std::numbers::pi * v;
-  Vec3 place(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar));
-  for (int axis = 0; axis < 3; ++axis) {
-    if (patch >> axis & 1) place[axis] = -place[axis];
-  }
+  const Vec3 place = octant_point(patch, u, v);
   const Vec3 gradient = place.cwiseQuotient(semi_axes_m_);
   const double steepness = gradient.norm();
   const Vec3 normal = gradient / steepness;
@@ -95,8 +95,7 @@ SurfaceQuery Ellipsoid::query(const Vec3& p_m) const noexcept {
   const Vec3 place = closest_on_unit_sphere(local);
   const Vec3 normal = place.cwiseQuotient(semi_axes_m_).normalized();
   const Vec3 surface = semi_axes_m_.cwiseProduct(place);
-  const int patch = (place.x() < 0.0 ? 1 : 0) | (place.y() < 0.0 ? 2 : 0) | (place.z() < 0.0 ? 4 : 0);
-  return {(local - surface).dot(normal), center_m_ + surface, normal, patch};
+  return {(local - surface).dot(normal), center_m_ + surface, normal, octant_of(place)};
 }
 
 double Ellipsoid::signed_distance_m(const Vec3& p_m) const noexcept {
@@ -110,5 +109,17 @@ double Ellipsoid::area_m2() const noexcept { return area_m2_; }
 double Ellipsoid::volume_m3() const noexcept { return 4.0 / 3.0 * std::numbers::pi * semi_axes_m_.prod(); }
 
 Bounds Ellipsoid::bounds() const noexcept { return {center_m_ - semi_axes_m_, center_m_ + semi_axes_m_}; }
+
+Crossing Ellipsoid::crossing(const Vec3& from_m, const Vec3& to_m) const noexcept {
+  const Line line(from_m, to_m);
+  return cross_unit_ball(line, (from_m - center_m_).cwiseQuotient(semi_axes_m_),
+                         line.direction.cwiseQuotient(semi_axes_m_));
+}
+
+Surface Ellipsoid::tessellated(int triangles) const {
+  return octant_surface(triangles, [&](const Vec3& unit) {
+    return SurfacePoint{center_m_ + semi_axes_m_.cwiseProduct(unit), unit.cwiseQuotient(semi_axes_m_).normalized()};
+  });
+}
 
 }  // namespace touchstone::scene

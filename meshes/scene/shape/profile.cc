@@ -1,8 +1,9 @@
 #include "scene/shape/profile.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 namespace touchstone::scene {
@@ -14,15 +15,9 @@ constexpr double quarter = 0.5 * std::numbers::pi;
 
 double cross(const Vec2& a, const Vec2& b) noexcept { return a.x() * b.y() - a.y() * b.x(); }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 std::string corner(const Profile& profile, std::size_t i) {
   const Vec2& p = profile.rz_m[i];
-  return "corner " + std::to_string(i) + " at (r, z) = (" + number(p.x()) + ", " + number(p.y()) + ") m";
+  return fmt::format("corner {} at (r, z) = ({:.6g}, {:.6g}) m", i, p.x(), p.y());
 }
 
 /// Normal of a piece of the profile at its start or end, as the angle over the horizontal. It grows along a convex one.
@@ -73,10 +68,11 @@ void check_pieces(const Profile& profile, std::vector<std::string>& faults) {
     if (chord_m == 0.0) {
       faults.push_back(piece + " has no length");
     } else if (!(radius_m >= 0.0) || !std::isfinite(radius_m)) {
-      faults.push_back(piece + " has arc radius " + number(radius_m) + " m; expected 0 for straight, or more");
+      faults.push_back(fmt::format("{} has arc radius {:.6g} m; expected 0 for straight, or more", piece, radius_m));
     } else if (radius_m > 0.0 && radius_m <= 0.5 * chord_m) {
-      faults.push_back(piece + " has arc radius " + number(radius_m) + " m; expected more than half its chord, " +
-                       number(0.5 * chord_m) + " m (divide a half circle in two)");
+      faults.push_back(fmt::format(
+          "{} has arc radius {:.6g} m; expected more than half its chord, {:.6g} m (divide a half circle in two)",
+          piece, radius_m, 0.5 * chord_m));
     }
   }
 }

@@ -3,11 +3,7 @@
 #pragma once
 
 #include "scene/base/frames.h"
-
-#include <array>
-#include <cstdint>
-#include <memory>
-#include <vector>
+#include "scene/base/inline.h"
 
 namespace touchstone::scene {
 
@@ -29,10 +25,27 @@ struct SurfaceQuery {
   int patch;                 ///< patch that holds the closest point
 };
 
+/// Signed distance, negative inside, and its gradient, as plain numbers for loops over columns of points.
+struct Distance {
+  double signed_distance_m;
+  double nx, ny, nz;
+};
+
+/// The part of a straight line inside a shape, as distances from the line's beginning [m]; none where leave <= enter.
+struct Crossing {
+  double enter_m = 0.0, leave_m = 0.0;
+
+  [[nodiscard]] bool empty() const noexcept { return !(leave_m > enter_m); }
+};
+
 struct Surface;
 
 /// A closed convex surface made of smooth patches, each parametrised over (u, v) in [0,1]^2.
 /// Immutable; every query is noexcept and free of heap use, so a real-time step may call it.
+///
+/// Loops over many points know the class and ask members that are not virtual, where the class has them: distance_at()
+/// of a point inside, beyond() or may_touch() as a cheap first question, closest(), and exit_along(), the way out.
+/// Whatever they have not is made of the virtual ones.
 class Shape {
  public:
   virtual ~Shape() = default;
@@ -44,81 +57,15 @@ class Shape {
   [[nodiscard]] virtual SurfaceQuery query(const Vec3& p_m) const noexcept = 0;
   /// Exact signed distance alone [m], negative inside.
   [[nodiscard]] virtual double signed_distance_m(const Vec3& p_m) const noexcept = 0;
+  /// The part of the line between two points that lies inside. A shape without a closed form has cross_convex().
+  [[nodiscard]] virtual Crossing crossing(const Vec3& from_m, const Vec3& to_m) const noexcept;
+  /// Number of the smooth face that holds the patch, from 0 up; faces meet at edges.
+  [[nodiscard]] virtual int face_of(int) const noexcept { return 0; }
   [[nodiscard]] virtual double area_m2() const noexcept = 0;
   [[nodiscard]] virtual double volume_m3() const noexcept = 0;
   [[nodiscard]] virtual Bounds bounds() const noexcept = 0;
   /// The shape's own pattern of triangles, see surface.h.
   [[nodiscard]] virtual Surface tessellated(int triangles) const = 0;
-};
-
-/// Box with edges along the axes; patches 0..5 are the faces -x, +x, -y, +y, -z, +z.
-class Box final : public Shape {
- public:
-  /// @param size_m edge lengths, each > 0
-  Box(const Vec3& center_m, const Vec3& size_m);
-  [[nodiscard]] int patch_count() const noexcept override { return 6; }
-  [[nodiscard]] SurfacePoint at(int patch, double u, double v) const noexcept override;
-  [[nodiscard]] SurfaceQuery query(const Vec3& p_m) const noexcept override;
-  [[nodiscard]] double signed_distance_m(const Vec3& p_m) const noexcept override;
-  [[nodiscard]] double area_m2() const noexcept override;
-  [[nodiscard]] double volume_m3() const noexcept override;
-  [[nodiscard]] Bounds bounds() const noexcept override;
-  [[nodiscard]] Surface tessellated(int triangles) const override;
-  [[nodiscard]] const Vec3& center_m() const noexcept { return center_m_; }
-  [[nodiscard]] const Vec3& half_m() const noexcept { return half_m_; }
-
- private:
-  Vec3 center_m_, half_m_;
-};
-
-/// Sphere; patches 0..7 are the octants (bit 0: x < 0, bit 1: y < 0, bit 2: z < 0), whose corners
-/// are the six anchor points the paper names for a sphere.
-class Sphere final : public Shape {
- public:
-  /// @param radius_m > 0
-  Sphere(const Vec3& center_m, double radius_m);
-  [[nodiscard]] int patch_count() const noexcept override { return 8; }
-  [[nodiscard]] SurfacePoint at(int patch, double u, double v) const noexcept override;
-  [[nodiscard]] SurfaceQuery query(const Vec3& p_m) const noexcept override;
-  [[nodiscard]] double signed_distance_m(const Vec3& p_m) const noexcept override;
-  [[nodiscard]] double area_m2() const noexcept override;
-  [[nodiscard]] double volume_m3() const noexcept override;
-  [[nodiscard]] Bounds bounds() const noexcept override;
-  [[nodiscard]] Surface tessellated(int triangles) const override;
-  [[nodiscard]] const Vec3& center_m() const noexcept { return center_m_; }
-  [[nodiscard]] double radius_m() const noexcept { return radius_m_; }
-
- private:
-  Vec3 center_m_;
-  double radius_m_;
-};
-
-/// Ellipsoid with its axes along x, y, z; patches as on a sphere, each octant the sphere's stretched by the semi-axes.
-/// From a point on the middle plane that is equally near to two sides, the closest point is the one at larger
-/// coordinates; from the centre it is the end of the shortest axis (of equal ones the last).
-class Ellipsoid final : public Shape {
- public:
-  /// @param semi_axes_m each > 0; equal ones are allowed
-  Ellipsoid(const Vec3& center_m, const Vec3& semi_axes_m);
-  [[nodiscard]] int patch_count() const noexcept override { return 8; }
-  [[nodiscard]] SurfacePoint at(int patch, double u, double v) const noexcept override;
-  [[nodiscard]] SurfaceQuery query(const Vec3& p_m) const noexcept override;
-  [[nodiscard]] double signed_distance_m(const Vec3& p_m) const noexcept override;
-  [[nodiscard]] double area_m2() const noexcept override;
-  [[nodiscard]] double volume_m3() const noexcept override;
-  [[nodiscard]] Bounds bounds() const noexcept override;
-  [[nodiscard]] Surface tessellated(int triangles) const override;
-  [[nodiscard]] const Vec3& center_m() const noexcept { return center_m_; }
-  [[nodiscard]] const Vec3& semi_axes_m() const noexcept { return semi_axes_m_; }
-
- private:
-  /// Closest surface point, each coordinate divided by its semi-axis. @param local_m from the centre
-  [[nodiscard]] Vec3 closest_on_unit_sphere(const Vec3& local_m) const noexcept;
-
-  Vec3 center_m_, semi_axes_m_;
-  std::array<int, 3> longest_first_{0, 1, 2};
-  Vec3 excess_;  ///< (a_i / a_min)^2 - 1, longest axis first
-  double area_m2_;
 };
 
 }  // namespace touchstone::scene

@@ -1,8 +1,5 @@
 #include "scene/shape/surface_builder.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace touchstone::scene {
 
 Surface SurfaceBuilder::finish() {
@@ -24,41 +21,6 @@ Surface SurfaceBuilder::finish() {
   points_.clear();
   normals_.clear();
   return std::exchange(surface_, {});
-}
-
-Surface Box::tessellated(int triangles) const {
-  // Square cells of one size h: 2 * area / h^2 triangles.
-  const double h = std::sqrt(2.0 * area_m2() / triangles);
-  const auto cells = [&](int axis) { return std::max(1, static_cast<int>(std::lround(2.0 * half_m_[axis] / h))); };
-  SurfaceBuilder builder;
-  for (int patch = 0; patch < patch_count(); ++patch) {
-    builder.begin_patch();
-    const int axis = patch / 2;
-    const bool positive = patch % 2 == 1;
-    const int nu = cells((axis + (positive ? 1 : 2)) % 3);
-    const int nv = cells((axis + (positive ? 2 : 1)) % 3);
-    std::vector<int> vertex;
-    for (int j = 0; j <= nv; ++j) {
-      for (int i = 0; i <= nu; ++i) {
-        const SurfacePoint p = this->at(patch, static_cast<double>(i) / nu, static_cast<double>(j) / nv);
-        vertex.push_back(builder.add_vertex(p.point_m, p.normal));
-      }
-    }
-    const auto vertex_at = [&](int i, int j) { return vertex[static_cast<std::size_t>(j * (nu + 1) + i)]; };
-    for (int j = 0; j < nv; ++j) {
-      for (int i = 0; i < nu; ++i) {
-        // Alternate the diagonal so that the pattern has no preferred direction.
-        if ((i + j) % 2 == 0) {
-          builder.add_triangle(vertex_at(i, j), vertex_at(i + 1, j), vertex_at(i + 1, j + 1));
-          builder.add_triangle(vertex_at(i, j), vertex_at(i + 1, j + 1), vertex_at(i, j + 1));
-        } else {
-          builder.add_triangle(vertex_at(i, j), vertex_at(i + 1, j), vertex_at(i, j + 1));
-          builder.add_triangle(vertex_at(i + 1, j), vertex_at(i + 1, j + 1), vertex_at(i, j + 1));
-        }
-      }
-    }
-  }
-  return builder.finish();
 }
 
 Surface surface_of(const TriangleMesh& mesh) {

@@ -1,6 +1,7 @@
 // Tuning studies: what they mean, and what is said about bad ones.
 #include "compare/input/tuning_study.h"
 
+#include "scene/input/scene_io.h"
 #include "support/source_folder.h"
 #include "unit/compare/input/study_file_test.h"
 
@@ -78,7 +79,14 @@ TEST_F(TuningStudyTest, TellsEveryFaultWithItsPlaceAndWhatWasExpected) {
               HasSubstr("is the same constant already"));
   EXPECT_THAT(refusal(head + training + held_out + stiffness +
                       "[[parameter]]\nkey = \"contact.friction.K\"\nbounds = [0.1, 2.0]\n"),
-              HasSubstr("no training contact has friction"));
+              HasSubstr("parameter.key = \"contact.friction.K\" only applies with [contact.friction] given; expected a "
+                        "training contact with it"));
+  EXPECT_THAT(refusal(head + training + held_out + "[[parameter]]\nkey = \"fast.r_th_m\"\nbounds = [0.001, 0.01]\n"),
+              HasSubstr("12:7: parameter.key = \"fast.r_th_m\" cannot be tuned; fast.r_th_m is contact.r_th_m now"));
+  for (const char* key : {"contact.r_th_m", "contact.law", "body.material.youngs_modulus_pa"}) {
+    EXPECT_THAT(refusal(head + training + held_out + "[[parameter]]\nkey = \"" + key + "\"\nbounds = [0.1, 0.2]\n"),
+                HasSubstr(std::string("parameter.key = \"") + key + "\" cannot be tuned; did you mean"));
+  }
   EXPECT_THAT(refusal(head + "formulation = \"published\"\n" + training + held_out + stiffness +
                       "[[parameter]]\nkey = \"contact.friction.stiffness_ratio\"\nbounds = [0.1, 2.0]\n"),
               HasSubstr("has no meaning under the models of this study"));
@@ -99,6 +107,41 @@ TEST_F(TuningStudyTest, WritesAParameterWhereTheSceneKeepsIt) {
   EXPECT_EQ(scene.contact.k1_n_per_m, 10.0);
   EXPECT_EQ(scene.contact.k3_n_per_m3, 12.0);
   EXPECT_EQ(scene.fast.s_c_m2, 0.5);
+}
+
+TEST_F(TuningStudyTest, WritesNothingWhereTheKeyDoesNotApply) {
+  Scene scene;
+  set_parameter(scene, "contact.friction.K", 2.0);
+  set_parameter(scene, "contact.k1_per_radius_n_per_m2", 2.0);
+  EXPECT_FALSE(scene.contact.friction.has_value());
+  EXPECT_EQ(scene.contact.k1_per_radius_n_per_m2, 0.0);
+}
+
+TEST_F(TuningStudyTest, AFileOfParametersGoesOverAScene) {
+  const Scene scene = load_scene(scenes + "ball-on-cube-press.toml");
+  const auto over = [&](const std::string& text) { return with_parameters(scene, written(text)); };
+  // In whatever order: the law decides which constants apply. Friction's are left out where there is none.
+  const Scene tuned = over(
+      "[contact]\nk1_per_radius_n_per_m2 = 5.0e6\nlaw = \"area_aware\"\n[contact.friction]\n"
+      "K = 0.3\n[fast]\nC_n = 0.1\nformulation = \"published\"\n");
+  EXPECT_EQ(tuned.contact.law, ContactLaw::area_aware);
+  EXPECT_EQ(tuned.contact.k1_per_radius_n_per_m2, 5.0e6);
+  EXPECT_EQ(tuned.contact.k3_n_per_m3, scene.contact.k3_n_per_m3);
+  EXPECT_FALSE(tuned.contact.friction.has_value());
+  EXPECT_EQ(tuned.fast.formulation, Formulation::published);
+  EXPECT_EQ(tuned.fast.C_n, 0.1);
+  EXPECT_EQ(over("[contact]\nomega0_squared_per_s2 = 7.0\n").contact.k1_n_per_m, 7.0 * scene.tool.mass_kg);
+  const auto refused = [&](const std::string& text) { return refusal_of([&] { (void)over(text); }); };
+  EXPECT_THAT(refused("[contact]\nlaw = \"area_aware\"\nk1_n_per_m = 5.0\n"),
+              HasSubstr("contact.law is not the scene's, and its constant is missing; expected "
+                        "contact.k1_per_radius_n_per_m2"));
+  EXPECT_THAT(refused("[contact]\nlaw = \"hertz\"\n"), HasSubstr("2:7: law = \"hertz\"; expected \"duffing\" or"));
+  EXPECT_THAT(refused("[fast]\nC_n = -1.0\n"), HasSubstr("2:7: fast.C_n = -1.0; expected a number in [0, 1000]"));
+  EXPECT_THAT(refused("[fast]\nC_n = 0.1\nr_th_m = 0.004\n"),
+              HasSubstr("3:1: fast.r_th_m is contact.r_th_m now, because the reference reads it too: set it in the "
+                        "scene"));
+  for (const char* line : {"[contact]\nr_th_m = 0.004\n", "[body]\nsize_m = 1.0\n", "[fast]\ntriangles = 400\n"})
+    EXPECT_THAT(refused(line), HasSubstr("2:1: \"")) << line;
 }
 
 TEST(TuningStudyModels, OnlyTheCorrectedOneHasFrictionsStiffnessRatio) {

@@ -32,8 +32,8 @@ class StudyPage : public ::testing::Test {
  protected:
   StudyManifest expanded(const std::string& rest) {
     const path file = folder_.path() / "study.toml";
-    std::ofstream(file) << "title = \"How deep & how soft\"\nscene = \""
-                        << source_folder() << "/meshes/scenes/ball-on-cube-press.toml\"\nrun = \"compare\"\n"
+    std::ofstream(file) << "title = \"How deep & how soft\"\nscene = \"" << source_folder()
+                        << "/meshes/scenes/ball-on-cube-press.toml\"\nrun = \"compare\"\n"
                         << rest;
     return expand(load_study(file), folder_.path() / "study", "/usr/bin/touchstone", "store");
   }

@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Replay, AnotherClusterDistanceIsNotTheRecordedOne) {
   const scene::Scene scene = coarse("mallet-tail-on-cube");
   scene::Scene finer = scene;
-  finer.fast.r_th_m = 0.0005;
+  finer.contact.r_th_m = 0.0005;
   fast::Replay replay(scene);
   ASSERT_TRUE(replay.recorded());
   const std::vector<Vec3> force_n = replay.forces_n(finer);

@@ -109,8 +109,8 @@ TEST_F(LimitsVerb, RequireErrorExitsThreeWithItsResultsWritten) {
 
 TEST_F(LimitsVerb, PlanEstimatesEveryMesh) {
   const Answer plan = [&] {
-    const std::string command =
-        program_ + " plan " + touchstone::source_folder() + "/meshes/scenes/pin-on-cylinder.toml >" + (dir_ / "output").string();
+    const std::string command = program_ + " plan " + touchstone::source_folder() +
+                                "/meshes/scenes/pin-on-cylinder.toml >" + (dir_ / "output").string();
     const int status = std::system(command.c_str());
     return Answer{WEXITSTATUS(status), text_of(dir_ / "output"), ""};
   }();
@@ -134,8 +134,8 @@ TEST_F(LimitsVerb, ABusyMachineGetsOneThread) {
       }
     });
   }
-  const std::string plan = " " + program_ + " plan " + touchstone::source_folder() + "/meshes/scenes/pin-on-cylinder.toml >" +
-                           (dir_ / "output").string();
+  const std::string plan = " " + program_ + " plan " + touchstone::source_folder() +
+                           "/meshes/scenes/pin-on-cylinder.toml >" + (dir_ / "output").string();
   EXPECT_EQ(std::system(("env -u OMP_NUM_THREADS" + plan).c_str()), 0);
   EXPECT_THAT(text_of(dir_ / "output"), HasSubstr("time of 1 thread on"));
   EXPECT_EQ(std::system(("env OMP_NUM_THREADS=3" + plan).c_str()), 0);

@@ -20,7 +20,7 @@ Placement placement(const scene::Pose& pose) { return {pose.orientation.toRotati
 struct Case {
   scene::Scene scene;
   std::unique_ptr<const scene::Shape> body = scene::body_shape(scene.body);
-  Detection detection = detection_for(scene.body.shape);
+  Detection detection = detection_for(*body);
   ToolSamples tool = sample_tool(test::ball(scene.tool.radius_m), scene.fast.tool_samples);
   test::OwnedPoints points{tool.count()};
 };

@@ -245,7 +245,7 @@ TEST(ContactRegions, OfAToolWithThreeFeet) {
   tool.mesh = std::make_shared<scene::TriangleMesh>(feet);
   const ToolSamples samples = sample_tool(tool, 3000);
   const scene::Box block(Vec3(0.0, 0.0, 0.03), Vec3(0.08, 0.06, 0.06));
-  const Detection detection = detection_for(scene::BodyShape::box);
+  const Detection detection = detection_for(block);
   const ClusterGrid grid = cluster_grid(samples, 0.004);
   ClusterScratch scratch(grid, samples.count());
   RegionTracker tracker(samples.count(), 20, 10);

@@ -41,7 +41,7 @@ TEST(EquivalentPoint, OriginIsTakenOutAlongTheDirectionOfDeformation) {
   RegionExtent extent;
   extent.center_W_m = Vec3(0.001, 0.002, 0.058);
   const DeformationOrigin origin =
-      deformation_origin(box, detection_for(scene::BodyShape::box).exit_distance_m, Vec3(0.6, 0.0, -0.8), extent);
+      deformation_origin(box, detection_for(box).exit_distance_m, Vec3(0.6, 0.0, -0.8), extent);
   EXPECT_LT((origin.p0_W_m - Vec3(0.001 - 0.0015, 0.002, 0.060)).norm(), 1e-15);
 }
 

@@ -83,9 +83,7 @@ class PullBack : public testing::TestWithParam<bool> {
       out[static_cast<std::size_t>(points.sample[k])] = -points.depth_m[k];
     return out;
   }
-  static Detection detection() {
-    return detection_for(GetParam() ? scene::BodyShape::box : scene::BodyShape::ellipsoid);
-  }
+  Detection detection() const { return detection_for(*body); }
   std::unique_ptr<const scene::Shape> body;
   test::OwnedPoints points{samples_max};
   PullBackScratch scratch{samples_max};
@@ -211,7 +209,7 @@ TEST(PullBackOfABox, APointBesideTheEdgeBelongsToItsOwnFace) {
     points.depth_m[i] = -box.signed_distance_m(places_m[i]);
   }
   PullBackScratch scratch(3);
-  detection_for(scene::BodyShape::box).pull_back(box, SunkenTop(), points, scratch);
+  detection_for(box).pull_back(box, SunkenTop(), points, scratch);
   ASSERT_EQ(points.count, 2);  // the first stands over the sunken top
   EXPECT_EQ(points.sample[0], 1);
   EXPECT_NEAR(points.depth_m[0], 0.0005, 1e-12);

@@ -1,5 +1,7 @@
 #include "fast/contact/rest_distance.h"
 
+#include "scene/shape/solids.h"
+
 #include <gtest/gtest.h>
 
 #include <random>

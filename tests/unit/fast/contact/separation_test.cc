@@ -131,7 +131,7 @@ TEST(ContactPhases, FollowFromApartToContact) {
   for (const scene::Scene& scene : {test::ball_on_cube(), capsule_on_ellipsoid()}) {
     const Pair pair(scene);
     const ToolSamples tool = sample_tool(scene.tool, 2000);
-    const Detection detection = detection_for(scene.body.shape);
+    const Detection detection = detection_for(*pair.body);
     test::OwnedPoints points(tool.count());
     const double top_m = pair.body->bounds().upper_m.z();
     const double reach_m = scene.tool.shape == scene::ToolShape::sphere ? 0.010 : 0.016;

@@ -324,7 +324,11 @@ TEST(Departures, E7) {
   states("E7 |", "2.00 times", pin_n(0.006, area_aware) / pin_n(0.003, area_aware));
   const auto mallet_n = [](const std::string& end, bool duffing_law) {
     scene::Scene scene = test::shipped_scene("mallet-" + end + "-on-cube", Formulation::corrected);
-    if (duffing_law) scene.contact = {duffing, 40.0, 3e8};
+    if (duffing_law) {
+      scene.contact.law = duffing;
+      scene.contact.k1_n_per_m = 40.0;
+      scene.contact.k3_n_per_m3 = 3e8;
+    }
     Walk walk(scene);
     walk.go_to_the_end();
     return walk.force_n().z();

@@ -107,7 +107,9 @@ TEST(TangentSolver, RefusesWhatIsNotPositiveDefinite) {
     TangentSolver solver(1);
     solver.analyse(laplacian(0.0, 0.0));
     Eigen::VectorXd x = load(side * side * side);
-    if (with_old_factor) ASSERT_TRUE(solver.solve(laplacian(0.0, 0.0), 1e-10, x));
+    if (with_old_factor) {
+      ASSERT_TRUE(solver.solve(laplacian(0.0, 0.0), 1e-10, x));
+    }
     const Eigen::VectorXd b = load(side * side * side);
     x = b;
     EXPECT_FALSE(solver.solve(laplacian(-1.5 * lowest(), 0.0), 1e-10, x));

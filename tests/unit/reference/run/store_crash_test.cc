@@ -1,5 +1,6 @@
 // The store under kill -9 at any instant, full disks and rivals. Every solve runs in a process of its own; what it
 // answers comes back as a file of bits.
+#include "reference/linear/record.h"
 #include "reference/run/store.h"
 #include "reference/solver.h"
 #include "scene/base/files.h"
@@ -106,12 +107,11 @@ int solve_into(const std::filesystem::path& store, const std::filesystem::path& 
   Options options;
   options.store = store;
   const Result result = solve(scene, scene::tessellate(*scene::body_shape(scene.body), 64).points_m, options);
-  Record bits;
+  RecordWriter bits;
   for (std::size_t i = 0; i < result.instants.size(); ++i) {
     const auto& displacement_m = result.instants[i].displacement_m;
-    bits.put(result.instants[i].force_n().data(), 3);
-    bits.put(displacement_m.data(), static_cast<std::size_t>(displacement_m.size()));
-    for (const LevelRecord& level : result.levels) bits.put(level.force_n[i]);
+    bits(scene::Vec3(result.instants[i].force_n()), displacement_m);
+    for (const LevelRecord& level : result.levels) bits(level.force_n[i]);
   }
   scene::write_file(answer, bits.bytes());
   return 0;
@@ -188,7 +188,7 @@ TEST_F(StoreCrashTest, AKilledWriterLosesNoStepThatWasThere) {
       // Every writer begins elsewhere, so that kills soon after the start reach all steps.
       for (int turn = 3 * kill;; ++turn) {
         const int k = turn % (levels * instants);
-        store.write(k / instants, k % instants, Record(expected(k / instants, k % instants)));
+        store.write(k / instants, k % instants, expected(k / instants, k % instants));
       }
       return 0;
     });
@@ -200,7 +200,7 @@ TEST_F(StoreCrashTest, AKilledWriterLosesNoStepThatWasThere) {
     for (int k = 0; k < levels * instants; ++k) {
       const auto record = store.read(k / instants, k % instants);
       if (record) {
-        EXPECT_EQ(record->bytes(), expected(k / instants, k % instants));
+        EXPECT_EQ(record, expected(k / instants, k % instants));
       }
       EXPECT_TRUE(record || !there[k]) << "step " << k << " was lost by kill " << kill << ", seed " << seed_;
       there[k] = record ? 1 : 0;

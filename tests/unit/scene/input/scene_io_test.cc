@@ -66,7 +66,7 @@ TEST(SceneFile, ReadsValuesAndFillsDefaults) {
 
 TEST(SceneFile, LengthsWithoutAValueFollowTheBodysSize) {
   const FastSettings cube = parse_scene(good, "a.toml").fast;
-  EXPECT_EQ(cube.r_th_m, 0.004);
+  EXPECT_EQ(parse_scene(good, "a.toml").contact.r_th_m, 0.004);
   EXPECT_EQ(cube.r_R_m, 0.015);
   EXPECT_EQ(cube.C_r_m, 0.002);
   EXPECT_EQ(cube.s_c_m2, 0.001);
@@ -74,15 +74,15 @@ TEST(SceneFile, LengthsWithoutAValueFollowTheBodysSize) {
   const std::vector<std::string> slab = {"body.size_m=[0.12, 0.12, 0.12]", "track[0].position_m=[0, 0, 0.1305]",
                                          "track[1].position_m=[0, 0, 0.125]"};
   const Scene larger = parse_scene(good, "a.toml", slab);
-  EXPECT_EQ(larger.fast.r_th_m, 0.008);
+  EXPECT_EQ(larger.contact.r_th_m, 0.008);
   EXPECT_EQ(larger.fast.r_R_m, 0.03);
   EXPECT_EQ(larger.fast.C_r_m, 0.004);
   EXPECT_EQ(larger.fast.s_c_m2, 0.004);
   EXPECT_EQ(scene_hash(parse_scene(resolved_toml(larger), "a.toml")), scene_hash(larger));
   // What is given stays, and the others follow the body all the same.
   std::vector<std::string> given = slab;
-  given.push_back("fast.r_th_m=0.005");
-  EXPECT_EQ(parse_scene(good, "a.toml", given).fast.r_th_m, 0.005);
+  given.push_back("contact.r_th_m=0.005");
+  EXPECT_EQ(parse_scene(good, "a.toml", given).contact.r_th_m, 0.005);
   EXPECT_EQ(parse_scene(good, "a.toml", given).fast.r_R_m, 0.03);
 }
 
@@ -146,6 +146,16 @@ TEST(SceneFile, OverridesComeLastAndAreNamedInErrors) {
             "--set fast.C_m=1: unknown key \"fast.C_m\"; did you mean \"fast.C_n\"?");
   EXPECT_THAT(message_for("= 0.5", "= 0.5", {"fast.triangles=1.5"}), HasSubstr("a whole number in [12, 100000]"));
   EXPECT_THAT(message_for("= 0.5", "= 0.5", {"nonsense"}), HasSubstr("expected key=value"));
+}
+
+TEST(SceneFile, AFormerNameIsRefusedWithItsNewName) {
+  const std::string message = "fast.r_th_m is contact.r_th_m now, because the reference reads it too";
+  EXPECT_EQ(message_for("[tool]", "[fast]\nr_th_m = 0.004\n[tool]"), "a.toml:8:1: " + message);
+  EXPECT_EQ(message_for("[tool]", "[fast]\nC_n = 0.1\nr_th_m = \"wide\"\n[tool]"), "a.toml:9:1: " + message);
+  EXPECT_EQ(message_for("[tool]", "[tool]", {"fast.r_th_m=0.004"}), "--set fast.r_th_m=0.004: " + message);
+  // Every new name is a key, and no former one.
+  EXPECT_EQ(message_for("[tool]", "[tool]", {"contact.r_th_m=0.004"}), "no error");
+  EXPECT_EQ(former_name_message("contact.r_th_m"), "");
 }
 
 TEST(SceneFile, ResolvedSceneLoadsToTheSameScene) {
@@ -247,6 +257,29 @@ TEST(Fields, EveryDefaultIsInItsOwnRange) {
   }
 }
 
+TEST(Fields, WhatMayBeTunedIsAConstantOrAChoiceOfTheFastModel) {
+  std::set<std::string_view> names, shared;
+  for (const auto& field : scene_fields()) {
+    if (!field.tunable) continue;
+    EXPECT_TRUE(fast_reads(field.side)) << field.key;
+    if (reference_reads(field.side)) shared.insert(field.key);
+    EXPECT_EQ(std::holds_alternative<Choice<Scene>>(field.access), field.tunable->stage == TuningStage::model)
+        << field.key;
+    EXPECT_TRUE(field.tunable->stage == TuningStage::model || std::holds_alternative<double& (*)(Scene&)>(field.access))
+        << field.key;
+    for (const std::string_view name :
+         {field.key, field.tunable->per_mass ? field.tunable->per_mass->key : std::string_view("")}) {
+      if (name.empty()) continue;
+      EXPECT_TRUE(names.insert(name).second) << name;
+      EXPECT_EQ(tunable_field(name), &field) << name;
+    }
+  }
+  EXPECT_EQ(tunable_field("contact.r_th_m"), nullptr);
+  EXPECT_EQ(tunable_field(""), nullptr);
+  // Taking these over makes a stored reference stale; reports/tuning.md and every file with them say so.
+  EXPECT_THAT(shared, testing::ElementsAre("contact.friction.K", "contact.friction.beta", "contact.friction.mu_D"));
+}
+
 TEST(Documentation, SceneReferenceIsTheTable) {
   std::ifstream in(source_folder() + "/reports/scene-reference.md");
   std::stringstream text;
@@ -275,6 +308,12 @@ class IncludeTest : public testing::Test {
   }
   std::filesystem::path dir_;
 };
+
+TEST_F(IncludeTest, AFormerNameIsRefusedWhereItStands) {
+  write("[contact]\nk3_n_per_m3 = 1e8\n[fast]\nr_th_m = 0.004\n");
+  EXPECT_EQ(refusal(), (dir_ / "parameters.toml").string() +
+                           ":4:1: fast.r_th_m is contact.r_th_m now, because the reference reads it too");
+}
 
 TEST_F(IncludeTest, GivesWhatTheSceneDoesNotSay) {
   write("[fast]\ns_c_m2 = 0.5\n[contact]\nk1_n_per_m = 77.0\n");

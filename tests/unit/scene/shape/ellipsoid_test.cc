@@ -1,4 +1,4 @@
-#include "scene/shape/shape.h"
+#include "scene/shape/ellipsoid.h"
 
 #include <gtest/gtest.h>
 

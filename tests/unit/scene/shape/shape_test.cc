@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 #include <random>
 
@@ -32,6 +33,38 @@ TEST_P(EveryShape, PatchPointsLieOnTheSurfaceWithTheQueriesNormal) {
       }
     }
   }
+}
+
+TEST_P(EveryShape, PatchesOfOneFaceMeetSmoothly) {
+  const Shape& shape = *GetParam().shape;
+  ASSERT_EQ(shape.face_of(0), 0);
+  for (int patch = 1; patch < shape.patch_count(); ++patch) {
+    const int face = shape.face_of(patch), before = shape.face_of(patch - 1);
+    EXPECT_TRUE(face == before || face == before + 1);
+    if (face != before) continue;
+    // Some of their borders coincide.
+    double nearest = 2.0;
+    for (double u : {0.0, 1.0}) {
+      for (double v : {0.0, 1.0}) {
+        const SurfacePoint p = shape.at(patch, u, v);
+        for (double s : {0.0, 1.0}) {
+          for (double t : {0.0, 1.0}) {
+            const SurfacePoint q = shape.at(patch - 1, s, t);
+            if ((p.point_m - q.point_m).norm() < 1e-12) nearest = std::min(nearest, (p.normal - q.normal).norm());
+          }
+        }
+      }
+    }
+    EXPECT_LT(nearest, 1e-6) << patch;
+  }
+}
+
+TEST(Faces, MeetAtTheEdges) {
+  EXPECT_EQ(box.face_of(5), 5);
+  EXPECT_EQ(sphere.face_of(7), 0);
+  const Revolution capsule(capsule_profile(0.01, 0.03)), cylinder(cylinder_profile(0.02, 0.03, 0.0));
+  EXPECT_EQ(capsule.face_of(capsule.patch_count() - 1), 0);
+  EXPECT_EQ(cylinder.face_of(cylinder.patch_count() - 1), 2);
 }
 
 TEST_P(EveryShape, PatchesCoverTheArea) {

@@ -1,15 +1,24 @@
+#include "scene/shape/octants.h"
+
 #include "scene/shape/surface_builder.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace touchstone::scene {
-namespace {
 
-/// n^2 triangles in each octant, as a sphere over the flat octahedron gives them.
-/// @param place takes a point of the unit sphere to a vertex
-template <class Place>
-Surface octants(int triangles, const Place& place) {
+Vec3 octant_point(int patch, double u, double v) noexcept {
+  const double azimuth = 0.5 * std::numbers::pi * u;
+  const double polar = 0.5 * std::numbers::pi * v;
+  Vec3 point(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar));
+  for (int axis = 0; axis < 3; ++axis) {
+    if (patch >> axis & 1) point[axis] = -point[axis];
+  }
+  return point;
+}
+
+Surface octant_surface(int triangles, const std::function<SurfacePoint(const Vec3&)>& place) {
   const int n = std::max(1, static_cast<int>(std::lround(std::sqrt(triangles / 8.0))));
   SurfaceBuilder builder;
   for (int patch = 0; patch < 8; ++patch) {
@@ -36,18 +45,6 @@ Surface octants(int triangles, const Place& place) {
     }
   }
   return builder.finish();
-}
-
-}  // namespace
-
-Surface Sphere::tessellated(int triangles) const {
-  return octants(triangles, [&](const Vec3& unit) { return SurfacePoint{center_m_ + radius_m_ * unit, unit}; });
-}
-
-Surface Ellipsoid::tessellated(int triangles) const {
-  return octants(triangles, [&](const Vec3& unit) {
-    return SurfacePoint{center_m_ + semi_axes_m_.cwiseProduct(unit), unit.cwiseQuotient(semi_axes_m_).normalized()};
-  });
 }
 
 }  // namespace touchstone::scene

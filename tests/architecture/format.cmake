@@ -1,0 +1,17 @@
+# cmake -DSOURCE_DIR=... -P format.cmake: every C++ file is as clang-format leaves it.
+cmake_minimum_required(VERSION 3.25)
+find_program(CLANG_FORMAT clang-format REQUIRED)
+set(files "")
+foreach(folder meshes fast reference compare tests)
+  file(GLOB_RECURSE found LIST_DIRECTORIES FALSE ${SOURCE_DIR}/${folder}/*.h ${SOURCE_DIR}/${folder}/*.cc)
+  list(APPEND files ${found})
+endforeach()
+list(FILTER files EXCLUDE REGEX "/node_modules/")
+if(NOT files)
+  message(FATAL_ERROR "no C++ file below ${SOURCE_DIR}")
+endif()
+execute_process(COMMAND ${CLANG_FORMAT} --style=file:${CMAKE_CURRENT_LIST_DIR}/../../.clang-format --dry-run -Werror ${files}
+  ERROR_VARIABLE faults RESULT_VARIABLE result)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "${faults}\nclang-format -i FILE puts it right")
+endif()
