@@ -1,5 +1,7 @@
 #include "fast/bench/bullet_peer.h"
 
+#include "scene/base/index.h"
+
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletSoftBody/btDeformableBodySolver.h>
 #include <BulletSoftBody/btDeformableMultiBodyConstraintSolver.h>
@@ -153,16 +155,15 @@ struct BulletPeer::World {
         node[c] = index(i + (corner & 1), j + ((corner >> 1) & 1), k + ((corner >> 2) & 1));
       }
       // Mirrored tetrahedra are turned inside out.
-      const Vec3 a = rest_m[static_cast<std::size_t>(node[1])] - rest_m[static_cast<std::size_t>(node[0])];
-      const Vec3 b = rest_m[static_cast<std::size_t>(node[2])] - rest_m[static_cast<std::size_t>(node[0])];
-      const Vec3 c = rest_m[static_cast<std::size_t>(node[3])] - rest_m[static_cast<std::size_t>(node[0])];
+      const Vec3 a = nth(rest_m, node[1]) - nth(rest_m, node[0]);
+      const Vec3 b = nth(rest_m, node[2]) - nth(rest_m, node[0]);
+      const Vec3 c = nth(rest_m, node[3]) - nth(rest_m, node[0]);
       if (a.cross(b).dot(c) < 0.0) std::swap(node[2], node[3]);
       body->appendTetra(node[0], node[1], node[2], node[3]);
       // Bullet's tree of the nodes never ends without links.
       for (int first = 0; first < 4; ++first) {
         for (int second = first + 1; second < 4; ++second) {
-          body->appendLink(node[static_cast<std::size_t>(first)], node[static_cast<std::size_t>(second)], nullptr,
-                           true);
+          body->appendLink(nth(node, first), nth(node, second), nullptr, true);
         }
       }
     }
@@ -187,12 +188,12 @@ void BulletPeer::step(const Vec3& ball_center_m) {
 int BulletPeer::surface_triangles() const noexcept { return world_->body->m_faces.size(); }
 int BulletPeer::tetrahedra() const noexcept { return world_->body->m_tetras.size(); }
 
-Vec3 BulletPeer::top_node_m() const noexcept { return world_->rest_m[static_cast<std::size_t>(world_->top_middle)]; }
+Vec3 BulletPeer::top_node_m() const noexcept { return nth(world_->rest_m, world_->top_middle); }
 
 bool BulletPeer::sound() const noexcept {
   const auto& nodes = world_->body->m_nodes;
   for (int i = 0; i < nodes.size(); ++i) {
-    const Vec3 moved_m = from_bullet(nodes[i].m_x) - world_->rest_m[static_cast<std::size_t>(i)];
+    const Vec3 moved_m = from_bullet(nodes[i].m_x) - nth(world_->rest_m, i);
     if (!moved_m.allFinite() || moved_m.norm() > 2.0 * world_->scene.edge_m) return false;
   }
   return true;
@@ -207,16 +208,15 @@ Eigen::Matrix3Xd BulletPeer::displacement_m(const Eigen::Matrix3Xd& rest_points_
     std::array<int, 3> cell{};
     Vec3 in_cell;
     for (int axis = 0; axis < 3; ++axis) {
-      cell[static_cast<std::size_t>(axis)] = std::clamp(static_cast<int>(std::floor(at[axis])), 0, n - 1);
-      in_cell[axis] = std::clamp(at[axis] - cell[static_cast<std::size_t>(axis)], 0.0, 1.0);
+      nth(cell, axis) = std::clamp(static_cast<int>(std::floor(at[axis])), 0, n - 1);
+      in_cell[axis] = std::clamp(at[axis] - nth(cell, axis), 0.0, 1.0);
     }
     for (int corner = 0; corner < 8; ++corner) {
       const int i = cell[0] + (corner & 1), j = cell[1] + ((corner >> 1) & 1), l = cell[2] + ((corner >> 2) & 1);
       const int node = (l * (n + 1) + j) * (n + 1) + i;
       double weight = 1.0;
       for (int axis = 0; axis < 3; ++axis) weight *= (corner >> axis) & 1 ? in_cell[axis] : 1.0 - in_cell[axis];
-      u_m.col(k) +=
-          weight * (from_bullet(world_->body->m_nodes[node].m_x) - world_->rest_m[static_cast<std::size_t>(node)]);
+      u_m.col(k) += weight * (from_bullet(world_->body->m_nodes[node].m_x) - nth(world_->rest_m, node));
     }
   }
   return u_m;
@@ -224,7 +224,7 @@ Eigen::Matrix3Xd BulletPeer::displacement_m(const Eigen::Matrix3Xd& rest_points_
 
 double BulletPeer::dent_m() const noexcept {
   const int i = world_->top_middle;
-  return world_->rest_m[static_cast<std::size_t>(i)].z() - from_bullet(world_->body->m_nodes[i].m_x).z();
+  return nth(world_->rest_m, i).z() - from_bullet(world_->body->m_nodes[i].m_x).z();
 }
 
 double BulletPeer::pierced_m() const noexcept {

@@ -3,6 +3,7 @@
 #include "fast/bench/floor.h"
 #include "fast/bench/statistics.h"
 #include "fast/step/engine.h"
+#include "scene/base/index.h"
 #include "scene/base/stopwatch.h"
 
 #include <algorithm>
@@ -107,8 +108,7 @@ class Measurement {
     result.instructions = median(std::move(samples_.instructions));
     result.cycles = median(std::move(samples_.cycles));
     const fast::FastState& state = engine_.state();
-    for (int i = 0; i < state.region_count; ++i)
-      result.points += state.regions[static_cast<std::size_t>(i)].points.count;
+    for (int i = 0; i < state.region_count; ++i) result.points += nth(state.regions, i).points.count;
   }
 
  private:

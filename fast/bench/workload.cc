@@ -1,6 +1,7 @@
 #include "fast/bench/workload.h"
 
 #include "scene/base/error.h"
+#include "scene/base/index.h"
 
 #include <algorithm>
 #include <array>
@@ -72,8 +73,7 @@ Icosphere icosphere(int halvings) {
       const auto [entry, is_new] =
           middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(ball.points.size()));
       if (is_new) {
-        const Vec3 m =
-            (ball.points[static_cast<std::size_t>(a)] + ball.points[static_cast<std::size_t>(b)]).normalized();
+        const Vec3 m = (nth(ball.points, a) + nth(ball.points, b)).normalized();
         ball.points.push_back(m);
       }
       return entry->second;

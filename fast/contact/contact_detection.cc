@@ -2,6 +2,7 @@
 
 #include "fast/contact/point_loops.h"
 #include "fast/contact/rest_distance.h"
+#include "scene/base/index.h"
 #include "scene/shape/solids.h"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, co
   int count = 0;
   const auto nodes = static_cast<std::int32_t>(tool.tree.size());
   for (std::int32_t node = 0; node < nodes && count < limit;) {
-    const SampleBall& ball = tool.tree[static_cast<std::size_t>(node)];
+    const SampleBall& ball = nth(tool.tree, node);
     if (!may_touch(body, at.R_WT * ball.center_T_m + at.origin_W_m, ball.radius_m + margin_m)) {
       node = ball.next;
       continue;

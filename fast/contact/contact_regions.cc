@@ -1,5 +1,7 @@
 #include "fast/contact/contact_regions.h"
 
+#include "scene/base/index.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -67,7 +69,7 @@ ClusterGrid cluster_grid(const ToolSamples& tool, double r_th_m) {
     const bool whole = farthest2_m2(box, box) < (1.0 - rounding) * r2_m2;
     for (const std::int32_t i : members) {
       if (!whole || boxes.size() == static_cast<std::size_t>(first)) boxes.emplace_back();
-      grid.cell[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(boxes.size()) - 1;
+      nth(grid.cell, i) = static_cast<std::int32_t>(boxes.size()) - 1;
       boxes.back().add(point(static_cast<std::size_t>(i)));
     }
     cells_at[place] = {first, static_cast<std::int32_t>(boxes.size())};
@@ -80,7 +82,7 @@ ClusterGrid cluster_grid(const ToolSamples& tool, double r_th_m) {
         const auto there = cells_at.find({place[0] + k % 5 - 2, place[1] + k / 5 % 5 - 2, place[2] + k / 25 - 2});
         if (there == cells_at.end()) continue;
         for (std::int32_t b = std::max(there->second.first, a + 1); b < there->second.second; ++b) {
-          const Box &box_a = boxes[static_cast<std::size_t>(a)], &box_b = boxes[static_cast<std::size_t>(b)];
+          const Box &box_a = nth(boxes, a), &box_b = nth(boxes, b);
           if (nearest2_m2(box_a.lower_m, box_a.upper_m, box_b.lower_m, box_b.upper_m) >= (1.0 + rounding) * r2_m2)
             continue;
           grid.neighbours.push_back({b, farthest2_m2(box_a, box_b) < (1.0 - rounding) * r2_m2});
@@ -110,29 +112,27 @@ std::size_t ClusterScratch::memory_bytes() const noexcept {
 
 std::int32_t ClusterScratch::root(std::int32_t cell) noexcept {
   for (;;) {
-    Cell& here = cells_[static_cast<std::size_t>(cell)];
+    Cell& here = nth(cells_, cell);
     if (here.parent == cell) return cell;
-    here.parent = cells_[static_cast<std::size_t>(here.parent)].parent;
+    here.parent = nth(cells_, here.parent).parent;
     cell = here.parent;
   }
 }
 
 void ClusterScratch::join(std::int32_t a, std::int32_t b) noexcept {
   const std::int32_t root_a = root(a), root_b = root(b);
-  cells_[static_cast<std::size_t>(std::max(root_a, root_b))].parent = std::min(root_a, root_b);
+  nth(cells_, std::max(root_a, root_b)).parent = std::min(root_a, root_b);
 }
 
 bool ClusterScratch::near(const ClusterGrid& grid, const RegionPoints& points, std::int32_t a,
                           std::int32_t b) const noexcept {
   const double r2_m2 = grid.r_th_m * grid.r_th_m, loose2_m2 = (1.0 + rounding) * r2_m2;
-  const Box& box = grid.box[static_cast<std::size_t>(b)];
-  const auto place = [&](std::int32_t i) -> const Vec3& {
-    return grid.sample_T_m[static_cast<std::size_t>(points.sample[static_cast<std::size_t>(i)])];
-  };
-  for (std::int32_t i = cells_[static_cast<std::size_t>(a)].first; i >= 0; i = next_[static_cast<std::size_t>(i)]) {
+  const Box& box = nth(grid.box, b);
+  const auto place = [&](std::int32_t i) -> const Vec3& { return nth(grid.sample_T_m, nth(points.sample, i)); };
+  for (std::int32_t i = nth(cells_, a).first; i >= 0; i = nth(next_, i)) {
     const Vec3& p_m = place(i);
     if (nearest2_m2(p_m, p_m, box.lower_m, box.upper_m) > loose2_m2) continue;
-    for (std::int32_t k = cells_[static_cast<std::size_t>(b)].first; k >= 0; k = next_[static_cast<std::size_t>(k)])
+    for (std::int32_t k = nth(cells_, b).first; k >= 0; k = nth(next_, k))
       if ((place(k) - p_m).squaredNorm() < r2_m2) return true;
   }
   return false;
@@ -144,8 +144,8 @@ ClusterCount cluster(const ClusterGrid& grid, RegionPoints& all, ClusterScratch&
   auto& cells = scratch.cells_;
   std::size_t occupied = 0;
   for (std::size_t i = 0; i < points; ++i) {
-    const std::int32_t number = grid.cell[static_cast<std::size_t>(all.sample[i])];
-    ClusterScratch::Cell& cell = cells[static_cast<std::size_t>(number)];
+    const std::int32_t number = nth(grid.cell, all.sample[i]);
+    ClusterScratch::Cell& cell = nth(cells, number);
     if (cell.first < 0) {
       cell = {number, -1, -1};
       scratch.occupied_[occupied++] = number;
@@ -158,11 +158,11 @@ ClusterCount cluster(const ClusterGrid& grid, RegionPoints& all, ClusterScratch&
   for (const bool certain : {true, false}) {
     for (std::size_t o = 0; o < occupied; ++o) {
       const std::int32_t a = scratch.occupied_[o];
-      const auto begin = static_cast<std::size_t>(grid.neighbour_begin[static_cast<std::size_t>(a)]),
+      const auto begin = static_cast<std::size_t>(nth(grid.neighbour_begin, a)),
                  end = static_cast<std::size_t>(grid.neighbour_begin[static_cast<std::size_t>(a) + 1]);
       for (std::size_t n = begin; n < end; ++n) {
         const ClusterGrid::Neighbour& neighbour = grid.neighbours[n];
-        const ClusterScratch::Cell& b = cells[static_cast<std::size_t>(neighbour.cell)];
+        const ClusterScratch::Cell& b = nth(cells, neighbour.cell);
         if (neighbour.certain != certain || b.first < 0) continue;
         if (certain) {
           scratch.join(a, neighbour.cell);
@@ -177,20 +177,20 @@ ClusterCount cluster(const ClusterGrid& grid, RegionPoints& all, ClusterScratch&
   std::size_t clusters = 0;
   for (std::size_t o = 0; o < occupied; ++o) {
     const std::int32_t cell = scratch.occupied_[o];
-    std::int32_t& number = cells[static_cast<std::size_t>(scratch.root(cell))].cluster;
+    std::int32_t& number = nth(cells, scratch.root(cell)).cluster;
     if (number < 0) {
       number = static_cast<std::int32_t>(clusters);
       scratch.area_m2_[clusters++] = 0.0;
     }
-    cells[static_cast<std::size_t>(cell)].cluster = number;
+    nth(cells, cell).cluster = number;
   }
   for (std::size_t i = 0; i < points; ++i) {
-    const auto cell = static_cast<std::size_t>(grid.cell[static_cast<std::size_t>(all.sample[i])]);
+    const auto cell = static_cast<std::size_t>(nth(grid.cell, all.sample[i]));
     const std::int32_t number = cells[cell].cluster;
     scratch.of_point_[i] = number;
-    scratch.area_m2_[static_cast<std::size_t>(number)] += all.area_m2[i];
+    nth(scratch.area_m2_, number) += all.area_m2[i];
   }
-  for (std::size_t o = 0; o < occupied; ++o) cells[static_cast<std::size_t>(scratch.occupied_[o])].first = -1;
+  for (std::size_t o = 0; o < occupied; ++o) nth(cells, scratch.occupied_[o]).first = -1;
 
   // rank_: a cluster's place among those kept, -1 for one that is not.
   const std::size_t kept = std::min(clusters, out.size());
@@ -199,23 +199,22 @@ ClusterCount cluster(const ClusterGrid& grid, RegionPoints& all, ClusterScratch&
   if (kept < clusters) {
     std::nth_element(order, order + static_cast<std::ptrdiff_t>(kept), order + static_cast<std::ptrdiff_t>(clusters),
                      [&](std::int32_t a, std::int32_t b) {
-                       const double area_a = scratch.area_m2_[static_cast<std::size_t>(a)],
-                                    area_b = scratch.area_m2_[static_cast<std::size_t>(b)];
+                       const double area_a = nth(scratch.area_m2_, a), area_b = nth(scratch.area_m2_, b);
                        return area_a != area_b ? area_a > area_b : a < b;
                      });
     std::sort(order, order + static_cast<std::ptrdiff_t>(kept));
   }
   std::fill_n(scratch.rank_.begin(), clusters, -1);
   for (std::size_t k = 0; k < kept; ++k) {
-    scratch.rank_[static_cast<std::size_t>(scratch.order_[k])] = static_cast<std::int32_t>(k);
+    nth(scratch.rank_, scratch.order_[k]) = static_cast<std::int32_t>(k);
     out[k] = Cluster{};
     out[k].deepest_m = -std::numeric_limits<double>::infinity();
   }
 
   for (std::size_t i = 0; i < points; ++i) {
     std::int32_t& rank = scratch.of_point_[i];
-    rank = scratch.rank_[static_cast<std::size_t>(rank)];
-    if (rank >= 0) ++out[static_cast<std::size_t>(rank)].points.size;
+    rank = nth(scratch.rank_, rank);
+    if (rank >= 0) ++nth(out, rank).points.size;
   }
   int begin = 0;
   for (std::size_t k = 0; k < kept; ++k) {
@@ -226,8 +225,8 @@ ClusterCount cluster(const ClusterGrid& grid, RegionPoints& all, ClusterScratch&
   for (std::size_t i = 0; i < points; ++i) {
     const std::int32_t rank = scratch.of_point_[i];
     if (rank < 0) continue;
-    auto& place = scratch.begin_[static_cast<std::size_t>(rank)];
-    scratch.order_[static_cast<std::size_t>(place++)] = static_cast<std::int32_t>(i);
+    auto& place = nth(scratch.begin_, rank);
+    nth(scratch.order_, place++) = static_cast<std::int32_t>(i);
   }
   const std::span<const std::int32_t> by_cluster(scratch.order_.data(), static_cast<std::size_t>(begin));
   if (by_cluster.size() < points || !std::is_sorted(by_cluster.begin(), by_cluster.end()))
@@ -262,7 +261,7 @@ std::size_t RegionTracker::memory_bytes() const noexcept {
 }
 
 void RegionTracker::forget() noexcept {
-  for (std::size_t k = 0; k < labelled_count_; ++k) label_[static_cast<std::size_t>(labelled_[k])] = -1;
+  for (std::size_t k = 0; k < labelled_count_; ++k) nth(label_, labelled_[k]) = -1;
   labelled_count_ = 0;
   count_ = 0;
 }
@@ -277,7 +276,7 @@ Tracking RegionTracker::track(const RegionPoints& points, std::span<const Cluste
     const PointRange& range = clusters[c].points;
     for (int i = range.begin; i < range.begin + range.size; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      const std::int16_t label = label_[static_cast<std::size_t>(points.sample[k])];
+      const std::int16_t label = nth(label_, points.sample[k]);
       if (label < 0) continue;
       // A sample without area still is one.
       votes(c, static_cast<std::size_t>(label)) += points.area_m2[k] + std::numeric_limits<double>::min();
@@ -292,7 +291,7 @@ Tracking RegionTracker::track(const RegionPoints& points, std::span<const Cluste
       if (best < 0 || votes(c, r) > votes(static_cast<std::size_t>(best), r)) best = static_cast<std::int32_t>(c);
     }
     of_region_[r] = best;
-    if (best >= 0) of_cluster_[static_cast<std::size_t>(best)] = static_cast<std::int32_t>(r);
+    if (best >= 0) nth(of_cluster_, best) = static_cast<std::int32_t>(r);
   }
   for (std::size_t r = 0; r < regions; ++r) {
     if (of_region_[r] >= 0) continue;
@@ -306,7 +305,7 @@ Tracking RegionTracker::track(const RegionPoints& points, std::span<const Cluste
       nearest_m = distance_m;
       of_region_[r] = static_cast<std::int32_t>(c);
     }
-    if (of_region_[r] >= 0) of_cluster_[static_cast<std::size_t>(of_region_[r])] = static_cast<std::int32_t>(r);
+    if (of_region_[r] >= 0) nth(of_cluster_, of_region_[r]) = static_cast<std::int32_t>(r);
   }
 
   Tracking tracking;
@@ -317,11 +316,11 @@ Tracking RegionTracker::track(const RegionPoints& points, std::span<const Cluste
     std::int32_t deepest = -1;
     for (std::size_t c = 0; c < clusters.size(); ++c) {
       if (of_cluster_[c] >= 0) continue;
-      if (deepest < 0 || clusters[c].deepest_m > clusters[static_cast<std::size_t>(deepest)].deepest_m)
+      if (deepest < 0 || clusters[c].deepest_m > nth(clusters, deepest).deepest_m)
         deepest = static_cast<std::int32_t>(c);
     }
     if (deepest < 0) break;
-    of_cluster_[static_cast<std::size_t>(deepest)] = 0;
+    nth(of_cluster_, deepest) = 0;
     if (count < capacity) {
       out[count++] = {-1, static_cast<int>(deepest)};
     } else {
@@ -331,11 +330,11 @@ Tracking RegionTracker::track(const RegionPoints& points, std::span<const Cluste
 
   forget();
   for (std::size_t r = 0; r < count; ++r) {
-    const Cluster& taken = clusters[static_cast<std::size_t>(out[r].cluster)];
+    const Cluster& taken = nth(clusters, out[r].cluster);
     centers_W_m_[r] = taken.center_W_m;
     for (int i = taken.points.begin; i < taken.points.begin + taken.points.size; ++i) {
-      const std::int32_t sample = points.sample[static_cast<std::size_t>(i)];
-      std::int16_t& label = label_[static_cast<std::size_t>(sample)];
+      const std::int32_t sample = nth(points.sample, i);
+      std::int16_t& label = nth(label_, sample);
       if (label < 0) labelled_[labelled_count_++] = sample;
       label = static_cast<std::int16_t>(r);
     }

@@ -3,6 +3,7 @@
 #include "fast/contact/cell_batch.h"
 #include "fast/contact/rest_distance.h"
 #include "fast/contact/tool_samples.h"
+#include "scene/base/index.h"
 #include "scene/shape/solids.h"
 
 #include <algorithm>
@@ -425,7 +426,7 @@ InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, con
   found.begin_round();
   const auto nodes = static_cast<std::int32_t>(tool.tree.size());
   for (std::int32_t node = 0; node < nodes;) {
-    const SampleBall& ball = tool.tree[static_cast<std::size_t>(node)];
+    const SampleBall& ball = nth(tool.tree, node);
     if (!may_touch(body, at.R_WT * ball.center_T_m + at.origin_W_m,
                    std::max(ball.cells_radius_m, ball.radius_m + margin_m))) {
       node = ball.next;
@@ -433,7 +434,7 @@ InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, con
     }
     ++node;
     if (!ball.leaf) continue;
-    for (std::int32_t i = ball.begin; i < ball.end; ++i) found.look_at(tool.cell[static_cast<std::size_t>(i)], i);
+    for (std::int32_t i = ball.begin; i < ball.end; ++i) found.look_at(nth(tool.cell, i), i);
   }
   found.end_round();
   bool of_tool = true, room = 4 * near.size() <= max_cells;

@@ -2,6 +2,7 @@
 
 #include "fast/contact/rest_distance.h"
 #include "fast/realtime/wide_loops.h"
+#include "scene/base/index.h"
 #include "scene/shape/solids.h"
 
 #include <algorithm>
@@ -38,15 +39,14 @@ void set_lane(PointLanes::Lane3& lane, std::size_t v, const Vec3& x) noexcept {
 /// block is repeated.
 template <class Use>
 void in_blocks(Indices& all, PullBackScratch& scratch, const Use& use) noexcept {
-  const auto patch_of = [&](std::int32_t i) { return scratch.foot[static_cast<std::size_t>(i)].rest.patch; };
+  const auto patch_of = [&](std::int32_t i) { return nth(scratch.foot, i).rest.patch; };
   for (auto begin = all.begin(); begin != all.end();) {
     const int patch = patch_of(*begin);
     const auto end = std::partition(begin, all.end(), [&](std::int32_t i) { return patch_of(i) == patch; });
     while (begin != end) {
       const auto count = std::min(static_cast<std::size_t>(end - begin), PointLanes::size);
       for (std::size_t v = 0; v < PointLanes::size; ++v) {
-        const SurfaceQuery& rest =
-            scratch.foot[static_cast<std::size_t>(begin[static_cast<std::ptrdiff_t>(std::min(v, count - 1))])].rest;
+        const SurfaceQuery& rest = nth(scratch.foot, begin[static_cast<std::ptrdiff_t>(std::min(v, count - 1))]).rest;
         set_lane(scratch.lanes.point_m, v, rest.point_m);
         set_lane(scratch.lanes.normal, v, rest.normal);
       }
@@ -217,7 +217,7 @@ InsideSummary pull_back(const scene::Shape& shape, const DisplacedSurface& surfa
   const double size_m = (bounds.upper_m - bounds.lower_m).maxCoeff();
   const double step_m = slope_step_rel * size_m, settled_m2 = settled_rel * size_m * settled_rel * size_m;
   const auto p_W_m = [&](std::int32_t i) { return points.p_W_m(static_cast<std::size_t>(i)); };
-  const auto foot = [&](std::int32_t i) -> Foot& { return scratch.foot[static_cast<std::size_t>(i)]; };
+  const auto foot = [&](std::int32_t i) -> Foot& { return nth(scratch.foot, i); };
 
   const Sheet sheet(body, surface, points, scratch.fit, scratch.lanes);
   sheet.least_heights_m(points, scratch.height_m.data());
@@ -225,7 +225,7 @@ InsideSummary pull_back(const scene::Shape& shape, const DisplacedSurface& surfa
   for (std::int32_t i = 0; i < points.count; ++i) {
     Foot& here = foot(i);
     here.distance_m = 0.0;
-    if (scratch.height_m[static_cast<std::size_t>(i)] >= 0.0) continue;
+    if (nth(scratch.height_m, i) >= 0.0) continue;
     const Vec3 p_m = p_W_m(i);
     const double depth_m = points.depth_m[i];
     here.rest = closest(body, p_m);

@@ -1,5 +1,7 @@
 #include "fast/contact/region_points.h"
 
+#include "scene/base/index.h"
+
 #include <array>
 #include <bit>
 #include <limits>
@@ -38,8 +40,7 @@ void RegionPoints::move(int from, int to) noexcept {
 
 void RegionPoints::reorder(std::span<const std::int32_t> order, double* scratch) noexcept {
   const auto through_scratch = [&](auto* column) {
-    for (std::size_t k = 0; k < order.size(); ++k)
-      scratch[k] = static_cast<double>(column[static_cast<std::size_t>(order[k])]);
+    for (std::size_t k = 0; k < order.size(); ++k) scratch[k] = static_cast<double>(nth(column, order[k]));
     for (std::size_t k = 0; k < order.size(); ++k)
       column[k] = static_cast<std::remove_reference_t<decltype(*column)>>(scratch[k]);
   };
@@ -47,8 +48,7 @@ void RegionPoints::reorder(std::span<const std::int32_t> order, double* scratch)
   for (std::size_t c = 0; c < (spread ? of_a_piece : of_a_sample); ++c) through_scratch(*all[c]);
   through_scratch(sample);
   if (spread) {
-    for (std::size_t k = 0; k < order.size(); ++k)
-      scratch[k] = std::bit_cast<double>(cell[static_cast<std::size_t>(order[k])]);
+    for (std::size_t k = 0; k < order.size(); ++k) scratch[k] = std::bit_cast<double>(nth(cell, order[k]));
     for (std::size_t k = 0; k < order.size(); ++k) cell[k] = std::bit_cast<const SurfaceCell*>(scratch[k]);
   }
   count = static_cast<int>(order.size());

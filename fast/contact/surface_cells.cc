@@ -1,5 +1,7 @@
 #include "fast/contact/surface_cells.h"
 
+#include "scene/base/index.h"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -74,8 +76,7 @@ Spread quadrilateral_spread(const std::array<Vec3, 4>& corner_m) noexcept {
 
 double farthest_m(const SurfaceCell& cell) noexcept {
   double farthest2_m2 = 0.0;
-  for (int k = 0; k < cell.corners; ++k)
-    farthest2_m2 = std::max(farthest2_m2, cell.corner_m[static_cast<std::size_t>(k)].squaredNorm());
+  for (int k = 0; k < cell.corners; ++k) farthest2_m2 = std::max(farthest2_m2, nth(cell.corner_m, k).squaredNorm());
   return std::sqrt(farthest2_m2);
 }
 
@@ -102,9 +103,7 @@ std::array<SurfaceCell, 2> band_halves(const SurfaceCell& cell) noexcept {
 }
 
 std::array<SurfaceCell, 2> flat_halves(const SurfaceCell& cell) noexcept {
-  const auto corner = [&](int k) -> Vec3 {
-    return cell.center_T_m + cell.corner_m[static_cast<std::size_t>(k % cell.corners)];
-  };
+  const auto corner = [&](int k) -> Vec3 { return cell.center_T_m + nth(cell.corner_m, k % cell.corners); };
   int longest = 0;
   double length2_m2 = -1.0;
   for (int side = 0; side < cell.corners; ++side) {
@@ -184,7 +183,7 @@ Outline outline(const SurfaceCell& cell) noexcept {
   const auto add = [&](const Vec3& corner_m) { border.corner_T_m[border.corners++] = corner_m; };
   constexpr double wide = 0.2;
   if (!cell.curved || cell.band.turn < wide) {
-    for (int k = 0; k < cell.corners; ++k) add(cell.center_T_m + cell.corner_m[static_cast<std::size_t>(k)]);
+    for (int k = 0; k < cell.corners; ++k) add(cell.center_T_m + nth(cell.corner_m, k));
     return border;
   }
   const Band& band = cell.band;
@@ -198,15 +197,14 @@ Outline outline(const SurfaceCell& cell) noexcept {
 }
 
 SurfaceCell CellGroups::cell(std::int32_t child) const noexcept {
-  return child >= 0 ? nodes[static_cast<std::size_t>(child)].cell
-                    : flat_cell(triangles_T_m[static_cast<std::size_t>(~child)]);
+  return child >= 0 ? nth(nodes, child).cell : flat_cell(nth(triangles_T_m, ~child));
 }
 
 SurfaceCell CellGroups::around(std::span<const std::int32_t> triangles) const {
   SurfaceCell cell;
   Vec3 center_sum = Vec3::Zero(), normal_sum = Vec3::Zero();
   for (const std::int32_t i : triangles) {
-    const SurfaceCell part = flat_cell(triangles_T_m[static_cast<std::size_t>(i)]);
+    const SurfaceCell part = flat_cell(nth(triangles_T_m, i));
     cell.area_m2 += part.area_m2;
     center_sum += part.area_m2 * part.center_T_m;
     normal_sum += part.area_m2 * part.normal_T;
@@ -217,7 +215,7 @@ SurfaceCell CellGroups::around(std::span<const std::int32_t> triangles) const {
   cell.normal_T = normal_sum.normalized();
   scene::Mat3 second_m2 = scene::Mat3::Zero();
   for (const std::int32_t i : triangles) {
-    const SurfaceCell part = flat_cell(triangles_T_m[static_cast<std::size_t>(i)]);
+    const SurfaceCell part = flat_cell(nth(triangles_T_m, i));
     const Vec3 off_m = part.center_T_m - cell.center_T_m;
     second_m2 += part.area_m2 / surface_m2 *
                  (off_m * off_m.transpose() + part.spread_m[0] * part.spread_m[0].transpose() +
@@ -228,7 +226,7 @@ SurfaceCell CellGroups::around(std::span<const std::int32_t> triangles) const {
   const Vec3 u = axes.eigenvectors().col(2), v = cell.normal_T.cross(u).normalized(), w = u.cross(v);
   Vec3 half_m = Vec3::Zero();
   for (const std::int32_t i : triangles) {
-    for (const Vec3& corner_T_m : triangles_T_m[static_cast<std::size_t>(i)]) {
+    for (const Vec3& corner_T_m : nth(triangles_T_m, i)) {
       const Vec3 off_m = corner_T_m - cell.center_T_m;
       half_m = half_m.cwiseMax(Vec3(off_m.dot(u), off_m.dot(v), off_m.dot(w)).cwiseAbs());
       cell.radius_m = std::max(cell.radius_m, off_m.norm());
@@ -247,7 +245,7 @@ std::size_t CellGroups::memory_bytes() const noexcept {
 std::array<SurfaceCell, 2> halves(const SurfaceCell& cell, const CellGroups& groups) noexcept {
   std::array<SurfaceCell, 2> parts;
   if (cell.group >= 0) {
-    const CellGroups::Node& node = groups.nodes[static_cast<std::size_t>(cell.group)];
+    const CellGroups::Node& node = nth(groups.nodes, cell.group);
     parts = {groups.cell(node.child[0]), groups.cell(node.child[1])};
   } else {
     parts = cell.curved ? band_halves(cell) : flat_halves(cell);

@@ -1,5 +1,7 @@
 #include "fast/contact/tool_samples.h"
 
+#include "scene/base/index.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,9 +26,7 @@ class TreeBuilder {
   [[nodiscard]] std::vector<SampleBall> take() { return std::move(tree_); }
 
  private:
-  [[nodiscard]] const Vec3& at(std::int32_t i) const {
-    return points_m_[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])];
-  }
+  [[nodiscard]] const Vec3& at(std::int32_t i) const { return nth(points_m_, nth(order_, i)); }
 
   void split(std::int32_t begin, std::int32_t end) {
     Vec3 lower_m = at(begin), upper_m = at(begin);
@@ -39,7 +39,7 @@ class TreeBuilder {
     for (std::int32_t i = begin; i < end; ++i) {
       ball.radius_m = std::max(ball.radius_m, (at(i) - ball.center_T_m).norm());
       if (cells_.empty()) continue;
-      const SurfaceCell& cell = cells_[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])];
+      const SurfaceCell& cell = nth(cells_, nth(order_, i));
       ball.cells_radius_m = std::max(ball.cells_radius_m, (cell.center_T_m - ball.center_T_m).norm() + cell.radius_m);
     }
     // Rounding must not prune a sample that lies on the ball.
@@ -56,7 +56,7 @@ class TreeBuilder {
       const std::int32_t middle = (begin + end) / 2;
       const auto first = order_.begin();
       std::nth_element(first + begin, first + middle, first + end, [&](std::int32_t a, std::int32_t b) {
-        const Vec3 &pa = points_m_[static_cast<std::size_t>(a)], &pb = points_m_[static_cast<std::size_t>(b)];
+        const Vec3 &pa = nth(points_m_, a), &pb = nth(points_m_, b);
         return pa[axis] != pb[axis] ? pa[axis] < pb[axis] : a < b;
       });
       split(begin, middle);
@@ -89,16 +89,16 @@ ToolSamples in_tree_order(Cloud&& cloud, double surface_m2) {
   TreeBuilder builder(cloud.points_m, cloud.cells);
   ToolSamples samples;
   for (const std::int32_t i : builder.order()) {
-    if (!cloud.cells.empty()) samples.cell.push_back(cloud.cells[static_cast<std::size_t>(i)]);
+    if (!cloud.cells.empty()) samples.cell.push_back(nth(cloud.cells, i));
     if (!cloud.cells.empty()) samples.cell.back().sample = static_cast<std::int32_t>(samples.cell.size()) - 1;
-    const Vec3 &p = cloud.points_m[static_cast<std::size_t>(i)], &n = cloud.normals[static_cast<std::size_t>(i)];
+    const Vec3 &p = nth(cloud.points_m, i), &n = nth(cloud.normals, i);
     samples.x_T_m.push_back(p.x());
     samples.y_T_m.push_back(p.y());
     samples.z_T_m.push_back(p.z());
     samples.nx_T.push_back(n.x());
     samples.ny_T.push_back(n.y());
     samples.nz_T.push_back(n.z());
-    samples.area_m2.push_back(cloud.area_m2[static_cast<std::size_t>(i)]);
+    samples.area_m2.push_back(nth(cloud.area_m2, i));
   }
   samples.spacing_m = std::sqrt(surface_m2 / samples.count());
   samples.tree = builder.take();
@@ -127,7 +127,7 @@ ToolSamples sample_sphere(const scene::Sphere& tool, int count) {
     const double x = across * std::cos(0.5 * std::numbers::pi * turn),
                  y = across * std::sin(0.5 * std::numbers::pi * turn);
     const std::array<Vec3, on_ring> quarter{Vec3(x, y, z), Vec3(-y, x, z), Vec3(-x, -y, z), Vec3(y, -x, z)};
-    const Vec3& normal = quarter[static_cast<std::size_t>(i % on_ring)];
+    const Vec3& normal = nth(quarter, i % on_ring);
     cloud.points_m.push_back(tool.center_m() + tool.radius_m() * normal);
     cloud.normals.push_back(normal);
     cloud.area_m2.push_back(tool.area_m2() / count);
@@ -194,7 +194,7 @@ ToolSamples sample_revolution(const scene::Revolution& tool, int count) {
   Cloud cloud;
   const auto total = static_cast<int>(rings.size());
   for (int i = 0; i < total; ++i) {
-    const Ring& ring = rings[static_cast<std::size_t>(i)];
+    const Ring& ring = nth(rings, i);
     const int on_quarter = pieces(0.5 * pi * ring.rz_m.x(), spacing_m, 1);
     // Neighbouring rings stand on gaps; counted from either end, so that a mirrored profile has mirrored rings.
     const double shift = std::min(i, total - 1 - i) % 2 == 0 ? 0.5 : 0.0;
@@ -320,7 +320,7 @@ class Grouping {
                        return at_a != at_b ? at_a < at_b : a < b;
                      });
     const std::int32_t left = tree_of(begin, middle), right = tree_of(middle, end);
-    coarse_.groups.nodes[static_cast<std::size_t>(self)].child = {left, right};
+    nth(coarse_.groups.nodes, self).child = {left, right};
     return self;
   }
 

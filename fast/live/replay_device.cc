@@ -1,5 +1,7 @@
 #include "fast/live/replay_device.h"
 
+#include "scene/base/index.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -32,7 +34,7 @@ bool ReplayDevice::read(const Tick&, DeviceSample& sample) noexcept {
 
 void ReplayDevice::tick_done(const TickRecord& record) noexcept {
   if (record.sequence < 0 || record.sequence >= static_cast<std::int64_t>(ticks_.size())) return;
-  const TickRecord& row = ticks_[static_cast<std::size_t>(record.sequence)];
+  const TickRecord& row = nth(ticks_, record.sequence);
   ++compared_;
   if (equal_bits(record.model, row.model) && equal_bits(record.published, row.published)) return;
   if (unequal_++ == 0) first_unequal_ = record.sequence;

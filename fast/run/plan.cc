@@ -1,5 +1,6 @@
 #include "fast/run/run.h"
 #include "fast/step/engine.h"
+#include "scene/base/index.h"
 #include "scene/model/rest_depth.h"
 
 #include <fmt/format.h>
@@ -21,7 +22,7 @@ struct Measured {
 
   [[nodiscard]] std::string cost(std::initializer_list<Stage> stages) const {
     double sum_us = 0.0;
-    for (const Stage stage : stages) sum_us += stage_us[static_cast<std::size_t>(stage)];
+    for (const Stage stage : stages) sum_us += nth(stage_us, stage);
     return contact ? fmt::format("{:.2f} us a tick, measured", sum_us) : "no contact at the track's instants";
   }
 };
@@ -58,8 +59,7 @@ Measured measure(const scene::Scene& scene, Engine& engine) {
   for (std::size_t s = 0; s < stage_count; ++s) measured.stage_us[s] = percentile_us(std::move(stage_us[s]), 0.5);
   measured.step_us = percentile_us(std::move(step_us), 0.5);
   measured.contact = state.in_contact();
-  for (int i = 0; i < state.region_count; ++i)
-    measured.points += state.regions[static_cast<std::size_t>(i)].points.count;
+  for (int i = 0; i < state.region_count; ++i) measured.points += nth(state.regions, i).points.count;
   return measured;
 }
 

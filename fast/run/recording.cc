@@ -3,6 +3,7 @@
 #include "fast/run/ticks.h"
 #include "fast/step/stages.h"
 #include "fast/step/step.h"
+#include "scene/base/index.h"
 
 #include <algorithm>
 #include <array>
@@ -58,11 +59,10 @@ class OneRegion {
       if (std::none_of(inside.begin(), inside.end(), [&](std::int32_t near) { return joined(far, near); }))
         return false;
     }
-    const bool kept = last_.empty() || std::any_of(inside.begin(), inside.end(), [&](std::int32_t sample) {
-                        return was_[static_cast<std::size_t>(sample)] != 0;
-                      });
-    for (const std::int32_t sample : last_) was_[static_cast<std::size_t>(sample)] = 0;
-    for (const std::int32_t sample : inside) was_[static_cast<std::size_t>(sample)] = 1;
+    const bool kept = last_.empty() || std::any_of(inside.begin(), inside.end(),
+                                                   [&](std::int32_t sample) { return nth(was_, sample) != 0; });
+    for (const std::int32_t sample : last_) nth(was_, sample) = 0;
+    for (const std::int32_t sample : inside) nth(was_, sample) = 1;
     last_ = std::move(inside);
     // One cluster leaves its points in their order.
     std::array<Cluster, 2> found;

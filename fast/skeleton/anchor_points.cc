@@ -1,6 +1,7 @@
 #include "fast/skeleton/anchor_points.h"
 
 #include "fast/realtime/wide_loops.h"
+#include "scene/base/index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -80,9 +81,9 @@ bool AnchorPoints::first_between_its_anchors(int) const { return true; }
 
 PatchPlace AnchorPoints::place(int patch, const std::array<double, patch_corners_max>& weight) const noexcept {
   PatchPlace place{weight};
-  const auto& corner = patches_[static_cast<std::size_t>(patch)];
+  const auto& corner = nth(patches_, patch);
   for (std::size_t k = 0; k < corner.size(); ++k) {
-    if (!held_[static_cast<std::size_t>(corner[k])]) place.free += weight[k];
+    if (!nth(held_, corner[k])) place.free += weight[k];
   }
   return place;
 }
@@ -119,13 +120,13 @@ BoxAnchors::BoxAnchors(const scene::Box& box) : box_(box) {
 }
 
 std::vector<int> BoxAnchors::around(int patch) const {
-  const auto& corner = patches_[static_cast<std::size_t>(patch)];
+  const auto& corner = nth(patches_, patch);
   return {corner[0], corner[1], corner[3], corner[2]};
 }
 
 Vec3 BoxAnchors::halfway_m(int, int i, int j) const {
   // Two corners of one face: the straight line between them lies on it.
-  return 0.5 * (points_m_[static_cast<std::size_t>(i)] + points_m_[static_cast<std::size_t>(j)]);
+  return 0.5 * (nth(points_m_, i) + nth(points_m_, j));
 }
 
 PatchPlace BoxAnchors::at(int patch, const Vec3& p_m) const noexcept {
@@ -139,13 +140,12 @@ PatchPlace BoxAnchors::at(int patch, const Vec3& p_m) const noexcept {
 void BoxAnchors::at(int patch, const std::array<std::span<const double>, 3>& p_m,
                     const PlaceColumns& out) const noexcept {
   const auto axes = face_axes(patch);
-  const std::span<const double> u_m = p_m[static_cast<std::size_t>(axes.u)],
-                                v_m = p_m[static_cast<std::size_t>(axes.v)];
+  const std::span<const double> u_m = nth(p_m, axes.u), v_m = nth(p_m, axes.v);
   const Eigen::Vector2d center_m(box_.center_m()[axes.u], box_.center_m()[axes.v]);
   const Eigen::Vector2d half_m(box_.half_m()[axes.u], box_.half_m()[axes.v]);
   std::array<float, patch_corners_max> free;
   for (std::size_t k = 0; k < free.size(); ++k) {
-    free[k] = held_[static_cast<std::size_t>(patches_[static_cast<std::size_t>(patch)][k])] ? 0.0f : 1.0f;
+    free[k] = nth(held_, nth(patches_, patch)[k]) ? 0.0f : 1.0f;
   }
   face_places(u_m, v_m, center_m, half_m, free, out);
 }
@@ -173,7 +173,7 @@ EllipsoidAnchors::EllipsoidAnchors(const scene::Shape& shape, const Vec3& center
 }
 
 std::vector<int> EllipsoidAnchors::around(int patch) const {
-  const auto& corner = patches_[static_cast<std::size_t>(patch)];
+  const auto& corner = nth(patches_, patch);
   return {corner[0], corner[1], corner[2]};
 }
 
@@ -206,7 +206,7 @@ RevolutionAnchors::RevolutionAnchors(const scene::Revolution& revolution, double
   const int pieces = revolution.piece_count();
   parts_.resize(static_cast<std::size_t>(pieces));
   for (int k = 0; k < pieces; ++k) {
-    parts_[static_cast<std::size_t>(k)].arc_begin_m = length_m_;
+    nth(parts_, k).arc_begin_m = length_m_;
     length_m_ += revolution.piece(k).length_m;
   }
   // Corner k of the profile is the lower end of piece k, the last one the upper pole.
@@ -232,7 +232,7 @@ RevolutionAnchors::RevolutionAnchors(const scene::Revolution& revolution, double
   place_bands(anchor_of_corner);
 
   for (int patch = 0; patch < revolution.patch_count(); ++patch) {
-    const Part& part = parts_[static_cast<std::size_t>(revolution.piece_of(patch))];
+    const Part& part = nth(parts_, revolution.piece_of(patch));
     const int q = revolution.quadrant_of(patch), next = (q + 1) % 4;
     switch (part.kind) {
       case Kind::band:
@@ -281,19 +281,17 @@ bool RevolutionAnchors::at_or_below_support(double height_m) const noexcept {
 void RevolutionAnchors::place_bands(const std::vector<int>& anchor_of_corner) {
   const int pieces = revolution_.piece_count();
   const auto ends_a_band = [&](int corner) {
-    return corner == 0 || corner == pieces || anchor_of_corner[static_cast<std::size_t>(corner)] >= 0;
+    return corner == 0 || corner == pieces || nth(anchor_of_corner, corner) >= 0;
   };
-  const auto corner_arc_m = [&](int corner) {
-    return corner == pieces ? length_m_ : parts_[static_cast<std::size_t>(corner)].arc_begin_m;
-  };
+  const auto corner_arc_m = [&](int corner) { return corner == pieces ? length_m_ : nth(parts_, corner).arc_begin_m; };
   for (int k = 0; k < pieces; ++k) {
-    Part& part = parts_[static_cast<std::size_t>(k)];
+    Part& part = nth(parts_, k);
     int low = k, high = k + 1;
     while (!ends_a_band(low)) --low;
     while (!ends_a_band(high)) ++high;
     part.first_piece = low;
-    part.low = anchor_of_corner[static_cast<std::size_t>(low)];
-    part.high = anchor_of_corner[static_cast<std::size_t>(high)];
+    part.low = nth(anchor_of_corner, low);
+    part.high = nth(anchor_of_corner, high);
     part.kind = part.low < 0 || part.high < 0 ? Kind::cap
                 : low == 0                    ? Kind::sector_down
                 : high == pieces              ? Kind::sector_up
@@ -303,7 +301,7 @@ void RevolutionAnchors::place_bands(const std::vector<int>& anchor_of_corner) {
     part.band_top_m = height_m(high);
     part.crosses = !at_or_below_support(part.band_top_m) && at_or_below_support(height_m(low));
     part.rim_m = part.high_m - part.low_m;
-    if (part.kind == Kind::cap && part.high < 0 && held_[static_cast<std::size_t>(part.low)]) {
+    if (part.kind == Kind::cap && part.high < 0 && nth(held_, part.low)) {
       int last = low;
       while (part.crosses && at_or_below_support(height_m(last + 1))) ++last;
       part.held_rim_m = part.crosses ? length_m_ - arc_at_height_m(last, support_height_m_) : part.rim_m;
@@ -320,7 +318,7 @@ double RevolutionAnchors::arc_m(int piece, const Eigen::Vector2d& rz_m) const no
     const Eigen::Vector2d out = rz_m - p.center_m;
     s = (std::atan2(out.y(), out.x()) - p.start_angle) / (p.end_angle - p.start_angle);
   }
-  return parts_[static_cast<std::size_t>(piece)].arc_begin_m + std::clamp(s, 0.0, 1.0) * p.length_m;
+  return nth(parts_, piece).arc_begin_m + std::clamp(s, 0.0, 1.0) * p.length_m;
 }
 
 double RevolutionAnchors::arc_at_height_m(int piece, double height_m) const {
@@ -329,7 +327,7 @@ double RevolutionAnchors::arc_at_height_m(int piece, double height_m) const {
     const double s = 0.5 * (low + high);
     (revolution_.offset_m().z() + revolution_.meridian(piece, s).rz_m.y() < height_m ? low : high) = s;
   }
-  return parts_[static_cast<std::size_t>(piece)].arc_begin_m + high * revolution_.piece(piece).length_m;
+  return nth(parts_, piece).arc_begin_m + high * revolution_.piece(piece).length_m;
 }
 
 Vec3 RevolutionAnchors::on_surface_m(double arc_m, double quarters) const {
@@ -337,7 +335,7 @@ Vec3 RevolutionAnchors::on_surface_m(double arc_m, double quarters) const {
   while (piece + 1 < revolution_.piece_count() && parts_[static_cast<std::size_t>(piece) + 1].arc_begin_m <= arc_m) {
     ++piece;
   }
-  const double s = (arc_m - parts_[static_cast<std::size_t>(piece)].arc_begin_m) / revolution_.piece(piece).length_m;
+  const double s = (arc_m - nth(parts_, piece).arc_begin_m) / revolution_.piece(piece).length_m;
   const Eigen::Vector2d rz = revolution_.meridian(piece, arc_m == length_m_ ? 1.0 : s).rz_m;
   const auto whole = static_cast<int>(quarters);
   const double angle = 0.5 * std::numbers::pi * (quarters - whole);
@@ -347,8 +345,8 @@ Vec3 RevolutionAnchors::on_surface_m(double arc_m, double quarters) const {
 }
 
 std::vector<int> RevolutionAnchors::around(int patch) const {
-  const auto& corner = patches_[static_cast<std::size_t>(patch)];
-  switch (parts_[static_cast<std::size_t>(revolution_.piece_of(patch))].kind) {
+  const auto& corner = nth(patches_, patch);
+  switch (nth(parts_, revolution_.piece_of(patch)).kind) {
     case Kind::band:
       return {corner[0], corner[1], corner[3], corner[2]};
     case Kind::cap:
@@ -360,13 +358,13 @@ std::vector<int> RevolutionAnchors::around(int patch) const {
 
 bool RevolutionAnchors::first_between_its_anchors(int patch) const {
   const int piece = revolution_.piece_of(patch);
-  const Part& part = parts_[static_cast<std::size_t>(piece)];
+  const Part& part = nth(parts_, piece);
   // A cap counts once, whether its first piece has one patch or four.
   return piece == part.first_piece && (part.kind != Kind::cap || revolution_.quadrant_of(patch) <= 0);
 }
 
 Vec3 RevolutionAnchors::halfway_m(int patch, int i, int j) const {
-  const Part& part = parts_[static_cast<std::size_t>(revolution_.piece_of(patch))];
+  const Part& part = nth(parts_, revolution_.piece_of(patch));
   const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
   const int qi = anchor_quarter_[a], qj = anchor_quarter_[b];
   if (part.kind == Kind::cap) {
@@ -382,7 +380,7 @@ Vec3 RevolutionAnchors::halfway_m(int patch, int i, int j) const {
 
 PatchPlace RevolutionAnchors::at(int patch, const Vec3& p_m) const noexcept {
   const int piece = revolution_.piece_of(patch), quadrant = revolution_.quadrant_of(patch);
-  const Part& part = parts_[static_cast<std::size_t>(piece)];
+  const Part& part = nth(parts_, piece);
   const Vec3 local_m = p_m - revolution_.offset_m();
   const double r_m = std::hypot(local_m.x(), local_m.y());
   const double along_m = arc_m(piece, {r_m, local_m.z()});

@@ -1,5 +1,7 @@
 #include "fast/skeleton/anchor_rule.h"
 
+#include "scene/base/index.h"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -45,9 +47,7 @@ class CurveRule {
   static constexpr int samples = 256;
   static double place(int i) noexcept { return static_cast<double>(i) / samples; }
 
-  [[nodiscard]] double curvature(int piece, double s) const {
-    return pieces_[static_cast<std::size_t>(piece)].at(s).curvature_per_m;
-  }
+  [[nodiscard]] double curvature(int piece, double s) const { return nth(pieces_, piece).at(s).curvature_per_m; }
   /// -1, 0 or 1: the sign of a difference of curvatures that is more than rounding.
   [[nodiscard]] int sign(double difference_per_m) const noexcept {
     return std::abs(difference_per_m) <= 1e-10 * largest_per_m_ ? 0 : difference_per_m > 0.0 ? 1 : -1;
@@ -57,7 +57,7 @@ class CurveRule {
   }
 
   void end_on_axis(int piece, double s) {
-    const CurvePiece::Point end = pieces_[static_cast<std::size_t>(piece)].at(s);
+    const CurvePiece::Point end = nth(pieces_, piece).at(s);
     if (std::abs(end.normal.x()) > smooth_turn) {
       found_.push_back({piece, s, AnchorReason::natural_vertex});
       return;
@@ -68,7 +68,7 @@ class CurveRule {
   }
 
   void joint(int k) {
-    const CurvePiece &before = pieces_[static_cast<std::size_t>(k)], &after = pieces_[static_cast<std::size_t>(k) + 1];
+    const CurvePiece &before = nth(pieces_, k), &after = pieces_[static_cast<std::size_t>(k) + 1];
     const CurvePiece::Point end = before.at(1.0), begin = after.at(0.0);
     if ((end.normal - begin.normal).norm() > smooth_turn) {
       found_.push_back({k, 1.0, AnchorReason::profile_corner});
@@ -80,7 +80,7 @@ class CurveRule {
     }
     // One-sided derivatives of second order.
     const auto rate = [&](int piece, double s, double step) {
-      const double l = pieces_[static_cast<std::size_t>(piece)].length_m;
+      const double l = nth(pieces_, piece).length_m;
       return (-3.0 * curvature(piece, s) + 4.0 * curvature(piece, s + step) - curvature(piece, s + 2.0 * step)) /
              (2.0 * step * l);
     };

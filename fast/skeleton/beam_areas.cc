@@ -1,5 +1,7 @@
 #include "fast/skeleton/beam_areas.h"
 
+#include "scene/base/index.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -39,7 +41,7 @@ AreaTriangles area_triangles(const AnchorPoints& anchors) {
     const std::size_t corners = around.size();
     for (std::size_t i = 0; i < corners; ++i) {
       const int self = around[i];
-      const Vec3& p_i = anchors.points_m()[static_cast<std::size_t>(self)];
+      const Vec3& p_i = nth(anchors.points_m(), self);
       for (std::size_t step = 1; step + 1 < corners; ++step) {
         const int j = around[(i + step) % corners], k = around[(i + step + 1) % corners];
         triangles.triangle.push_back(
@@ -53,7 +55,7 @@ AreaTriangles area_triangles(const AnchorPoints& anchors) {
 std::vector<double> voronoi_areas_m2(const AreaTriangles& triangles) {
   std::vector<double> gamma(triangles.anchors, 0.0);
   for (const AreaTriangles::Triangle& t : triangles.triangle) {
-    gamma[static_cast<std::size_t>(t.anchor[0])] += 0.5 * t.to_ij_m.cross(t.to_ik_m).norm();
+    nth(gamma, t.anchor[0]) += 0.5 * t.to_ij_m.cross(t.to_ik_m).norm();
   }
   return gamma;
 }
@@ -68,11 +70,11 @@ void voronoi_shares(const AreaTriangles& triangles, std::span<const Vec3> anchor
                     std::span<double> shares) noexcept {
   std::fill(shares.begin(), shares.end(), 0.0);
   for (const AreaTriangles::Triangle& t : triangles.triangle) {
-    const Vec3& u_i = anchor_displacement_m[static_cast<std::size_t>(t.anchor[0])];
-    const Vec3& u_j = anchor_displacement_m[static_cast<std::size_t>(t.anchor[1])];
-    const Vec3& u_k = anchor_displacement_m[static_cast<std::size_t>(t.anchor[2])];
+    const Vec3& u_i = nth(anchor_displacement_m, t.anchor[0]);
+    const Vec3& u_j = nth(anchor_displacement_m, t.anchor[1]);
+    const Vec3& u_k = nth(anchor_displacement_m, t.anchor[2]);
     const Vec3 to_ij_m = t.to_ij_m + 0.5 * (u_j - u_i), to_ik_m = t.to_ik_m + 0.5 * (u_k - u_i);
-    shares[static_cast<std::size_t>(t.anchor[0])] += 0.5 * to_ij_m.cross(to_ik_m).norm();
+    nth(shares, t.anchor[0]) += 0.5 * to_ij_m.cross(to_ik_m).norm();
   }
   to_shares(shares);
 }

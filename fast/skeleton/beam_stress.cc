@@ -1,5 +1,7 @@
 #include "fast/skeleton/beam_stress.h"
 
+#include "scene/base/index.h"
+
 namespace touchstone::fast {
 namespace {
 
@@ -68,7 +70,7 @@ Mat3 interpolated_stress_pa(std::span<const BeamStress> stress, const std::array
                             const PatchPlace& place) noexcept {
   Mat3 sum = Mat3::Zero();
   for (std::size_t k = 0; k < patch_anchor.size(); ++k) {
-    sum += place.weight[k] * stress[static_cast<std::size_t>(patch_anchor[k])].stress_W_pa;
+    sum += place.weight[k] * nth(stress, patch_anchor[k]).stress_W_pa;
   }
   return sum;
 }

@@ -1,6 +1,7 @@
 #include "fast/step/engine.h"
 
 #include "fast/step/step.h"
+#include "scene/base/index.h"
 
 #include <xxhash.h>
 
@@ -83,7 +84,7 @@ scene::InstantRecord Engine::record(double time_s, const scene::Pose& tool, doub
   record.displacement_m = matrix_of(state_.field.displacement_m);
   record.support_force_n = support_force_n(state_);
   for (int i = 0; i < state_.region_count; ++i) {
-    const ContactRegion& region = state_.regions[static_cast<std::size_t>(i)];
+    const ContactRegion& region = nth(state_.regions, i);
     if (!region.pressing()) continue;
     record.regions.push_back({.depth_m = model_.max_regions == 1 ? depth_m : region.extent.deepest_m,
                               .force_n = region.force.force_n,

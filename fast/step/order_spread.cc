@@ -2,6 +2,7 @@
 
 #include "fast/step/stages.h"
 #include "fast/step/step.h"
+#include "scene/base/index.h"
 
 #include <algorithm>
 #include <numeric>
@@ -49,7 +50,7 @@ OrderSpread order_spread(const FastModel& model, FastState& state) {
     find_points(model, motion.at, kept.bulge_m, all, state.cells);
     cluster(*model.clusters, all, several.scratch, several.clusters);
     for (std::size_t k = 0; k < order.size(); ++k) {
-      const PointRange range = several.clusters[static_cast<std::size_t>(several.tracked[k].cluster)].points;
+      const PointRange range = nth(several.clusters, several.tracked[k].cluster).points;
       state.regions[k].points = all.slice(range.begin, range.size);
     }
     step(model, motion.pose, state, Parts::press);

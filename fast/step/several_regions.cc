@@ -1,5 +1,7 @@
 #include "fast/step/several_regions.h"
 
+#include "scene/base/index.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -37,19 +39,19 @@ void take_over(const RegionPoints& all, int count, FastState& state) noexcept {
   for (int k = 0; k < before; ++k) {
     const bool goes_on = std::any_of(several.tracked.begin(), several.tracked.begin() + count,
                                      [&](const TrackedRegion& region) { return region.was == k; });
-    if (!goes_on) state.regions[static_cast<std::size_t>(k)].clear();
+    if (!goes_on) nth(state.regions, k).clear();
   }
   for (int k = 0; k < count; ++k) {
-    const TrackedRegion& tracked = several.tracked[static_cast<std::size_t>(k)];
-    ContactRegion& region = state.regions[static_cast<std::size_t>(k)];
+    const TrackedRegion& tracked = nth(several.tracked, k);
+    ContactRegion& region = nth(state.regions, k);
     // Regions that go on stand in their old order, so `was` is never before k.
-    if (!tracked.created() && tracked.was != k) std::swap(region, state.regions[static_cast<std::size_t>(tracked.was)]);
+    if (!tracked.created() && tracked.was != k) std::swap(region, nth(state.regions, tracked.was));
     if (tracked.created()) {
       region.clear();
       region.id = smallest_free_id(state);
       region.active = true;
     }
-    const PointRange range = several.clusters[static_cast<std::size_t>(tracked.cluster)].points;
+    const PointRange range = nth(several.clusters, tracked.cluster).points;
     region.points = all.slice(range.begin, range.size);
   }
   state.region_count = count;
@@ -136,13 +138,13 @@ void add_later_forces(const FastModel& model, FastState& state) noexcept {
   SeveralRegionsState& several = *state.several;
   const std::span<const int> order(several.order.data(), static_cast<std::size_t>(state.region_count));
   for (std::size_t i = 0; i < order.size(); ++i) {
-    ContactRegion& region = state.regions[static_cast<std::size_t>(order[i])];
+    ContactRegion& region = nth(state.regions, order[i]);
     if (!region.pressing()) continue;
     const auto patch = static_cast<std::size_t>(region.origin.patch);
     const PatchPlace place = model.anchors->at(region.origin.patch, region.origin.p0_W_m);
     Vec3 later_n = Vec3::Zero();
     for (std::size_t j = i + 1; j < order.size(); ++j) {
-      const auto& stress = several.stress_pa[static_cast<std::size_t>(order[j])];
+      const auto& stress = nth(several.stress_pa, order[j]);
       const scene::Mat3 here_pa = interpolated_stress_pa(stress, model.anchors->patches()[patch], place);
       // The stress pushes the body against the tool, which feels the opposite of what the outside does to the body.
       later_n -= stress_force_n(here_pa, region.origin.normal, region.extent.area_m2);

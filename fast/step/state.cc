@@ -1,5 +1,7 @@
 #include "fast/step/state.h"
 
+#include "scene/base/index.h"
+
 #include <algorithm>
 
 namespace touchstone::fast {
@@ -78,19 +80,19 @@ std::size_t FastState::memory_bytes() const noexcept {
 
 Vec3 total_force_n(const FastState& state) noexcept {
   Vec3 sum = Vec3::Zero();
-  for (int i = 0; i < state.region_count; ++i) sum += state.regions[static_cast<std::size_t>(i)].force.force_n;
+  for (int i = 0; i < state.region_count; ++i) sum += nth(state.regions, i).force.force_n;
   return sum;
 }
 
 Vec3 total_torque_nm(const FastState& state) noexcept {
   Vec3 sum = Vec3::Zero();
-  for (int i = 0; i < state.region_count; ++i) sum += state.regions[static_cast<std::size_t>(i)].force.torque_nm;
+  for (int i = 0; i < state.region_count; ++i) sum += nth(state.regions, i).force.torque_nm;
   return sum;
 }
 
 Vec3 support_force_n(const FastState& state) noexcept {
   Vec3 sum = Vec3::Zero();
-  for (int i = 0; i < state.region_count; ++i) sum += support_force_n(state.regions[static_cast<std::size_t>(i)].ends);
+  for (int i = 0; i < state.region_count; ++i) sum += support_force_n(nth(state.regions, i).ends);
   return sum;
 }
 

@@ -1,6 +1,7 @@
 #include "fast/surface/interpolation.h"
 
 #include "fast/surface/patch_kernels.h"
+#include "scene/base/index.h"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +22,7 @@ Quantity at_p0(const std::array<Quantity, corners>& corner, const PatchPlace& pl
 }
 
 const Patch& patch_of(const SurfacePatches& rest, const ContactPoint& contact) noexcept {
-  return rest.patches[static_cast<std::size_t>(contact.patch)];
+  return nth(rest.patches, contact.patch);
 }
 
 /// Its hat has a top.

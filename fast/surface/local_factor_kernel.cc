@@ -1,5 +1,7 @@
 #include "fast/surface/local_factor_kernel.h"
 
+#include "scene/base/index.h"
+
 #include <cmath>
 
 namespace touchstone::fast {
@@ -18,7 +20,7 @@ TOUCHSTONE_INLINE void apply(const SurfacePatches& rest, const LocalConstants& c
   for (const Patch& patch : rest.patches) {
     if (patch.all.distance2_m2(p0_m) >= r_R_m2) continue;
     for (std::int32_t b = patch.first_block; b < patch.last_block; ++b) {
-      const VertexBlock& block = rest.blocks[static_cast<std::size_t>(b)];
+      const VertexBlock& block = nth(rest.blocks, b);
       if (block.distance2_m2(p0_m) >= r_R_m2) continue;
       const auto begin = static_cast<std::size_t>(block.begin), end = static_cast<std::size_t>(block.end);
       // Columns never overlap.

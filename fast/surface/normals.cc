@@ -1,6 +1,7 @@
 #include "fast/surface/normals.h"
 
 #include "fast/surface/patch_kernels.h"
+#include "scene/base/index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +16,9 @@ using Ring = std::set<std::int32_t>;
 std::vector<Ring> rings_of(const scene::Surface& surface) {
   std::vector<Ring> rings(static_cast<std::size_t>(surface.vertex_count()));
   for (const auto& [a, b, c] : surface.triangles) {
-    rings[static_cast<std::size_t>(a)].insert({b, c});
-    rings[static_cast<std::size_t>(b)].insert({c, a});
-    rings[static_cast<std::size_t>(c)].insert({a, b});
+    nth(rings, a).insert({b, c});
+    nth(rings, b).insert({c, a});
+    nth(rings, c).insert({a, b});
   }
   return rings;
 }
@@ -160,7 +161,7 @@ void find_runs(const scene::Surface& surface, const std::vector<std::array<std::
   const auto t1_m = [&](std::int32_t v) { return chord(stencils.t1_m, v); };
   const auto t2_m = [&](std::int32_t v) { return chord(stencils.t2_m, v); };
   const auto offset = [&](std::int32_t v) {
-    std::array<std::int32_t, 4> out = neighbour[static_cast<std::size_t>(v)];
+    std::array<std::int32_t, 4> out = nth(neighbour, v);
     for (std::int32_t& to : out) to -= v;
     return out;
   };
@@ -168,9 +169,7 @@ void find_runs(const scene::Surface& surface, const std::vector<std::array<std::
   const auto spans = [&](std::int32_t v) {
     return t1_m(v).cross(t2_m(v)).norm() > 0.01 * (t1_m(v).squaredNorm() + t2_m(v).squaredNorm());
   };
-  const auto add_single = [&](std::int32_t v) {
-    stencils.singles.push_back({v, neighbour[static_cast<std::size_t>(v)]});
-  };
+  const auto add_single = [&](std::int32_t v) { stencils.singles.push_back({v, nth(neighbour, v)}); };
   for (std::size_t patch = 0; patch + 1 < surface.patch_begin.size(); ++patch) {
     const std::int32_t end = surface.patch_begin[patch + 1];
     for (std::int32_t v = surface.patch_begin[patch]; v < end;) {
@@ -209,7 +208,7 @@ NormalStencils normal_stencils(const scene::Surface& surface) {
   NormalStencils stencils;
   std::vector<std::array<std::int32_t, 4>> neighbour;
   for (std::int32_t v = 0; v < surface.vertex_count(); ++v) {
-    const Ring& ring = rings[static_cast<std::size_t>(v)];
+    const Ring& ring = nth(rings, v);
     const Vec3 n = surface.normals.col(v);
     // The first direction is the vertex order's own, so that neighbours lie side by side in memory.
     const std::int32_t a = ring.count(v + 1) ? v + 1 : v;
@@ -224,8 +223,8 @@ NormalStencils normal_stencils(const scene::Surface& surface) {
     const std::int32_t d = neighbour_along(surface, ring.rbegin(), ring.rend(), v, Vec3(-crossing));
     const Vec3 t2_m = chord(c, d);
     for (int axis = 0; axis < 3; ++axis) {
-      stencils.t1_m[static_cast<std::size_t>(axis)].push_back(static_cast<float>(t1_m[axis]));
-      stencils.t2_m[static_cast<std::size_t>(axis)].push_back(static_cast<float>(t2_m[axis]));
+      nth(stencils.t1_m, axis).push_back(static_cast<float>(t1_m[axis]));
+      nth(stencils.t2_m, axis).push_back(static_cast<float>(t2_m[axis]));
     }
     neighbour.push_back({a, b, c, d});
   }

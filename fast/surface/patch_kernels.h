@@ -3,6 +3,7 @@
 
 #include "fast/realtime/wide_loops.h"
 #include "fast/surface/hat.h"
+#include "scene/base/index.h"
 
 #include <algorithm>
 #include <array>
@@ -83,7 +84,7 @@ class Weighted {
 template <class Displacements>
 std::array<scene::Vec3, corners_max> corner_displacements(const Patch& patch, const Displacements& anchor_m) noexcept {
   std::array<scene::Vec3, corners_max> u;
-  for (std::size_t k = 0; k < corners_max; ++k) u[k] = anchor_m[static_cast<std::size_t>(patch.anchor[k])];
+  for (std::size_t k = 0; k < corners_max; ++k) u[k] = nth(anchor_m, patch.anchor[k]);
   return u;
 }
 
@@ -100,7 +101,7 @@ scene::Vec3 vector_at(const SurfacePatches& rest, const Displacements& anchor_m,
                       const PatchPlace& place) noexcept {
   scene::Vec3 sum = scene::Vec3::Zero();
   for (std::size_t k = 0; k < corners_max; ++k) {
-    sum += place.weight[k] * anchor_m[static_cast<std::size_t>(rest.patches[patch].anchor[k])];
+    sum += place.weight[k] * nth(anchor_m, rest.patches[patch].anchor[k]);
   }
   return sum;
 }

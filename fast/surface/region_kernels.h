@@ -3,6 +3,7 @@
 
 #include "fast/surface/patch_kernels.h"
 #include "fast/surface/shape_stack.h"
+#include "scene/base/index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -142,7 +143,7 @@ struct Corrected {
     const Patch& patch = rest.patches[p];
     std::array<Eigen::Vector3f, corners_max> corner;
     for (std::size_t k = 0; k < patch.corners; ++k) {
-      corner[k] = anchor_displacement_m[static_cast<std::size_t>(patch.anchor[k])].cast<float>();
+      corner[k] = nth(anchor_displacement_m, patch.anchor[k]).cast<float>();
     }
     // Whole lanes, their sums in registers; a lane's last places may be idle.
     for (std::size_t v = 0; v < block_vertices; v += lanes_at_once) {
@@ -196,7 +197,7 @@ TOUCHSTONE_INLINE void distances_m(const SurfacePatches& rest, const VertexBlock
 #pragma GCC ivdep
   for (std::int32_t v = 0; v < count; ++v) {
     const float dx = x[v] - px, dy = y[v] - py, dz = z[v] - pz;
-    r_m[static_cast<std::size_t>(v)] = std::sqrt(dx * dx + dy * dy + dz * dz);
+    nth(r_m, v) = std::sqrt(dx * dx + dy * dy + dz * dz);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "fast/surface/region_passes.h"
 
 #include "fast/surface/region_kernels.h"
+#include "scene/base/index.h"
 
 #include <algorithm>
 
@@ -34,7 +35,7 @@ TOUCHSTONE_INLINE void apply_factors(const SurfacePatches& rest, const LocalCons
     }
     if (stack.scratch.near.empty()) continue;
     for (std::int32_t b = patch.first_block; b < patch.last_block; ++b) {
-      const VertexBlock& block = rest.blocks[static_cast<std::size_t>(b)];
+      const VertexBlock& block = nth(rest.blocks, b);
       const bool reached = std::any_of(stack.scratch.near.begin(), stack.scratch.near.end(), [&](std::size_t i) {
         return block.distance2_m2(stack.reach[i].p0_W_m) < r_R_m * r_R_m;
       });
@@ -50,7 +51,7 @@ void interpolate_several_published(const SurfacePatches& rest, ShapeStack& stack
   Lane3 u, sum;
   for (std::size_t p = 0; p < rest.patches.size(); ++p) {
     for (std::int32_t b = rest.patches[p].first_block; b < rest.patches[p].last_block; ++b) {
-      const VertexBlock& block = rest.blocks[static_cast<std::size_t>(b)];
+      const VertexBlock& block = nth(rest.blocks, b);
       const auto begin = static_cast<std::size_t>(block.begin), count = static_cast<std::size_t>(block.end) - begin;
       for (Lane& lane : sum) std::fill(lane.begin(), lane.end(), 0.0f);
       for (std::size_t i = 0; i < stack.count(); ++i) {

@@ -1,6 +1,7 @@
 #include "fast/surface/shape_stack.h"
 
 #include "fast/surface/patch_kernels.h"
+#include "scene/base/index.h"
 
 #include <algorithm>
 
@@ -66,7 +67,7 @@ void add_region_published(const SurfacePatches& rest, const LocalConstants* loca
     const ContactPoint& contact = stack.region[j].contact;
     length_c_m[j] = angle_c_rad[j] = 0.0;
     if (!stack.hats.takes_part(j)) continue;
-    const ShapeStack::Printed& here = printed[static_cast<std::size_t>(contact.patch)];
+    const ShapeStack::Printed& here = nth(printed, contact.patch);
     const bool own = j == last;
     length_c_m[j] = (own ? contact.displacement_m.norm() : 0.0) - at_place(here.length_m, contact.place);
     angle_c_rad[j] =

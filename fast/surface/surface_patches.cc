@@ -1,5 +1,7 @@
 #include "fast/surface/surface_patches.h"
 
+#include "scene/base/index.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -27,7 +29,7 @@ VertexBlock block_of(const Columns3& rest_W_m, std::int32_t begin, std::int32_t 
   block.begin = begin;
   block.end = end;
   for (int axis = 0; axis < 3; ++axis) {
-    const float* column = rest_W_m[static_cast<std::size_t>(axis)].data();
+    const float* column = nth(rest_W_m, axis).data();
     const auto [low, high] = std::minmax_element(column + begin, column + end);
     block.low_W_m[axis] = *low;
     block.high_W_m[axis] = *high;
@@ -54,13 +56,12 @@ SurfacePatches surface_patches(const scene::Surface& surface, const AnchorPoints
   SurfacePatches rest;
   for (int p = 0; p + 1 < static_cast<int>(surface.patch_begin.size()); ++p) {
     Patch patch;
-    patch.begin = surface.patch_begin[static_cast<std::size_t>(p)];
+    patch.begin = nth(surface.patch_begin, p);
     patch.end = surface.patch_begin[static_cast<std::size_t>(p) + 1];
     patch.corners = anchors.around(p).size();
-    patch.anchor = anchors.patches()[static_cast<std::size_t>(p)];
+    patch.anchor = nth(anchors.patches(), p);
     for (std::size_t k = 0; k < patch.anchor.size(); ++k) {
-      patch.corner_normal[k] =
-          normal_near(surface, patch, anchors.points_m()[static_cast<std::size_t>(patch.anchor[k])]);
+      patch.corner_normal[k] = normal_near(surface, patch, nth(anchors.points_m(), patch.anchor[k]));
     }
     const auto points_m = surface.points_m.middleCols(patch.begin, patch.end - patch.begin);
     patch.center_W_m = 0.5 * (points_m.rowwise().minCoeff() + points_m.rowwise().maxCoeff());
@@ -96,7 +97,7 @@ void SurfaceField::reset(const SurfacePatches& rest) noexcept {
 Eigen::Matrix3Xd matrix_of(const Columns3& columns) {
   Eigen::Matrix3Xd matrix(3, static_cast<Eigen::Index>(columns[0].size()));
   for (int axis = 0; axis < 3; ++axis) {
-    const auto& column = columns[static_cast<std::size_t>(axis)];
+    const auto& column = nth(columns, axis);
     matrix.row(axis) =
         Eigen::Map<const Eigen::RowVectorXf>(column.data(), static_cast<Eigen::Index>(column.size())).cast<double>();
   }

@@ -34,7 +34,7 @@ std::unique_ptr<ranks::Part> receive_part() {
   ranks::receive(&size, sizeof size);
   std::string bytes(size, '\0');
   ranks::receive(bytes);
-  RecordReader record(std::move(bytes));
+  RecordReader record(bytes);
   Mesh<dim> mesh;
   scene::Material material;
   scene::Kinematics kinematics;

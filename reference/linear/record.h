@@ -7,8 +7,8 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <type_traits>
-#include <utility>
 
 namespace touchstone::reference {
 
@@ -55,13 +55,13 @@ class RecordWriter {
   std::string bytes_;
 };
 
-/// Sets values from a record, in the order in which they were written. All throw std::out_of_range when the record
-/// ends too early or holds something else.
+/// Sets values from a record that it refers to, in the order in which they were written. All throw std::out_of_range
+/// when the record ends too early or holds something else.
 class RecordReader {
  public:
   static constexpr bool reads = true;
 
-  explicit RecordReader(std::string bytes) : bytes_(std::move(bytes)) {}
+  explicit RecordReader(std::string_view bytes) : bytes_(bytes) {}
 
   template <class... Values>
   void operator()(Values&... values) {
@@ -92,7 +92,7 @@ class RecordReader {
     std::copy_n(bytes_.data() + place_, bytes.size(), reinterpret_cast<char*>(bytes.data()));
     place_ += bytes.size();
   }
-  std::string bytes_;
+  std::string_view bytes_;
   std::size_t place_ = 0;
 };
 

@@ -394,8 +394,7 @@ class Run {
     for (int instant = 0; instant < count(); ++instant) {
       check_stop();
       std::optional<std::pair<Solved<dim>, Step>> found;
-      if (std::optional<std::string> record = store.read(level, instant))
-        found = from_record<dim>(std::move(*record), mesh);
+      if (const auto record = store.read(level, instant)) found = from_record<dim>(*record, mesh);
       if (!found) {
         check_time();
         result_.from_store = false;
@@ -445,8 +444,8 @@ class Run {
   /// The coarser level's solution on this level's mesh; nothing when the tool did not touch there.
   [[nodiscard]] std::optional<State<dim>> start_state(const Prolongation<dim>& prolongation, const Store& store,
                                                       int level, int instant) const {
-    std::optional<std::string> record = store.read(level - 1, instant);
-    const auto coarse = record ? from_record<dim>(std::move(*record), *coarser_) : std::nullopt;
+    const std::optional<std::string> record = store.read(level - 1, instant);
+    const auto coarse = record ? from_record<dim>(*record, *coarser_) : std::nullopt;
     if (!coarse || !coarse->first.touching) return std::nullopt;
     return prolongation(coarse->first.state);
   }
@@ -529,8 +528,8 @@ class Run {
     const std::vector<SensitivityWork> missing = missing_sensitivities(coarsest_, store);
     if (std::optional<Limit> limit = limit_before(missing)) return limit;
     const auto stored = [&](int which) {
-      std::optional<std::string> record = which < 0 ? std::nullopt : store.read(0, which);
-      return record ? from_record<dim>(std::move(*record), coarsest_) : std::nullopt;
+      const std::optional<std::string> record = which < 0 ? std::nullopt : store.read(0, which);
+      return record ? from_record<dim>(*record, coarsest_) : std::nullopt;
     };
     const auto at = stored(instant), before = stored(instant - 1);
     if (!at) return {};

@@ -205,7 +205,7 @@ std::vector<Sensitivity> sensitivities(const SensitivityCase<dim>& given, const 
     const Mesh<dim> mesh = changed_mesh(given.scene, given.choice, given.mesh, change);
     std::optional<std::pair<Solved<dim>, Step>> found;
     const std::string name = name_of(change);
-    if (std::optional<std::string> record = store.read(name)) found = from_record<dim>(std::move(*record), mesh);
+    if (const auto record = store.read(name)) found = from_record<dim>(*record, mesh);
     if (!found) {
       found = repeat.solve(change, mesh);
       store.write(name, to_record(found->first, found->second));

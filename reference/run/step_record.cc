@@ -3,7 +3,6 @@
 #include "reference/linear/record.h"
 
 #include <stdexcept>
-#include <utility>
 
 namespace touchstone::reference {
 namespace {
@@ -45,14 +44,14 @@ std::string to_record(const Solved<dim>& solved, const Step& step) {
 }
 
 template <int dim>
-std::optional<std::pair<Solved<dim>, Step>> from_record(std::string bytes, const Mesh<dim>& mesh) {
+std::optional<std::pair<Solved<dim>, Step>> from_record(std::string_view bytes, const Mesh<dim>& mesh) {
   std::pair<Solved<dim>, Step> result;
   auto& [solved, step] = result;
   solved.state.u_m.resize(dim, mesh.node_count());
   solved.state.p_pa.resize(dim + 1, mesh.cell_count());
   solved.state.touching.resize(mesh.node_count());
   try {
-    RecordReader record(std::move(bytes));
+    RecordReader record(bytes);
     serialize(record, solved, step);
     if (record.more()) return std::nullopt;
   } catch (const std::out_of_range&) {
@@ -64,7 +63,7 @@ std::optional<std::pair<Solved<dim>, Step>> from_record(std::string bytes, const
 
 template std::string to_record(const Solved<2>&, const Step&);
 template std::string to_record(const Solved<3>&, const Step&);
-template std::optional<std::pair<Solved<2>, Step>> from_record(std::string, const Mesh<2>&);
-template std::optional<std::pair<Solved<3>, Step>> from_record(std::string, const Mesh<3>&);
+template std::optional<std::pair<Solved<2>, Step>> from_record(std::string_view, const Mesh<2>&);
+template std::optional<std::pair<Solved<3>, Step>> from_record(std::string_view, const Mesh<3>&);
 
 }  // namespace touchstone::reference

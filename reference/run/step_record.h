@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace touchstone::reference {
@@ -26,6 +27,6 @@ template <int dim>
 
 /// @returns nothing when the record does not belong to this mesh
 template <int dim>
-[[nodiscard]] std::optional<std::pair<Solved<dim>, Step>> from_record(std::string bytes, const Mesh<dim>& mesh);
+[[nodiscard]] std::optional<std::pair<Solved<dim>, Step>> from_record(std::string_view record, const Mesh<dim>& mesh);
 
 }  // namespace touchstone::reference
