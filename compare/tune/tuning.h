@@ -83,7 +83,7 @@ struct Tuning {
 /// Solves a contact. @throws InputError when the reference is never in contact at an instant that counts
 [[nodiscard]] TuningData tuning_data(const TuningContact& contact, const SolveReference& solve);
 
-/// Writes values into a scene; friction's are left out where the scene has none.
+/// Writes values into a scene, as set_parameter.
 void set_values(scene::Scene& scene, const std::vector<TuningParameter>& parameters, const Eigen::VectorXd& values);
 
 /// A contact's scene with the model's formulation, law and values so far.

@@ -34,7 +34,8 @@ namespace touchstone::compare::testing {
     result.levels.push_back({});
     for (const scene::InstantRecord& record : answer.instants) {
       result.levels[0].force_n.push_back(record.force_n().norm());
-      scene::ReferenceInstant& instant = result.instants.emplace_back(scene::ReferenceInstant{record});
+      scene::ReferenceInstant& instant = result.instants.emplace_back();
+      static_cast<scene::InstantRecord&>(instant) = record;
       if (!record.regions.empty()) instant.region_middles_m = {scene::Vec3(0.0, 0.0, 0.06)};
       instant.displacement_uncertainty_m.setConstant(surface.points_m.cols(), 1e-6);
       instant.force_uncertainty_n = 0.01;

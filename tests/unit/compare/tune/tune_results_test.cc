@@ -1,6 +1,7 @@
 #include "compare/tune/tune_results.h"
 
 #include "compare/format/text.h"
+#include "reference/solver.h"
 #include "scene/base/files.h"
 #include "support/temporary_folder.h"
 #include "support/xml.h"
@@ -11,16 +12,12 @@
 
 #include <map>
 #include <set>
-#include <string>
-#include <string_view>
 
 namespace touchstone::compare {
 namespace {
 
 using namespace testing;
 using ::testing::HasSubstr;
-
-std::string scenes() { return source_folder() + "/meshes/scenes/"; }
 
 TEST(TunedModelName, IsTheLawInWordsAndKeepsItsKeyForFiles) {
   TunedModel model;
@@ -41,6 +38,52 @@ TEST(TuningFigures, HeldOutFiguresAreTheWorstContactsAndNoneOfTraining) {
   EXPECT_EQ(figures.at("held_out.larger-ball.force.nrmse"), nrmse(2));
   EXPECT_EQ(figures.at("corrected-duffing.held_out.force.nrmse"), figures.at("held_out.force.nrmse"));
   EXPECT_GT(nrmse(1), nrmse(0));
+}
+
+/// A model with one value found by the fit of one contact.
+std::string parameters_with(const std::string& scene, const std::string& key, double value) {
+  Tuning tuning{study({}), {}, {}};
+  for (const std::string& name : {std::string("ball-on-cube-press"), scene})
+    tuning.data.push_back(
+        {{name, "", scene::load_scene(source_folder() + "/meshes/scenes/" + name + ".toml"), {}}, {}, {}, {}});
+  TunedModel model;
+  StageFit& stage = model.stages.emplace_back();
+  stage.parameters = {free(key, 0.1, 10.0)};
+  stage.fit.value = Eigen::VectorXd::Constant(1, value);
+  return parameters_toml(tuning, model);
+}
+
+TEST(Parameters, HoldTheModelItsLawAndWhatWasTuned) {
+  const std::string force = parameters_with("hertz-sphere", "contact.omega0_squared_per_s2", 7.0);
+  EXPECT_THAT(force, HasSubstr("\n\n[contact]\nlaw = \"duffing\"\nk1_n_per_m = 7.0\nk3_n_per_m3 = 3e+08\n\n[fast]\n"
+                               "formulation = \"corrected\"\n"));
+  EXPECT_THAT(force, ::testing::Not(HasSubstr("reference reads")));
+  // Friction's table is whole, with the values of a contact that has it.
+  const std::string friction = parameters_with("ball-on-cube-slide", "contact.friction.stiffness_ratio", 0.5);
+  EXPECT_THAT(friction, HasSubstr("\n[contact.friction]\nK = 1.0\nbeta = 0.75\nmu_D = 0.5\nstiffness_ratio = 0.5\n"));
+  EXPECT_THAT(friction, HasSubstr("# The reference reads contact.friction.K, contact.friction.beta, "
+                                  "contact.friction.mu_D too"));
+}
+
+TEST(Parameters, TakenOverLeaveTheStoredReferenceValidButForFrictionsLimits) {
+  const TemporaryFolder folder;
+  std::set<std::string_view> stale;
+  for (const char* name : {"ball-on-cube-slide", "mallet-tail-on-cube", "compass-two-pins"}) {
+    const scene::Scene scene = scene::load_scene(source_folder() + "/meshes/scenes/" + name + ".toml");
+    for (const auto& field : scene::scene_fields()) {
+      if (!field.tunable || field.tunable->stage == scene::TuningStage::model || !scene::applies(field, scene))
+        continue;
+      scene::Scene taken = scene;
+      set_parameter(taken, std::string(field.key), 0.9);
+      EXPECT_NE(scene::scene_hash(taken), scene::scene_hash(scene)) << field.key;
+      if (reference::content_key(taken) != reference::content_key(scene)) stale.insert(field.key);
+    }
+  }
+  EXPECT_THAT(stale, ::testing::ElementsAre("contact.friction.K", "contact.friction.beta", "contact.friction.mu_D"));
+  const scene::Scene press = scene::load_scene(source_folder() + "/meshes/scenes/" + "ball-on-cube-press.toml");
+  const scene::Scene tuned = with_parameters(press, source_folder() + "/meshes/parameters/ball-on-cube.toml");
+  EXPECT_NE(scene::scene_hash(tuned), scene::scene_hash(press));
+  EXPECT_EQ(reference::content_key(tuned), reference::content_key(press));
 }
 
 TEST(WriteTuning, LeavesAFolderWhoseParametersASceneTakesOver) {
@@ -81,51 +124,6 @@ TEST(WriteTuning, LeavesAFolderWhoseParametersASceneTakesOver) {
   const std::string limit = escape_xml(tuning.models.front().limits.front());
   EXPECT_NE(html.find(limit), std::string::npos);
   EXPECT_EQ(html.find(limit), html.rfind(limit));
-}
-
-/// A model with one value found by the fit of one contact.
-std::string parameters_with(const std::string& scene, const std::string& key, double value) {
-  Tuning tuning{study({}), {}, {}};
-  for (const std::string& name : {std::string("ball-on-cube-press"), scene})
-    tuning.data.push_back({{name, "", scene::load_scene(scenes() + name + ".toml"), {}}, {}, {}, {}});
-  TunedModel model;
-  StageFit& stage = model.stages.emplace_back();
-  stage.parameters = {free(key, 0.1, 10.0)};
-  stage.fit.value = Eigen::VectorXd::Constant(1, value);
-  return parameters_toml(tuning, model);
-}
-
-TEST(Parameters, HoldTheModelItsLawAndWhatWasTuned) {
-  const std::string force = parameters_with("hertz-sphere", "contact.omega0_squared_per_s2", 7.0);
-  EXPECT_THAT(force, HasSubstr("\n\n[contact]\nlaw = \"duffing\"\nk1_n_per_m = 7.0\nk3_n_per_m3 = 3e+08\n\n[fast]\n"
-                               "formulation = \"corrected\"\n"));
-  EXPECT_THAT(force, ::testing::Not(HasSubstr("reference reads")));
-  // Friction's table is whole, with the values of a contact that has it.
-  const std::string friction = parameters_with("ball-on-cube-slide", "contact.friction.stiffness_ratio", 0.5);
-  EXPECT_THAT(friction, HasSubstr("\n[contact.friction]\nK = 1.0\nbeta = 0.75\nmu_D = 0.5\nstiffness_ratio = 0.5\n"));
-  EXPECT_THAT(friction, HasSubstr("# The reference reads contact.friction.K, contact.friction.beta, "
-                                  "contact.friction.mu_D too"));
-}
-
-TEST(Parameters, TakenOverLeaveTheStoredReferenceValidButForFrictionsLimits) {
-  const testing::TemporaryFolder folder;
-  std::set<std::string_view> stale;
-  for (const char* name : {"ball-on-cube-slide", "mallet-tail-on-cube", "compass-two-pins"}) {
-    const scene::Scene scene = scene::load_scene(scenes() + name + ".toml");
-    for (const auto& field : scene::scene_fields()) {
-      if (!field.tunable || field.tunable->stage == scene::TuningStage::model || !scene::applies(field, scene))
-        continue;
-      scene::Scene taken = scene;
-      set_parameter(taken, std::string(field.key), 0.9);
-      EXPECT_NE(scene::scene_hash(taken), scene::scene_hash(scene)) << field.key;
-      if (reference::content_key(taken) != reference::content_key(scene)) stale.insert(field.key);
-    }
-  }
-  EXPECT_THAT(stale, ::testing::ElementsAre("contact.friction.K", "contact.friction.beta", "contact.friction.mu_D"));
-  const scene::Scene press = scene::load_scene(scenes() + "ball-on-cube-press.toml");
-  const scene::Scene tuned = with_parameters(press, source_folder() + "/meshes/parameters/ball-on-cube.toml");
-  EXPECT_NE(scene::scene_hash(tuned), scene::scene_hash(press));
-  EXPECT_EQ(reference::content_key(tuned), reference::content_key(press));
 }
 
 }  // namespace
