@@ -88,7 +88,7 @@ class Readers : public ::testing::TestWithParam<bool> {
 };
 
 TEST_P(Readers, OfAComparison) {
-  (void)write_comparison(folder_.path(), sides_.scene, sides_.run, sides_.result, sides_.manifest);
+  (void)write_comparison(folder_.path(), sides_.scene, sides_.run, sides_.result, sides_.manifest, {});
   const auto columns = read_csv(folder_.path() / "curve.csv");
   EXPECT_EQ(columns.at("fast_force_n").size(), 4u);
   EXPECT_EQ(columns.at("fast_force_n")[3], sides_.run.instants[3].force_n().norm());

@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 class ResultFolderTest : public ::testing::Test {
  protected:
   ResultFolderTest() {
-    comparison_ = write_comparison(folder_.path(), sides_.scene, sides_.run, sides_.result, sides_.manifest);
+    comparison_ = write_comparison(folder_.path(), sides_.scene, sides_.run, sides_.result, sides_.manifest, {});
   }
   [[nodiscard]] std::string fault() const {
     try {
@@ -90,7 +90,7 @@ TEST_F(ResultFolderTest, NamesTheLineOfADamage) {
 TEST_F(ResultFolderTest, ReadsBackWhyANumberIsNotKnown) {
   testing::set_all(sides_.result, &scene::ReferenceInstant::force_uncertainty_n,
                    std::numeric_limits<double>::quiet_NaN());
-  (void)write_comparison(folder_.path(), sides_.scene, sides_.run, sides_.result, sides_.manifest);
+  (void)write_comparison(folder_.path(), sides_.scene, sides_.run, sides_.result, sides_.manifest, {});
   const ResultFolder read = read_result_folder(folder_.path());
   const scene::Figure* figure = read.figure("force.nrmse_uncertainty");
   ASSERT_NE(figure, nullptr);

@@ -28,7 +28,7 @@ class ResultsPage : public ::testing::Test {
     if (change) change(sides);
     const std::filesystem::path folder = folder_.path() / name;
     std::filesystem::create_directories(folder);
-    (void)write_comparison(folder, sides.scene, sides.run, sides.result, sides.manifest);
+    (void)write_comparison(folder, sides.scene, sides.run, sides.result, sides.manifest, {});
     return read_result_folder(folder);
   }
 
@@ -57,7 +57,7 @@ TEST_F(ResultsPage, IsWellFormedAndLinksEveryResultRelatively) {
 TEST_F(ResultsPage, KeepsTheTitleOfAMeshToolsResultThatWasMoved) {
   const testing::Sides sides = testing::pressed_by_mallet(folder_.path() / "inputs");
   std::filesystem::create_directories(folder_.path() / "made");
-  (void)write_comparison(folder_.path() / "made", sides.scene, sides.run, sides.result, sides.manifest);
+  (void)write_comparison(folder_.path() / "made", sides.scene, sides.run, sides.result, sides.manifest, {});
   std::filesystem::remove_all(folder_.path() / "inputs");
   std::filesystem::rename(folder_.path() / "made", folder_.path() / "moved");
   const ResultFolder result = read_result_folder(folder_.path() / "moved");

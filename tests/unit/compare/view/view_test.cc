@@ -46,7 +46,7 @@ class ViewTest : public ::testing::Test {
     sides.manifest.command = "touchstone compare";
     sides.manifest.resolved_scene =
         scene::resolved_toml(scene::load_scene(source_folder() + "/meshes/scenes/ball-on-cube-press.toml"));
-    (void)write_comparison(folder_.path(), sides.scene, sides.run, sides.result, sides.manifest);
+    (void)write_comparison(folder_.path(), sides.scene, sides.run, sides.result, sides.manifest, {});
   }
 
   [[nodiscard]] std::vector<Rgb> pixels_of(const std::filesystem::path& file) const {
@@ -150,7 +150,7 @@ TEST_F(ViewTest, ShowsAMeshToolFromAFolderThatWasMoved) {
   const testing::Sides sides = testing::pressed_by_mallet(elsewhere.path() / "inputs");
   const std::filesystem::path made = elsewhere.path() / "made", moved = folder_.path() / "moved";
   std::filesystem::create_directories(made);
-  (void)write_comparison(made, sides.scene, sides.run, sides.result, sides.manifest);
+  (void)write_comparison(made, sides.scene, sides.run, sides.result, sides.manifest, {});
   std::filesystem::remove_all(elsewhere.path() / "inputs");
   std::filesystem::rename(made, moved);
   const VirtualDisplay display;
@@ -167,7 +167,7 @@ TEST_F(ViewTest, SaysThatAnUncertaintyIsUnknownAndLeavesTheBodyGrey) {
     u_m.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   sides.manifest.resolved_scene = read_result_folder(folder_.path()).resolved_scene;
-  (void)write_comparison(folder_.path(), sides.scene, sides.run, sides.result, sides.manifest);
+  (void)write_comparison(folder_.path(), sides.scene, sides.run, sides.result, sides.manifest, {});
   const VirtualDisplay display;
   ResultView view(read_result_folder(folder_.path()));
   view.press("c");
