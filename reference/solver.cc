@@ -47,13 +47,13 @@ void add_level_lines(const Scene& scene, const ModelChoice& choice, int levels, 
     all.memory_bytes = std::max(all.memory_bytes, cost.memory_bytes);
     return cost_text(work.unknowns, cost);
   };
-  std::optional<Mesh<dim>> coarsest;
+  std::optional<Discretisation<dim>> coarsest;
   for (int level = 0; level < levels; ++level) {
     const std::string size =
         fmt::format("cells of {:.3g} mm at the deepest contact's rim", 1e3 * element_size_m(scene, choice, level));
     const std::string part = "mesh " + std::to_string(level + 1);
     try {
-      Mesh<dim> mesh = level_mesh<dim>(scene, choice, level);
+      Discretisation<dim> mesh = level_mesh<dim>(scene, choice, level);
       plan.push_back({part, true, size,
                       add({.dim = dim,
                            .unknowns = unknowns_of(mesh),

@@ -51,14 +51,13 @@ class ReducedMesh {
   /// A displacement as the weighted sum of others, which are free.
   using Sum = std::map<int, double>;
 
-  explicit ReducedMesh(Mesh<dim> mesh) : mesh_(std::move(mesh)), kept_(mesh_.node_count()) {
+  explicit ReducedMesh(Discretisation<dim> mesh) : mesh_(std::move(mesh)), kept_(mesh_.node_count()) {
     for (const auto& cell : mesh_.cells) {
       for (const int place : Kept<dim>::places) kept_[cell[place]] = true;
     }
-    for (const auto& hanging : mesh_.hanging) hanging_.emplace(hanging.node, &hanging);
     if constexpr (dim == 3) find_side_middles();
     for (int node = 0; node < mesh_.node_count(); ++node) {
-      if (!kept_[node] || (!hanging_.contains(node) && !around_.contains(node))) continue;
+      if (!kept_[node] || (!mesh_.hangs(node) && !around_.contains(node))) continue;
       Sum& sum = ties_[node];
       add(node, 1.0, sum);
       std::erase_if(sum, [](const auto& term) { return std::abs(term.second) < 1e-12; });
@@ -69,7 +68,7 @@ class ReducedMesh {
     }
   }
 
-  [[nodiscard]] const Mesh<dim>& mesh() const { return mesh_; }
+  [[nodiscard]] const Discretisation<dim>& mesh() const { return mesh_; }
   [[nodiscard]] bool kept(int node) const { return kept_[node] != 0; }
   /// Kept, and not the weighted sum of others.
   [[nodiscard]] bool free(int node) const { return kept_[node] && !ties_.contains(node); }
@@ -89,7 +88,7 @@ class ReducedMesh {
           }
           // Kept only as the corner of smaller cells on the other side, and otherwise needed as a hanging node's
           // master.
-          if (!hanging_.contains(side[4])) {
+          if (!mesh_.hangs(side[4])) {
             around_[side[4]] = {side[0], side[2], side[6], side[8], side[1], side[3], side[5], side[7]};
           }
         }
@@ -99,8 +98,8 @@ class ReducedMesh {
 
   /// The trace of a serendipity element is the nine-node one whose middle has the value of the former.
   void add(int node, double weight, Sum& sum) const {
-    if (const auto found = hanging_.find(node); found != hanging_.end()) {
-      for (const auto& [master, share] : found->second->masters) add(master, weight * share, sum);
+    if (mesh_.hangs(node)) {
+      for (const auto& [master, share] : mesh_.masters(node)) add(master, weight * share, sum);
     } else if (const auto side = around_.find(node); side != around_.end()) {
       for (int k = 0; k < 8; ++k) add(side->second[k], weight * (k < 4 ? -0.25 : 0.5), sum);
     } else {
@@ -108,9 +107,8 @@ class ReducedMesh {
     }
   }
 
-  Mesh<dim> mesh_;
+  Discretisation<dim> mesh_;
   std::vector<char> kept_;
-  std::map<int, const typename Mesh<dim>::Hanging*> hanging_;
   std::map<int, std::array<int, 8>> around_;
   std::map<int, Sum> ties_;
 };
@@ -243,7 +241,7 @@ class Writer {
   }
 
   void body_elements() {
-    const Mesh<dim>& mesh = body_.mesh();
+    const Discretisation<dim>& mesh = body_.mesh();
     text_ << "*NODE, NSET=BODY\n";
     for (int n = 0; n < mesh.node_count(); ++n) {
       if (!body_.kept(n)) continue;
@@ -270,7 +268,7 @@ class Writer {
   }
 
   void boundary() {
-    const Mesh<dim>& mesh = body_.mesh();
+    const Discretisation<dim>& mesh = body_.mesh();
     std::map<Boundary, std::set<int>> nodes;
     for (const auto& face : mesh.faces) {
       for (const int n : face.nodes) {
@@ -308,7 +306,7 @@ class Writer {
     });
   }
 
-  void contact_faces(const Mesh<dim>& mesh) {
+  void contact_faces(const Discretisation<dim>& mesh) {
     std::map<int, std::pair<int, int>> sides;  // by the middle: element and its side, from 1
     for (int c = 0; c < mesh.cell_count(); ++c) {
       constexpr auto middles = side_middles<dim>();
@@ -323,7 +321,7 @@ class Writer {
                        [&](int n) { return reached(scene::in_space<dim>(mesh.points_m.col(n))); })) {
         continue;
       }
-      const auto [cell, side] = sides.at(face.nodes[Mesh<dim>::nodes_per_face / 2]);
+      const auto [cell, side] = sides.at(face.nodes[Discretisation<dim>::nodes_per_face / 2]);
       text_ << cell << ", S" << side << '\n';
     }
   }
@@ -376,12 +374,12 @@ class Writer {
   }
 
   void materials() {
-    const Mesh<dim>& mesh = body_.mesh();
+    const Discretisation<dim>& mesh = body_.mesh();
     std::vector<std::vector<int>> cells(mesh.inclusion_materials.size() + 1);
     for (int c = 0; c < mesh.cell_count(); ++c) {
       // The middle Gauss point is the cell's middle.
       const auto* materials = mesh.materials_of(c);
-      cells[materials ? (*materials)[Mesh<dim>::nodes_per_cell / 2] : 0].push_back(c + 1);
+      cells[materials ? (*materials)[Discretisation<dim>::nodes_per_cell / 2] : 0].push_back(c + 1);
     }
     for (std::size_t m = 0; m < cells.size(); ++m) {
       const std::string name = m == 0 ? "OF_BODY" : "OF_INCLUSION_" + std::to_string(m);

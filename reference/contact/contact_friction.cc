@@ -276,63 +276,40 @@ void ContactProblem<dim>::keep_history(State<dim>& state) const {
 }
 
 template <int dim>
-void ContactProblem<dim>::add_slip_rows(const std::vector<std::pair<int, int>>& places,
-                                        const std::vector<int>& unknowns, const Eigen::MatrixXd& KT,
-                                        const Eigen::VectorXd& out_of_balance_n, Lane& lane) const {
-  std::vector<std::pair<int, Eigen::RowVectorXd>> rows;  // one for every slipping node of the cell
-  const auto add = [&](int node, int direction, double weight, Eigen::Index place) {
-    const int row = slip_row_[node];
-    if (row < 0 || prescribed_[node * dim + direction]) return;
-    weight *= contacts_[contact_of_[node]].normal[direction];
-    auto found = std::find_if(rows.begin(), rows.end(), [&](const auto& one) { return one.first == row; });
-    if (found == rows.end()) found = rows.insert(rows.end(), {row, Eigen::RowVectorXd::Zero(KT.cols())});
-    found->second += weight * KT.row(place);
-    lane.slip_normal_n[row] += weight * out_of_balance_n[place];
-  };
-  for (std::size_t place = 0; place < places.size(); ++place) {
-    const auto [node, direction] = places[place];
-    if (hanging_[node] < 0) {
-      add(node, direction, 1.0, static_cast<Eigen::Index>(place));
-    } else {
-      for (const auto& [master, weight] : mesh_.hanging[hanging_[node]].masters) {
-        add(master, direction, weight, static_cast<Eigen::Index>(place));
-      }
+std::vector<typename ElasticBody<dim>::InReaction> ContactProblem<dim>::in_slip_rows() const {
+  if (slip_rows_ == 0) return {};
+  // A slipping node's normal force is the sum of its nodal forces times the normal's components.
+  std::vector<typename ElasticBody<dim>::InReaction> result(prescribed_.size());
+  for (const NodeContact<dim>& contact : contacts_) {
+    for (int i = 0; i < dim && contact.slips; ++i) {
+      if (!prescribed_[contact.node * dim + i])
+        result[contact.node * dim + i] = {slip_row_[contact.node], contact.normal[i]};
     }
   }
-  for (const auto& [row, values] : rows) {
-    for (Eigen::Index k = 0; k < values.size(); ++k) lane.slip_rows.emplace_back(row, unknowns[k], values[k]);
-  }
+  return result;
 }
 
 template <int dim>
 void ContactProblem<dim>::add_turning() {
-  std::vector<std::pair<int, int>> places(dim);
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const NodeContact<dim>& contact = contacts_[k];
     if (!contact.slips || dim == 2) continue;
     Eigen::Matrix<double, dim, dim> K = Eigen::Matrix<double, dim, dim>::Identity();
     for (int i = 0; i < dim; ++i) {
-      places[i] = {contact.node, i};
       if (prescribed_[contact.node * dim + i]) K(i, i) = 0.0;
     }
     K -= contact.normal * contact.normal.transpose() + slips_[k].direction * slips_[k].direction.transpose();
     K *= slips_[k].turning_n_per_m;
-    const Point f = K * contact.slip_m;
-    scatter(places, K.data(), f.data(), lanes_[0]);
+    body_.add(contact.node, K, K * contact.slip_m);
   }
 }
 
 template <int dim>
 SlipCoupling ContactProblem<dim>::slip_coupling() const {
   SlipCoupling slip;
-  slip.normal_n.setZero(slip_rows_);
+  slip.normal_n = body_.reactions().value_n;
   slip.guess_n.setZero(slip_rows_);
-  std::vector<Eigen::Triplet<double>> rows, columns;
-  for (const Lane& lane : lanes_) {
-    rows.insert(rows.end(), lane.slip_rows.begin(), lane.slip_rows.end());
-    for (int row = 0; row < slip_rows_; ++row) slip.normal_n[row] += lane.slip_normal_n[row];
-  }
-  Expansion expansion;
+  std::vector<Eigen::Triplet<double>> rows = body_.reactions().row, columns;
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const NodeContact<dim>& contact = contacts_[k];
     if (!contact.slips) continue;
@@ -342,18 +319,15 @@ SlipCoupling ContactProblem<dim>::slip_coupling() const {
     const Point turned = gaps_[contact.node].hessian_per_m * contact.friction_n;
     slip.guess_n[row] = contact.normal_n;
     for (int i = 0; i < dim; ++i) {
-      expansion.clear();
-      expand(contact.node, i, 1.0, expansion);
-      slip.normal_n[row] += turned[i] * expansion.offset_m;
-      for (const auto& [unknown, weight] : expansion.terms) {
+      slip.normal_n[row] += turned[i] * body_.expand(contact.node * dim + i, [&](int unknown, double weight) {
         columns.emplace_back(unknown, row, -weight * friction[i]);
         rows.emplace_back(row, unknown, weight * turned[i]);
-      }
+      });
     }
   }
-  slip.row.resize(slip_rows_, unknowns_);
+  slip.row.resize(slip_rows_, unknowns());
   slip.row.setFromTriplets(rows.begin(), rows.end());
-  slip.column.resize(unknowns_, slip_rows_);
+  slip.column.resize(unknowns(), slip_rows_);
   slip.column.setFromTriplets(columns.begin(), columns.end());
   return slip;
 }
@@ -370,8 +344,7 @@ template double ContactProblem<2>::update_slipping(State<2>&, const std::vector<
 template std::vector<ContactProblem<2>::RegionFriction> ContactProblem<2>::region_frictions(const State<2>&) const;
 template bool ContactProblem<2>::begin_sliding(State<2>&) const;
 template void ContactProblem<2>::keep_history(State<2>&) const;
-template void ContactProblem<2>::add_slip_rows(const std::vector<std::pair<int, int>>&, const std::vector<int>&,
-                                               const Eigen::MatrixXd&, const Eigen::VectorXd&, Lane&) const;
+template std::vector<ElasticBody<2>::InReaction> ContactProblem<2>::in_slip_rows() const;
 template void ContactProblem<2>::add_turning();
 template SlipCoupling ContactProblem<2>::slip_coupling() const;
 template void ContactProblem<3>::set_friction(const scene::Friction&, double);
@@ -386,8 +359,7 @@ template double ContactProblem<3>::update_slipping(State<3>&, const std::vector<
 template std::vector<ContactProblem<3>::RegionFriction> ContactProblem<3>::region_frictions(const State<3>&) const;
 template bool ContactProblem<3>::begin_sliding(State<3>&) const;
 template void ContactProblem<3>::keep_history(State<3>&) const;
-template void ContactProblem<3>::add_slip_rows(const std::vector<std::pair<int, int>>&, const std::vector<int>&,
-                                               const Eigen::MatrixXd&, const Eigen::VectorXd&, Lane&) const;
+template std::vector<ElasticBody<3>::InReaction> ContactProblem<3>::in_slip_rows() const;
 template void ContactProblem<3>::add_turning();
 template SlipCoupling ContactProblem<3>::slip_coupling() const;
 

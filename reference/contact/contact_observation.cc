@@ -37,21 +37,7 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
   }
   seen.support_force_n = with_images(support);
 
-  double change_m3 = 0.0, rest_m3 = 0.0;
-  {
-    CellResult<dim> result;
-    typename Element<dim>::Nodal X, u;
-    for (int c = 0; c < mesh_.cell_count(); ++c) {
-      for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
-        X.col(a) = mesh_.points_m.col(mesh_.cells[c][a]);
-        u.col(a) = state.u_m.col(mesh_.cells[c][a]);
-      }
-      element_.evaluate(X, u, state.p_pa.col(c), Stiffness::none, result, mesh_.materials_of(c));
-      change_m3 += result.volume_change_m3;
-      rest_m3 += result.rest_volume_m3;
-    }
-  }
-  seen.volume_change_rel = change_m3 / rest_m3;
+  seen.volume_change_rel = body_.volume_change_rel(state);
   if (!tool_) return seen;
 
   // Contact forces lambda grad g act on the body; the tool gets their opposite.
@@ -73,16 +59,16 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
     on_tool_n.push_back(-F.col(node).dot(normal) / normal.squaredNorm() * g.gradient);
     if (area_m2_[node] > 0.0) pressure_pa[node] = -on_tool_n.back().dot(g.gradient.normalized()) / area_m2_[node];
   }
-  for (const auto& hanging : mesh_.hanging) {
-    if (surface_normal_.col(hanging.node).isZero(0.0)) continue;
-    opening_m[hanging.node] = gap(state, hanging.node).value_m;
-    seen.between_nodes_penetration_m = std::max(seen.between_nodes_penetration_m, -opening_m[hanging.node]);
+  for (int node = 0; node < mesh_.node_count(); ++node) {
+    if (!mesh_.hangs(node) || surface_normal_.col(node).isZero(0.0)) continue;
+    opening_m[node] = gap(state, node).value_m;
+    seen.between_nodes_penetration_m = std::max(seen.between_nodes_penetration_m, -opening_m[node]);
     double share = 0.0;
-    for (const auto& [master, weight] : hanging.masters) {
-      pressure_pa[hanging.node] += weight * pressure_pa[master];
+    for (const auto& [master, weight] : mesh_.masters(node)) {
+      pressure_pa[node] += weight * pressure_pa[master];
       share += weight * inside[master];
     }
-    inside[hanging.node] = share > 0.5 ? 1 : 0;
+    inside[node] = share > 0.5 ? 1 : 0;
   }
   if constexpr (dim == 2) {
     for (const int node : contact_nodes_) {
@@ -154,7 +140,6 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
       t += ((1.0 - t) * (1.0 - t) * (1.0 - t) - q * q * t) / (3.0 * (1.0 - t) * (1.0 - t) + q * q);
     return from + std::min(t, 1.0) * (to - from);
   };
-  const GaussRule<dim - 1> rule;
   for (const auto& face : mesh_.faces) {
     if (face.boundary != Boundary::free) continue;
     const auto first =
@@ -195,10 +180,9 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
       seen.regions[region_of[m * touching_count + touching_index[*first]]].area_m2 += area_m2;
     }
     // Penetration where nothing enforces contact.
-    for (int q = 0; q < GaussRule<dim - 1>::size; ++q) {
-      const Q2<dim - 1> shape(rule.points[q]);
+    for (const auto& [xi, weight, shape] : gauss_points<dim - 1>()) {
       Point X = Point::Zero(), u = Point::Zero(), N = Point::Zero();
-      for (int a = 0; a < Mesh<dim>::nodes_per_face; ++a) {
+      for (int a = 0; a < Discretisation<dim>::nodes_per_face; ++a) {
         X += shape.value[a] * mesh_.points_m.col(face.nodes[a]);
         u += shape.value[a] * state.u_m.col(face.nodes[a]);
         N += shape.value[a] * surface_normal_.col(face.nodes[a]);

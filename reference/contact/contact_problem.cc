@@ -1,10 +1,8 @@
 #include "reference/contact/contact_problem.h"
 
-#include "reference/contact/contact_shares.h"
-#include "scene/base/stopwatch.h"
-
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <set>
@@ -13,12 +11,6 @@
 namespace touchstone::reference {
 namespace {
 
-std::vector<MixedMaterial> mixed(const std::vector<scene::Material>& materials, scene::Kinematics kinematics) {
-  std::vector<MixedMaterial> result;
-  for (const scene::Material& material : materials) result.emplace_back(material, kinematics);
-  return result;
-}
-
 /// Which nodes touch, and which of them slip.
 template <int dim>
 std::string status_text(const State<dim>& state) {
@@ -26,28 +18,20 @@ std::string status_text(const State<dim>& state) {
   return text.append(state.slipping.begin(), state.slipping.end());
 }
 
-/// Weights of the three Gauss-Lobatto points on [0,1], which are the nodes of a quadratic side.
-constexpr double simpson[3] = {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
-
 }  // namespace
 
 template <int dim>
-ContactProblem<dim>::ContactProblem(Mesh<dim> mesh, const scene::Material& material, scene::Kinematics kinematics,
-                                    bool mirror_x, bool mirror_y, int threads, const Numerics& numerics)
-    : mesh_(std::move(mesh)),
+ContactProblem<dim>::ContactProblem(Discretisation<dim> mesh, const scene::Material& material,
+                                    scene::Kinematics kinematics, bool mirror_x, bool mirror_y, int threads,
+                                    const Numerics& numerics)
+    : body_(std::move(mesh), material, kinematics, threads, numerics),
+      mesh_(body_.mesh()),
       material_(material),
       kinematics_(kinematics),
       mirror_x_(mirror_x),
       mirror_y_(mirror_y),
-      threads_(threads),
-      numerics_(numerics),
-      element_(MixedMaterial(material, kinematics), mixed(mesh_.inclusion_materials, kinematics),
-               numerics.numerical_bulk),
-      lead_(make_parts()),
-      solver_(make_solver()) {
+      numerics_(numerics) {
   const int n = mesh_.node_count();
-  hanging_.assign(n, -1);
-  for (std::size_t k = 0; k < mesh_.hanging.size(); ++k) hanging_[mesh_.hanging[k].node] = static_cast<int>(k);
   prescribed_.assign(n * dim, 0);
   prescribed_m_ = Nodal::Zero(dim, n);
   step_offset_m_ = Nodal::Zero(dim, n);
@@ -68,41 +52,23 @@ ContactProblem<dim>::ContactProblem(Mesh<dim> mesh, const scene::Material& mater
       }
     }
   }
-  // Areas and normals of the surface that may touch. Lumping at the nodes keeps every weight positive. Outward is away
-  // from the nodes' mean, which is inside a convex body; neighbouring faces may run opposite ways.
-  const Point middle_m = mesh_.points_m.rowwise().mean();
-  for (const auto& face : mesh_.faces) {
+  // Areas and normals of the surface that may touch. Lumping at the nodes keeps every weight positive.
+  Nodal area_m2 = Nodal::Zero(dim, n);
+  const auto face_geometry = mesh_.face_geometry();
+  for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
+    const auto& face = mesh_.faces[f];
     if (face.boundary != Boundary::free) continue;
-    Eigen::Matrix<double, dim, Mesh<dim>::nodes_per_face> X;
-    for (int a = 0; a < Mesh<dim>::nodes_per_face; ++a) X.col(a) = mesh_.points_m.col(face.nodes[a]);
-    for (int a = 0; a < Mesh<dim>::nodes_per_face; ++a) {
-      Eigen::Matrix<double, dim - 1, 1> xi;
-      double weight = 1.0;
-      for (int d = 0, index = a; d < dim - 1; ++d, index /= 3) {
-        xi[d] = 0.5 * (index % 3);
-        weight *= simpson[index % 3];
-      }
-      const Eigen::Matrix<double, dim, dim - 1> tangents = X * Q2<dim - 1>(xi).gradient;
-      Point normal;  // its length is the area per unit of (xi)
-      if constexpr (dim == 3) {
-        normal = Eigen::Vector3d(tangents.col(0)).cross(Eigen::Vector3d(tangents.col(1)));
-      } else {
-        normal = Eigen::Vector2d(tangents(1), -tangents(0));
-        weight *= 2.0 * std::numbers::pi * X(0, a);
-      }
+    for (int a = 0; a < Discretisation<dim>::nodes_per_face; ++a) {
       const int node = face.nodes[a];
-      area_m2_[node] += weight * normal.norm();
-      surface_normal_.col(node) += normal.dot(X.col(a) - middle_m) < 0.0 ? -normal.normalized() : normal.normalized();
-      if constexpr (dim == 2) {
-        // The node on the axis carries no force: alone it would flip freely, so it follows its neighbour.
-        const double on_axis_m = 1e-9 * largest_extent_m_;
-        if (X(0, a) < on_axis_m) axis_partner_[node] = face.nodes[1];
-      }
+      const double r_m = mesh_.points_m(0, node);
+      area_m2(0, node) += face_geometry[f].weight[a] * (dim == 2 ? 2.0 * std::numbers::pi * r_m : 1.0);
+      surface_normal_.col(node) += face_geometry[f].normal.col(a);
+      // The node on the axis carries no force: alone it would flip freely, so it follows its neighbour.
+      if (dim == 2 && r_m < 1e-9 * largest_extent_m_) axis_partner_[node] = face.nodes[1];
     }
   }
-  for (const auto& hanging : mesh_.hanging) {
-    for (const auto& [master, weight] : hanging.masters) area_m2_[master] += weight * area_m2_[hanging.node];
-  }
+  mesh_.condense(area_m2);
+  for (int node = 0; node < n; ++node) area_m2_[node] = area_m2(0, node);
   for (auto normal : surface_normal_.colwise()) {
     if (!normal.isZero(0.0)) normal.normalize();
   }
@@ -116,18 +82,9 @@ ContactProblem<dim>::ContactProblem(Mesh<dim> mesh, const scene::Material& mater
   std::erase_if(contact_nodes_, [&](int node) {
     bool all_fixed = true;
     for (int i = 0; i < dim; ++i) all_fixed = all_fixed && prescribed_[node * dim + i];
-    return hanging_[node] >= 0 || all_fixed;
+    return mesh_.hangs(node) || all_fixed;
   });
-  rank_of_cell_ = ranks_of_cells(mesh_, ranks::count());
-  for (int c = 0; c < mesh_.cell_count(); ++c) {
-    if (rank_of_cell_[c] == ranks::own()) cells_.push_back(c);
-  }
-  number_unknowns();
-}
-
-template <int dim>
-ContactProblem<dim>::~ContactProblem() {
-  lead_.reset();  // the solvers of all ranks end together
+  body_.number_unknowns(prescribed_, contact_nodes_);
 }
 
 template <int dim>
@@ -135,31 +92,62 @@ void ContactProblem<dim>::prescribe(int node, int direction, double displacement
   prescribed_m_(direction, node) = displacement_m;
   if (prescribed_[node * dim + direction]) return;
   prescribed_[node * dim + direction] = 1;
-  number_unknowns();
+  body_.number_unknowns(prescribed_, contact_nodes_);
 }
 
 template <int dim>
 void ContactProblem<dim>::load(Nodal force_n) {
   dead_force_n_ = std::move(force_n);
-  for (const auto& hanging : mesh_.hanging) {
-    for (const auto& [master, weight] : hanging.masters) {
-      dead_force_n_.col(master) += weight * dead_force_n_.col(hanging.node);
-    }
-    dead_force_n_.col(hanging.node).setZero();
-  }
+  mesh_.condense(dead_force_n_);
 }
 
 template <int dim>
-void ContactProblem<dim>::number_unknowns() {
-  unknown_.assign(mesh_.node_count() * dim, -1);
-  unknowns_ = 0;
-  for (int node = 0; node < mesh_.node_count(); ++node) {
-    if (hanging_[node] >= 0) continue;
+typename ElasticBody<dim>::Forces ContactProblem<dim>::forces(const State<dim>& state) const {
+  auto forces = body_.forces(state);
+  if (dead_force_n_.size() > 0) forces.nodal_n -= dead_force_n_;
+  return forces;
+}
+
+template <int dim>
+typename ContactProblem<dim>::Nodal ContactProblem<dim>::internal_forces(const State<dim>& state) const {
+  return forces(state).nodal_n;
+}
+
+template <int dim>
+std::vector<typename ElasticBody<dim>::Line> ContactProblem<dim>::contact_lines() const {
+  std::vector<typename ElasticBody<dim>::Line> lines;
+  for (const int node : contact_nodes_) {
+    const int direction = eliminated_[node];
     for (int i = 0; i < dim; ++i) {
-      if (!prescribed_[node * dim + i]) unknown_[node * dim + i] = unknowns_++;
+      if (prescribed_[node * dim + i] || (direction != i && direction != all_directions)) continue;
+      auto& line = lines.emplace_back();
+      line.dof = node * dim + i;
+      line.offset_m = direction == all_directions ? stick_m_(i, node) : -gaps_[node].value_m / gaps_[node].gradient[i];
+      // n . du = -g, solved for the largest component of n.
+      for (int j = 0; j < dim && direction != all_directions; ++j) {
+        const double weight = -gaps_[node].gradient[j] / gaps_[node].gradient[i];
+        if (j != i && weight != 0.0) line.terms.emplace_back(node * dim + j, weight);
+      }
     }
   }
-  matrix_ = {};
+  return lines;
+}
+
+template <int dim>
+const Eigen::VectorXd& ContactProblem<dim>::assemble_tangent(const State<dim>& state, Tangent tangent) {
+  std::vector<int> active;
+  std::copy_if(contact_nodes_.begin(), contact_nodes_.end(), std::back_inserter(active),
+               [&](int node) { return eliminated_[node] >= 0; });
+  // An eliminated component stays in the pattern as an equation of its own, scaled like its neighbours.
+  body_.assemble(state, tangent == Tangent::definite ? Stiffness::definite : Stiffness::consistent, active,
+                 tool_ ? material_.shear_modulus_pa() * tool_->half_width_m() : 0.0, in_slip_rows());
+  if (dead_force_n_.size() > 0) body_.add_load(dead_force_n_);
+  if (tangent == Tangent::consistent) {
+    // The tangent of -lambda grad g at the touching nodes: -lambda hessian g.
+    for (const int node : active) body_.add(node, -lambda_n_[node] * gaps_[node].hessian_per_m, Point::Zero());
+  }
+  if (friction_) add_turning();
+  return body_.right_n();
 }
 
 template <int dim>
@@ -213,7 +201,7 @@ template <int dim>
 std::array<double, 2> ContactProblem<dim>::residual(const State<dim>& state, const Nodal& forces_n) const {
   double sum2_n2 = 0.0, acting_n = 0.0;
   for (int node = 0; node < mesh_.node_count(); ++node) {
-    if (hanging_[node] >= 0) continue;
+    if (mesh_.hangs(node)) continue;
     Point free = forces_n.col(node), normal = Point::Zero();
     for (int i = 0; i < dim; ++i) {
       if (prescribed_[node * dim + i]) {
@@ -251,7 +239,7 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
   const int most_iterations = friction_ ? largest_iterations_with_friction : largest_iterations;
   bool last_stable = true;
 
-  Forces current = forces(state);
+  typename ElasticBody<dim>::Forces current = forces(state);
   if (!current.admissible) {
     report.trouble = "the starting state turns an element inside out";
     return report;
@@ -286,7 +274,7 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     double still_to_move_m = 0.0;
     for (int node = 0; node < mesh_.node_count(); ++node) {
       for (int i = 0; i < dim; ++i) {
-        if (!prescribed_[node * dim + i] || hanging_[node] >= 0) continue;
+        if (!prescribed_[node * dim + i] || mesh_.hangs(node)) continue;
         step_offset_m_(i, node) = prescribed_m_(i, node) - state.u_m(i, node);
         still_to_move_m = std::max(still_to_move_m, std::abs(step_offset_m_(i, node)));
       }
@@ -299,7 +287,7 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
       // A balance whose tangent is indefinite is one the body would leave: a large step can end there, small ones do
       // not.
       if (!friction_ || !begin_sliding(state)) {
-        report.converged = last_stable && (iteration == 0 || solver_->positive_definite(matrix_));
+        report.converged = last_stable && (iteration == 0 || body_.solver().positive_definite(body_.matrix()));
         if (!report.converged) report.trouble = "the balance found is not stable";
         if (friction_) keep_history(state);
         return report;
@@ -338,14 +326,16 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     const double last_step_rel =
         std::min(force_tolerance / report.residual_rel, volume_tolerance / current.volume_error_rel);
     const double tolerance_rel = std::clamp(std::max(0.1 * away_rel, 0.01 * last_step_rel), 1e-10, 1e-2);
-    if (changed || iteration == 0) solver_->forget();
+    body_.constrain(step_offset_m_, contact_lines());
+    if (changed || iteration == 0) body_.solver().forget();
     // With slip one tangent is solved several times.
     bool definite = false;
     Eigen::VectorXd solution;
     for (const Tangent tangent : {Tangent::consistent, Tangent::without_curvature, Tangent::definite}) {
       solution = assemble_tangent(state, tangent);
       // With slip one tangent is solved several times.
-      definite = slip_rows_ > 0 ? solver_->factorise(matrix_) : solver_->solve(matrix_, tolerance_rel, solution);
+      definite = slip_rows_ > 0 ? body_.solver().factorise(body_.matrix())
+                                : body_.solver().solve(body_.matrix(), tolerance_rel, solution);
       if (!definite) continue;
       // A node on the edge between two facets would leave it; which way is nothing to the body.
       last_stable =
@@ -359,20 +349,11 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     }
     if (slip_rows_ > 0) {
       solve_with_slip(
-          slip_coupling(), [this](Eigen::VectorXd& x) { solver_->solve(x); }, solution);
+          slip_coupling(), [this](Eigen::VectorXd& x) { body_.solver().solve(x); }, solution);
     }
 
-    Nodal du_m(dim, mesh_.node_count());
-    Expansion expansion;
-    for (int node = 0; node < mesh_.node_count(); ++node) {
-      for (int i = 0; i < dim; ++i) {
-        expansion.clear();
-        expand(node, i, 1.0, expansion);
-        du_m(i, node) = expansion.offset_m;
-        for (const auto& [unknown, weight] : expansion.terms) du_m(i, node) += weight * solution[unknown];
-      }
-    }
-    const Pressures dp_pa = pressure_change(du_m);
+    const Nodal du_m = body_.displacement_m(solution);
+    const auto dp_pa = body_.pressure_change_pa(du_m);
     if (!du_m.allFinite()) {
       report.trouble = "the displacement is not finite";
       return report;
@@ -383,10 +364,7 @@ NewtonReport ContactProblem<dim>::solve(State<dim>& state, const Watch& watch) {
     for (int halvings = 0;; ++halvings, share *= 0.5) {
       state.u_m = before.u_m + share * du_m;
       state.p_pa = before.p_pa + share * dp_pa;
-      {
-        const scene::CpuTimeAdder watch_forces(assembly_s_);
-        current = forces(state);
-      }
+      current = forces(state);
       if (current.admissible) break;
       if (halvings == 6) {
         report.trouble = "an element turns inside out";
@@ -400,31 +378,22 @@ template <int dim>
 std::vector<Eigen::Matrix<double, dim, Eigen::Dynamic>> ContactProblem<dim>::linear_displacements_m(
     const std::vector<NodeForce>& forces) {
   if (!holds_rest_factor_) {
+    body_.constrain(step_offset_m_, {});
     (void)assemble_tangent(rest(), Tangent::consistent);
-    if (!solver_->factorise(matrix_)) throw std::runtime_error("the stiffness at rest is singular");
+    if (!body_.solver().factorise(body_.matrix())) throw std::runtime_error("the stiffness at rest is singular");
     holds_rest_factor_ = true;
   }
   const auto count = static_cast<Eigen::Index>(forces.size());
-  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(unknowns_, count);
+  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(unknowns(), count);
   for (Eigen::Index k = 0; k < count; ++k) {
     const NodeForce& one = forces[static_cast<std::size_t>(k)];
     for (int i = 0; i < dim; ++i) {
-      if (const int unknown = unknown_[one.node * dim + i]; unknown >= 0) x(unknown, k) = one.force_n[i];
+      if (const int unknown = body_.unknown(one.node * dim + i); unknown >= 0) x(unknown, k) = one.force_n[i];
     }
   }
-  solver_->solve_columns(x);
-  std::vector<Nodal> displacements_m(forces.size(), Nodal::Zero(dim, mesh_.node_count()));
-  for (Eigen::Index k = 0; k < count; ++k) {
-    Nodal& u_m = displacements_m[static_cast<std::size_t>(k)];
-    for (int node = 0; node < mesh_.node_count(); ++node) {
-      for (int i = 0; i < dim; ++i) {
-        if (const int unknown = unknown_[node * dim + i]; unknown >= 0) u_m(i, node) = x(unknown, k);
-      }
-    }
-    for (const auto& hanging : mesh_.hanging) {
-      for (const auto& [master, weight] : hanging.masters) u_m.col(hanging.node) += weight * u_m.col(master);
-    }
-  }
+  body_.solver().solve_columns(x);
+  std::vector<Nodal> displacements_m;
+  for (const auto& column : x.colwise()) displacements_m.push_back(body_.displacement_m(column));
   return displacements_m;
 }
 

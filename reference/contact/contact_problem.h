@@ -22,12 +22,10 @@
 // increment.
 #pragma once
 
+#include "reference/contact/elastic_body.h"
 #include "reference/contact/friction.h"
 #include "reference/contact/regions.h"
-#include "reference/fe/element.h"
-#include "reference/linear/linear_solver.h"
-#include "reference/linear/ranks.h"
-#include "reference/mesh/mesh.h"
+#include "reference/contact/state.h"
 #include "reference/tool/tool_gap.h"
 #include "scene/base/frames.h"
 #include "scene/model/scene.h"
@@ -42,19 +40,6 @@
 
 namespace touchstone::reference {
 
-/// The state that a load step starts from.
-template <int dim>
-struct State {
-  Eigen::Matrix<double, dim, Eigen::Dynamic> u_m;       ///< one column per node, hanging ones included
-  Eigen::Matrix<double, dim + 1, Eigen::Dynamic> p_pa;  ///< one column per cell: coefficients of 1, (X - Xc) / h
-  std::vector<char> touching;                           ///< per node: in the active set
-  // History of friction; empty without friction, and at rest.
-  std::vector<char> slipping{};  ///< per node: active and slipping
-  std::vector<char> sliding{};   ///< per node: active, in a region that slips as a whole
-  Eigen::Matrix3Xd on_tool_m{};  ///< per node of the free surface: its place in the tool frame
-  double dissipated_j = 0.0;     ///< by friction since the body was at rest, of the whole body
-};
-
 /// The force of the tool on the body at one active node.
 template <int dim>
 struct NodeContact {
@@ -67,12 +52,6 @@ struct NodeContact {
   double coefficient = 0.0;          ///< m
   bool slips = false;
   int region = 0;
-};
-
-/// Numerical parameters that should not affect the result, as factors on the usual ones.
-struct Numerics {
-  double contact_parameter = 1.0;  ///< c of the active set
-  double numerical_bulk = 1.0;     ///< bulk modulus that an incompressible material has in the tangent
 };
 
 /// Tangents of Newton's method; each replaces the one before where that is not positive definite.
@@ -106,19 +85,17 @@ struct Observation {
   std::vector<ContactRegion> regions;
 };
 
-/// The discrete problem. Not thread-safe; uses `threads` threads inside. Of several ranks the first one creates and
-/// uses it; each has a part of the cells and of the matrix. The first rank computes the tangents of all cells in
-/// contact, so that the others need no contact data.
+/// The discrete problem. Not thread-safe; uses `threads` threads inside. Of several ranks only the first one has it,
+/// see ElasticBody.
 template <int dim>
-class ContactProblem : public ranks::Part {
+class ContactProblem {
  public:
   /// Called after every Newton iteration; may throw to stop.
   using Watch = std::function<void(int iteration, double residual_rel)>;
 
   /// @param mirror_x, mirror_y  dim = 3: the mesh is one half of the body on that side
-  ContactProblem(Mesh<dim> mesh, const scene::Material& material, scene::Kinematics kinematics, bool mirror_x,
+  ContactProblem(Discretisation<dim> mesh, const scene::Material& material, scene::Kinematics kinematics, bool mirror_x,
                  bool mirror_y, int threads = ranks::threads(), const Numerics& numerics = {});
-  ~ContactProblem() override;
   ContactProblem(const ContactProblem&) = delete;
   ContactProblem& operator=(const ContactProblem&) = delete;
 
@@ -173,15 +150,12 @@ class ContactProblem : public ranks::Part {
   [[nodiscard]] const std::vector<int>& contact_nodes() const noexcept { return contact_nodes_; }
   [[nodiscard]] Eigen::Matrix<double, dim, 1> surface_normal(int node) const { return surface_normal_.col(node); }
 
-  [[nodiscard]] const Mesh<dim>& mesh() const noexcept { return mesh_; }
-  [[nodiscard]] int unknowns() const noexcept { return unknowns_; }
-  [[nodiscard]] std::string linear_solver() const { return solver_->description(); }
-  [[nodiscard]] LinearWork linear_work() const noexcept { return solver_->work(); }
+  [[nodiscard]] const Discretisation<dim>& mesh() const noexcept { return mesh_; }
+  [[nodiscard]] int unknowns() const noexcept { return body_.unknowns(); }
+  [[nodiscard]] std::string linear_solver() const { return body_.solver().description(); }
+  [[nodiscard]] LinearWork linear_work() const noexcept { return body_.solver().work(); }
   /// Processor time of tangents and forces, all threads.
-  [[nodiscard]] double assembly_s() const noexcept { return assembly_s_; }
-
-  /// On the other ranks: their part of the work of the first one's methods.
-  void follow(Order order) override;
+  [[nodiscard]] double assembly_s() const noexcept { return body_.assembly_s(); }
 
   /// Newton stops when the out-of-balance force is below this fraction of the acting forces.
   static constexpr double force_tolerance = 1e-8;
@@ -191,64 +165,22 @@ class ContactProblem : public ranks::Part {
  private:
   using Nodal = Eigen::Matrix<double, dim, Eigen::Dynamic>;
   using Point = Eigen::Matrix<double, dim, 1>;
-  using Pressures = Eigen::Matrix<double, dim + 1, Eigen::Dynamic>;
-  /// du(node, direction) = offset + sum of weight * du(unknown).
-  struct Expansion {
-    double offset_m = 0.0;
-    std::vector<std::pair<int, double>> terms;
-    void clear() {
-      offset_m = 0.0;
-      terms.clear();
-    }
-  };
-  /// One thread's part of a global matrix and right-hand side.
-  struct Lane {
-    std::vector<double> value;
-    std::vector<double> right;
-    std::vector<Eigen::Triplet<double>> slip_rows{};  // of SlipCoupling
-    std::vector<double> slip_normal_n{};
-  };
   /// Active nodes and their regions on the whole body: node i of mirror image k is point i + k * nodes.size().
   struct Touching {
     std::vector<int> nodes;
     std::vector<scene::Vec3> mirrors;
     std::vector<int> region_of;  // per point
   };
-  struct Forces {
-    Nodal nodal_n;
-    double volume_error_rel = 0.0;  // largest over cells of |integral psi (J - 1 - p / kappa)| / volume
-    bool admissible = true;         // no cell turned inside out
-  };
 
-  void number_unknowns();
-  void build_pattern();
-  [[nodiscard]] Forces forces(const State<dim>& state) const;
-  [[nodiscard]] Forces forces_of_share(const State<dim>& state) const;
+  [[nodiscard]] typename ElasticBody<dim>::Forces forces(const State<dim>& state) const;
   [[nodiscard]] Gap<dim> gap(const State<dim>& state, int node) const;
-  void expand(int node, int direction, double weight, Expansion& out) const;
-  /// Adds a symmetric matrix and force on (node, direction) places, all constraints resolved.
-  /// @param with_slip  the slipping nodes' rows of SlipCoupling as well
-  void scatter(const std::vector<std::pair<int, int>>& places, const double* K, const double* f, Lane& lane,
-               bool with_slip = false) const;
-  void add_slip_rows(const std::vector<std::pair<int, int>>& places, const std::vector<int>& unknowns,
-                     const Eigen::MatrixXd& KT, const Eigen::VectorXd& out_of_balance_n, Lane& lane) const;
-  /// The same for a cell without hanging, active or moving prescribed nodes, which is most of them.
-  void scatter_plain(const std::array<int, Mesh<dim>::nodes_per_cell>& cell, const CellResult<dim>& result,
-                     Lane& lane) const;
-  /// Adds a symmetric matrix given by columns, of which the lower triangle is read; unknowns ascending.
-  void add_sorted(const int* unknowns, int count, const double* K, Lane& lane) const;
-  void assemble(const State<dim>& state, Stiffness stiffness);
-  void add_dead_forces();
-  void add_curvature();
+  /// What the active set asks of the displacement.
+  [[nodiscard]] std::vector<typename ElasticBody<dim>::Line> contact_lines() const;
+  [[nodiscard]] std::vector<typename ElasticBody<dim>::InReaction> in_slip_rows() const;
   void add_turning();
   [[nodiscard]] SlipCoupling slip_coupling() const;
-  /// The tangent in matrix_ and what it is to be solved for.
-  [[nodiscard]] Eigen::VectorXd assemble_tangent(const State<dim>& state, Tangent tangent);
-  /// Sums the lanes into matrix_ and the result.
-  [[nodiscard]] Eigen::VectorXd sum_of_lanes();
-  /// What the pressures do with a displacement, all cells'.
-  [[nodiscard]] Pressures pressure_change(const Nodal& du_m) const;
-  [[nodiscard]] Pressures pressure_change_of_share(const Nodal& du_m) const;
+  /// Makes the body's tangent. @returns what it is to be solved for
+  const Eigen::VectorXd& assemble_tangent(const State<dim>& state, Tangent tangent);
   /// Next active set; late in a solve it changes less easily. Returns the largest |gap| over active nodes [m].
   double update_touching(State<dim>& state, bool late, bool& changed) const;
   [[nodiscard]] Touching touching_points(const State<dim>& state, double region_gap_m) const;
@@ -282,31 +214,17 @@ class ContactProblem : public ranks::Part {
   /// Out-of-balance force and sum of the acting forces [N].
   [[nodiscard]] std::array<double, 2> residual(const State<dim>& state, const Nodal& forces_n) const;
 
-  // Between the ranks.
-  [[nodiscard]] std::unique_ptr<ranks::Lead> make_parts() const;
-  [[nodiscard]] std::unique_ptr<LinearSolver> make_solver() const;
-  template <class Share>
-  auto jointly(Order order, const Share& share) const {
-    return lead_ ? lead_->jointly(order, share) : share();
-  }
-  static void send(const State<dim>& state);
-  [[nodiscard]] State<dim> receive_state() const;
-  /// Which cells' tangents are this rank's. @param in_contact per cell
-  void take_cells(const std::vector<char>& in_contact);
-
-  Mesh<dim> mesh_;
+  ElasticBody<dim> body_;
+  const Discretisation<dim>& mesh_;
   scene::Material material_;
   scene::Kinematics kinematics_;
   bool mirror_x_, mirror_y_;
-  int threads_;
   Numerics numerics_;
-  Element<dim> element_;
   std::optional<RigidTool<dim>> tool_;
   std::optional<FrictionLaw> friction_;
   double region_gap_m_ = 0.0;
 
   // Per node.
-  std::vector<int> hanging_;       // index into mesh_.hanging or -1
   Nodal surface_normal_;           // outward at rest, zero away from the free surface
   std::vector<double> area_m2_;    // of the free surface; zero: never in contact
   std::vector<int> axis_partner_;  // dim = 2: a node on the axis is active when this one is; else -1
@@ -316,28 +234,14 @@ class ContactProblem : public ranks::Part {
   // Per node and direction.
   std::vector<char> prescribed_;
   Nodal prescribed_m_;
-  Nodal dead_force_n_;        // no columns without any
-  std::vector<int> unknown_;  // number or -1
-  int unknowns_ = 0;
-
-  std::unique_ptr<ranks::Lead> lead_;  // on the first of several ranks
-  std::vector<int> rank_of_cell_;
-  std::vector<int> cells_;                // this rank's, ascending
-  std::unique_ptr<LinearSolver> solver_;  // after lead_
-  double assembly_s_ = 0.0;
-  SymmetricMatrix matrix_;  // this rank's part
+  Nodal dead_force_n_;  // no columns without any
   bool holds_rest_factor_ = false;
-  std::vector<Lane> lanes_;
 
   // Of the current Newton iteration.
   Nodal step_offset_m_;           // what prescribed components still have to move
   std::vector<int> eliminated_;   // per node: direction expressed by the others, `all_directions`, or -1
   std::vector<Gap<dim>> gaps_;    // per node
   std::vector<double> lambda_n_;  // per node
-  std::vector<CellResult<dim>> scratch_;
-  std::vector<int> tangent_cells_;                                 // whose tangents are this rank's, ascending
-  std::vector<typename CellResult<dim>::Coupling> pressure_gain_;  // per tangent cell
-  Pressures pressure_offset_pa_;                                   // the same
 
   // Of the current increment and Newton iteration, with friction.
   static constexpr int all_directions = dim;

@@ -2,33 +2,31 @@
 #pragma once
 
 #include "reference/contact/contact_problem.h"
-#include "reference/mesh/mesh.h"
+#include "reference/discretisation/discretisation.h"
 
+#include <memory>
 #include <vector>
 
 namespace touchstone::reference {
 
-/// The cell and the unit coordinates in which the nodes and cell middles of one mesh lie in another, found once.
-/// Both meshes are of one body; places outside the other mesh, by the difference of two curved surfaces, go to the
-/// nearest cell.
+/// Pairs of cells of two meshes that are refined from one coarse grid, found once.
 template <int dim>
 class Prolongation {
  public:
-  /// Both meshes must outlive it.
-  Prolongation(const Mesh<dim>& from, const Mesh<dim>& to);
+  /// Both meshes must outlive it. @throws std::invalid_argument when their coarse grids differ
+  Prolongation(const Discretisation<dim>& from, const Discretisation<dim>& to);
+  ~Prolongation();
 
-  /// Displacement through the shape functions; in each cell the pressure that is linear in the one its middle lies in;
-  /// a surface node is active when the active nodes of its cell have most of its weight.
+  /// Displacement through the shape functions; in each cell the pressure that is linear in the cell it was cut from; a
+  /// surface node is active when the active nodes of its cell have most of its weight.
   [[nodiscard]] State<dim> operator()(const State<dim>& state) const;
 
  private:
-  struct Place {
-    int cell;
-    Eigen::Matrix<double, dim, 1> xi;
-  };
-  const Mesh<dim>& from_;
-  const Mesh<dim>& to_;
-  std::vector<Place> nodes_, middles_;
+  struct Pairs;
+  const Discretisation<dim>& from_;
+  const Discretisation<dim>& to_;
+  std::unique_ptr<Pairs> pairs_;
+  std::vector<int> parents_;  // per cell: that of the other mesh it lies in
 };
 
 }  // namespace touchstone::reference

@@ -16,7 +16,7 @@ namespace touchstone::reference {
 /// @param region_gap_m  as for ContactProblem::observe
 template <int dim>
 std::string stuck_contact_text(const ContactProblem<dim>& problem, const State<dim>& state, double region_gap_m) {
-  const Mesh<dim>& mesh = problem.mesh();
+  const Discretisation<dim>& mesh = problem.mesh();
   const auto F = problem.internal_forces(state);
   std::vector<char> bound = state.touching;
   for (const auto& face : mesh.faces) {

@@ -12,16 +12,6 @@ namespace {
 /// mu / kappa of what Newton takes for incompressible.
 constexpr double nearly_incompressible = 1e-4;
 
-/// Values and slopes of the three quadratic Lagrange polynomials with nodes 0, 1/2, 1.
-void quadratic(double x, double (&value)[3], double (&slope)[3]) {
-  value[0] = (1.0 - x) * (1.0 - 2.0 * x);
-  value[1] = 4.0 * x * (1.0 - x);
-  value[2] = x * (2.0 * x - 1.0);
-  slope[0] = 4.0 * x - 3.0;
-  slope[1] = 4.0 - 8.0 * x;
-  slope[2] = 4.0 * x - 1.0;
-}
-
 /// K(a, b) += x(a) y(b) + z(a) v(b) + q(a) t(b), the whole cost of a tangent. n is a multiple of four: padded nodes.
 /// The wider clone is chosen by the processor at start-up; sums keep their order, only fused multiply-adds differ.
 template <int n>
@@ -51,36 +41,6 @@ TOUCHSTONE_CLONES void add_three_products_12(double* K, const double* x, const d
 
 }  // namespace
 
-template <int dim>
-Q2<dim>::Q2(const Eigen::Matrix<double, dim, 1>& xi) {
-  double value_1d[dim][3], slope_1d[dim][3];
-  for (int d = 0; d < dim; ++d) quadratic(xi[d], value_1d[d], slope_1d[d]);
-  for (int a = 0; a < size; ++a) {
-    const int place[3] = {a % 3, a / 3 % 3, a / 9};
-    value[a] = 1.0;
-    for (int d = 0; d < dim; ++d) value[a] *= value_1d[d][place[d]];
-    for (int e = 0; e < dim; ++e) {
-      gradient(a, e) = 1.0;
-      for (int d = 0; d < dim; ++d) gradient(a, e) *= d == e ? slope_1d[d][place[d]] : value_1d[d][place[d]];
-    }
-  }
-}
-
-template <int dim>
-GaussRule<dim>::GaussRule() {
-  const double offset = 0.5 * std::sqrt(0.6);
-  const double place[3] = {0.5 - offset, 0.5, 0.5 + offset};
-  const double weight[3] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-  for (int q = 0; q < size; ++q) {
-    const int index[3] = {q % 3, q / 3 % 3, q / 9};
-    weights[q] = 1.0;
-    for (int d = 0; d < dim; ++d) {
-      points[q][d] = place[index[d]];
-      weights[q] *= weight[index[d]];
-    }
-  }
-}
-
 MixedMaterial::MixedMaterial(const scene::Material& material, scene::Kinematics kinematics_in)
     : mu_pa(material.shear_modulus_pa()),
       inverse_kappa_per_pa(3.0 * (1.0 - 2.0 * material.poissons_ratio) / material.youngs_modulus_pa),
@@ -96,11 +56,10 @@ Element<dim>::Element(const MixedMaterial& body, const std::vector<MixedMaterial
     material.inverse_kappa_tangent_per_pa = std::max(
         material.inverse_kappa_per_pa, nearly_incompressible / (bulk_factor * std::max(material.mu_pa, body.mu_pa)));
   }
-  for (const auto& point : rule_.points) shapes_.emplace_back(point);
 }
 
 template <int dim>
-bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& p_pa, Stiffness stiffness,
+bool Element<dim>::evaluate(const CellGeometry<dim>& cell, const Nodal& u_m, const Pressure& p_pa, Stiffness stiffness,
                             CellResult<dim>& out, const Materials* materials) const {
   const bool with_tangent = stiffness != Stiffness::none;
   constexpr int padded = (nodes + 3) / 4 * 4;
@@ -114,11 +73,8 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
   out.smallest_J = 1.0;
   typename CellResult<dim>::Coupling coupling = CellResult<dim>::Coupling::Zero();  // d(volume)/du
 
-  // Pressure basis 1, (X - Xc) / h in rest coordinates.
-  const Eigen::Matrix<double, dim, 1> low_m = X_m.rowwise().minCoeff(), high_m = X_m.rowwise().maxCoeff();
-  const Eigen::Matrix<double, dim, 1> center_m = 0.5 * (low_m + high_m);
-  const double scale_m = (high_m - low_m).maxCoeff();
-  // Integral of psi psi' / kappa, with the tangent's kappa.
+  // The pressure's basis psi is 1, (X - Xc) / h in rest coordinates. Integral of psi psi' / kappa, with the tangent's
+  // kappa.
   Eigen::Matrix<double, pressures, pressures> compliance = Eigen::Matrix<double, pressures, pressures>::Zero();
 
   // Blocks (i, j), i <= j, of the tangent, and the part that is the same on the diagonal blocks.
@@ -147,32 +103,31 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
   // The pressure unknowns are the least compressible material's. Points of softer bulk have a pressure of their own,
   // kappa (J - 1), and are only tied to the unknowns so weakly that these stay determined in a sliver.
   const MixedMaterial* least_compressible = &materials_[materials ? (*materials)[0] : 0];
-  for (int q = 1; materials && q < GaussRule<dim>::size; ++q) {
+  for (int q = 1; materials && q < CellGeometry<dim>::points; ++q) {
     const MixedMaterial& material = materials_[(*materials)[q]];
     if (material.inverse_kappa_per_pa < least_compressible->inverse_kappa_per_pa) least_compressible = &material;
   }
   const double tie_per_pa = nearly_incompressible / least_compressible->mu_pa;
 
-  for (int q = 0; q < GaussRule<dim>::size; ++q) {
-    const Q2<dim>& shape = shapes_[q];
+  const std::vector<GaussPoint<dim>>& points = gauss_points<dim>();
+  for (int q = 0; q < CellGeometry<dim>::points; ++q) {
+    const Shape<dim>& shape = points[q].shape;
     const MixedMaterial& material = materials_[materials ? (*materials)[q] : 0];
     const bool own_pressure = material.inverse_kappa_per_pa > least_compressible->inverse_kappa_per_pa;
     // Lazy, or Eigen takes its path for large matrices.
-    const Eigen::Matrix<double, dim, dim> jacobian_m = X_m.lazyProduct(shape.gradient);
-    const Eigen::Matrix<double, nodes, dim> G = shape.gradient.lazyProduct(jacobian_m.inverse());  // dN/dX
-    double W_m3 = rule_.weights[q] * jacobian_m.determinant();
-    const Eigen::Matrix<double, dim, 1> place_m = X_m * shape.value;
+    const Eigen::Matrix<double, nodes, dim> G = shape.gradient.lazyProduct(cell.inverse_jacobian_per_m[q]);  // dN/dX
+    double W_m3 = cell.weight[q];
     Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
     H.template topLeftCorner<dim, dim>() = u_m.lazyProduct(G);
     double radius_m = 0.0;
     if constexpr (dim == 2) {
-      radius_m = place_m[0];
+      radius_m = cell.place_m[q][0];
       W_m3 *= 2.0 * std::numbers::pi * radius_m;
       H(hoop, hoop) = u_m.row(0).dot(shape.value) / radius_m;
     }
     Pressure psi;
     psi[0] = 1.0;
-    psi.template tail<dim>() = (place_m - center_m) / scale_m;
+    psi.template tail<dim>() = (cell.place_m[q] - cell.center_m) / cell.scale_m;
     const double unknown_pa = psi.dot(p_pa);
     const double p =
         own_pressure ? (finite ? volume_change(H) : H.trace()) / material.inverse_kappa_per_pa : unknown_pa;
@@ -292,12 +247,6 @@ bool Element<dim>::evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& 
   return true;
 }
 
-template struct Q2<1>;
-template struct Q2<2>;
-template struct Q2<3>;
-template struct GaussRule<1>;
-template struct GaussRule<2>;
-template struct GaussRule<3>;
 template class Element<2>;
 template class Element<3>;
 

@@ -3,6 +3,7 @@
 // The pair is inf-sup stable: D. Boffi, F. Brezzi, M. Fortin, Mixed Finite Element Methods (Springer 2013), 8.6.3.
 #pragma once
 
+#include "reference/discretisation/shape.h"
 #include "reference/fe/neo_hookean.h"
 #include "scene/model/scene.h"
 
@@ -13,24 +14,6 @@
 #include <vector>
 
 namespace touchstone::reference {
-
-/// Quadratic tensor-product shape functions on [0,1]^dim, lexicographic.
-template <int dim>
-struct Q2 {
-  static constexpr int size = dim == 3 ? 27 : (dim == 2 ? 9 : 3);
-  Eigen::Matrix<double, size, 1> value;
-  Eigen::Matrix<double, size, dim> gradient;  ///< with respect to the unit coordinates
-  explicit Q2(const Eigen::Matrix<double, dim, 1>& xi);
-};
-
-/// Tensor-product Gauss rule of three points a side on [0,1]^dim: exact to degree five in each direction.
-template <int dim>
-struct GaussRule {
-  static constexpr int size = Q2<dim>::size;
-  std::array<Eigen::Matrix<double, dim, 1>, size> points;
-  std::array<double, size> weights;
-  GaussRule();
-};
 
 /// Numbers of the material in the form the element uses.
 struct MixedMaterial {
@@ -44,7 +27,7 @@ struct MixedMaterial {
 /// What a cell gives. Local displacement unknown (node a, direction i) has index i * nodes + a.
 template <int dim>
 struct CellResult {
-  static constexpr int nodes = Q2<dim>::size;
+  static constexpr int nodes = Shape<dim>::size;
   static constexpr int unknowns = dim * nodes;
   static constexpr int pressures = dim + 1;
   using Vector = Eigen::Matrix<double, unknowns, 1>;
@@ -76,31 +59,29 @@ enum class Stiffness {
 template <int dim>
 class Element {
  public:
-  static constexpr int nodes = Q2<dim>::size;
+  static constexpr int nodes = Shape<dim>::size;
   using Nodal = Eigen::Matrix<double, dim, nodes>;
   using Pressure = typename CellResult<dim>::Pressure;
 
   /// Material of each Gauss point: 0 the body's, k the k-th inclusion's.
-  using Materials = std::array<std::uint8_t, GaussRule<dim>::size>;
+  using Materials = std::array<std::uint8_t, CellGeometry<dim>::points>;
 
   /// @param bulk_factor  on the numerical bulk modulus
   explicit Element(const MixedMaterial& body, const std::vector<MixedMaterial>& inclusions = {},
                    double bulk_factor = 1.0);
 
-  /// @param X_m nodal rest places; @param u_m nodal displacements
+  /// @param u_m nodal displacements
   /// @param p_pa pressure coefficients of 1, (X - Xc) / h
   /// @param materials nullptr: the body's throughout
   /// @returns false, with the result unfinished, when some point has J <= smallest_allowed_J (finite strain only)
-  bool evaluate(const Nodal& X_m, const Nodal& u_m, const Pressure& p_pa, Stiffness stiffness, CellResult<dim>& out,
-                const Materials* materials = nullptr) const;
+  bool evaluate(const CellGeometry<dim>& cell, const Nodal& u_m, const Pressure& p_pa, Stiffness stiffness,
+                CellResult<dim>& out, const Materials* materials = nullptr) const;
 
   /// Newton may pass through strongly distorted states, not through these.
   static constexpr double smallest_allowed_J = 0.02;
 
  private:
   std::vector<MixedMaterial> materials_;  // the body's first
-  GaussRule<dim> rule_;
-  std::vector<Q2<dim>> shapes_;  // at the rule's points
 };
 
 }  // namespace touchstone::reference

@@ -1,7 +1,7 @@
 #include "reference/mesh/boundary_surface.h"
 
-#include "reference/fe/element.h"
-#include "reference/mesh/mesh.h"
+#include "reference/discretisation/discretisation.h"
+#include "reference/discretisation/shape.h"
 
 #include <cmath>
 #include <numbers>
@@ -41,14 +41,14 @@ Eigen::Matrix3Xd joined(const Vectors& vectors) {
 }  // namespace
 
 template <int dim>
-BoundarySurface boundary_surface(const Mesh<dim>& mesh, const Eigen::Matrix<double, dim, Eigen::Dynamic>& u_m,
+BoundarySurface boundary_surface(const Discretisation<dim>& mesh, const Eigen::Matrix<double, dim, Eigen::Dynamic>& u_m,
                                  bool mirror_x, bool mirror_y) {
   BoundarySurface out;
   Vectors all_rest_m, all_displacement_m;
   for (const auto& face : mesh.faces) {
     if (face.boundary != Boundary::free && face.boundary != Boundary::held) continue;
-    Eigen::Matrix<double, dim, Mesh<dim>::nodes_per_face> X_m, U_m;
-    for (int a = 0; a < Mesh<dim>::nodes_per_face; ++a) {
+    Eigen::Matrix<double, dim, Discretisation<dim>::nodes_per_face> X_m, U_m;
+    for (int a = 0; a < Discretisation<dim>::nodes_per_face; ++a) {
       X_m.col(a) = mesh.points_m.col(face.nodes[a]);
       U_m.col(a) = u_m.col(face.nodes[a]);
     }
@@ -57,7 +57,7 @@ BoundarySurface boundary_surface(const Mesh<dim>& mesh, const Eigen::Matrix<doub
     if constexpr (dim == 3) {
       for (int j = 0; j <= parts; ++j) {
         for (int i = 0; i <= parts; ++i) {
-          const Q2<2> shape(Eigen::Vector2d(i, j) / parts);
+          const Shape<2> shape(Eigen::Vector2d(i, j) / parts);
           rest_m.emplace_back(X_m * shape.value);
           displacement_m.emplace_back(U_m * shape.value);
           is_node.push_back(i % 2 == 0 && j % 2 == 0);
@@ -77,7 +77,7 @@ BoundarySurface boundary_surface(const Mesh<dim>& mesh, const Eigen::Matrix<doub
       for (int turn = 0; turn <= turns; ++turn) {
         const double angle = 2.0 * std::numbers::pi * turn / turns;
         for (int i = 0; i <= parts; ++i) {
-          const Q2<1> shape(Eigen::Matrix<double, 1, 1>(static_cast<double>(i) / parts));
+          const Shape<1> shape(Eigen::Matrix<double, 1, 1>(static_cast<double>(i) / parts));
           const auto turned = [&](const Eigen::Vector2d& rz) {
             return Eigen::Vector3d(rz.x() * std::cos(angle), rz.x() * std::sin(angle), rz.y());
           };
@@ -94,7 +94,7 @@ BoundarySurface boundary_surface(const Mesh<dim>& mesh, const Eigen::Matrix<doub
   return out;
 }
 
-template BoundarySurface boundary_surface(const Mesh<2>&, const Eigen::Matrix2Xd&, bool, bool);
-template BoundarySurface boundary_surface(const Mesh<3>&, const Eigen::Matrix3Xd&, bool, bool);
+template BoundarySurface boundary_surface(const Discretisation<2>&, const Eigen::Matrix2Xd&, bool, bool);
+template BoundarySurface boundary_surface(const Discretisation<3>&, const Eigen::Matrix3Xd&, bool, bool);
 
 }  // namespace touchstone::reference

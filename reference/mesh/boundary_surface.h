@@ -8,7 +8,7 @@
 namespace touchstone::reference {
 
 template <int dim>
-struct Mesh;
+class Discretisation;
 
 /// The whole body's surface, symmetric parts put back. Vertices are not shared between faces, so that where faces meet
 /// several have the same place, up to the gap between a face and two halves of another along a curved edge.
@@ -22,7 +22,7 @@ struct BoundarySurface {
 /// @param mirror_x, mirror_y  the mesh is the part x >= 0, y >= 0 of the body; without meaning for dim = 2, whose
 ///                            meridian is turned about the z axis in even steps, the first at y = 0
 template <int dim>
-[[nodiscard]] BoundarySurface boundary_surface(const Mesh<dim>& mesh,
+[[nodiscard]] BoundarySurface boundary_surface(const Discretisation<dim>& mesh,
                                                const Eigen::Matrix<double, dim, Eigen::Dynamic>& u_m, bool mirror_x,
                                                bool mirror_y);
 

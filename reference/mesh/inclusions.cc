@@ -1,6 +1,6 @@
 #include "reference/mesh/inclusions.h"
 
-#include "reference/fe/element.h"
+#include "reference/discretisation/shape.h"
 #include "scene/base/in_space.h"
 
 #include <algorithm>
@@ -30,21 +30,17 @@ bool alike(const Inclusion& a, const Inclusion& b) {
 }  // namespace
 
 template <int dim>
-void embed_inclusions(const scene::Body& body, Mesh<dim>& mesh) {
+void embed_inclusions(const scene::Body& body, Discretisation<dim>& mesh) {
   if (body.inclusions.empty()) return;
   std::vector<std::unique_ptr<const scene::Shape>> shapes;
   for (const Inclusion& inclusion : body.inclusions) {
     shapes.push_back(solid_shape(inclusion, inclusion.center_m));
     mesh.inclusion_materials.push_back(inclusion.material);
   }
-  std::vector<Q2<dim>> at_points;
-  for (const auto& point : GaussRule<dim>().points) at_points.emplace_back(point);
-  for (const auto& cell : mesh.cells) {
-    Eigen::Matrix<double, dim, Mesh<dim>::nodes_per_cell> X_m;
-    for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) X_m.col(a) = mesh.points_m.col(cell[a]);
+  for (const CellGeometry<dim>& cell : mesh.cell_geometry()) {
     auto& materials = mesh.materials.emplace_back();
-    for (std::size_t q = 0; q < at_points.size(); ++q) {
-      const Vec3 place_m = scene::in_space<dim>(X_m * at_points[q].value);
+    for (std::size_t q = 0; q < materials.size(); ++q) {
+      const Vec3 place_m = scene::in_space<dim>(cell.place_m[q]);
       const auto inside = std::find_if(shapes.begin(), shapes.end(),
                                        [&](const auto& shape) { return shape->signed_distance_m(place_m) < 0.0; });
       materials[q] = inside == shapes.end() ? 0 : static_cast<std::uint8_t>(inside - shapes.begin() + 1);
@@ -80,8 +76,8 @@ bool mirrored(const std::vector<Inclusion>& inclusions, int axis) {
   });
 }
 
-template void embed_inclusions(const scene::Body&, Mesh<2>&);
-template void embed_inclusions(const scene::Body&, Mesh<3>&);
+template void embed_inclusions(const scene::Body&, Discretisation<2>&);
+template void embed_inclusions(const scene::Body&, Discretisation<3>&);
 template void refine_at_inclusions(const scene::Body&, double, Grading<2>&);
 template void refine_at_inclusions(const scene::Body&, double, Grading<3>&);
 

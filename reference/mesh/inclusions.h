@@ -12,7 +12,7 @@ namespace touchstone::reference {
 /// nu = 0.33, 38 % less force) the force is off by -1.5 %, -0.2 %, -0.1 % with 4, 8, 16 cells to the radius; 89 times
 /// stiffer (53 % more) by 5 %, 2 %, 1 %.
 template <int dim>
-void embed_inclusions(const scene::Body& body, Mesh<dim>& mesh);
+void embed_inclusions(const scene::Body& body, Discretisation<dim>& mesh);
 
 /// Asks for small cells at the surface of every inclusion: `cells` to the largest ball about its middle, by radius.
 template <int dim>

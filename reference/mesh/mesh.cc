@@ -3,19 +3,14 @@
 #include "reference/mesh/mesh_limit.h"
 
 #include <deal.II/base/geometry_info.h>
-#include <deal.II/dofs/dof_handler.h>
-#include <deal.II/dofs/dof_tools.h>
-#include <deal.II/fe/fe_q.h>
-#include <deal.II/fe/fe_tools.h>
-#include <deal.II/fe/mapping_q.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/tria.h>
-#include <deal.II/lac/affine_constraints.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <string>
 
@@ -140,69 +135,16 @@ std::vector<unsigned int> coarse_cells(const std::vector<double>& lengths, const
   return cells;
 }
 
-/// Plain arrays from a finished grid: one quadratic scalar degree of freedom is one node.
-template <int dim>
-Mesh<dim> to_arrays(const dealii::Triangulation<dim>& grid, const Map<dim>& place_m = unmapped<dim>) {
-  using namespace dealii;
-  using Out = Mesh<dim>;
-  const FE_Q<dim> element(2);
-  DoFHandler<dim> nodes(grid);
-  nodes.distribute_dofs(element);
-  const std::vector<unsigned int> to_lexicographic = FETools::hierarchic_to_lexicographic_numbering<dim>(2);
-  const MappingQ<dim> mapping(1);
-
-  Out mesh;
-  mesh.points_m.resize(dim, nodes.n_dofs());
-  std::vector<types::global_dof_index> indices(Out::nodes_per_cell);
-  for (const auto& cell : nodes.active_cell_iterators()) {
-    cell->get_dof_indices(indices);
-    std::array<int, Out::nodes_per_cell> ordered;
-    for (int a = 0; a < Out::nodes_per_cell; ++a) {
-      ordered[to_lexicographic[a]] = static_cast<int>(indices[a]);
-      mesh.points_m.col(indices[a]) =
-          place_m(to_eigen<dim>(mapping.transform_unit_to_real_cell(cell, element.unit_support_point(a))));
-    }
-    mesh.cells.push_back(ordered);
-    for (const unsigned int f : cell->face_indices()) {
-      if (!cell->face(f)->at_boundary()) continue;
-      typename Out::Face face{{}, static_cast<Boundary>(cell->face(f)->boundary_id())};
-      const int axis = static_cast<int>(f) / 2, layer = f % 2 == 0 ? 0 : 2;
-      int next = 0;
-      for (int a = 0; a < Out::nodes_per_cell; ++a) {
-        const int place[3] = {a % 3, a / 3 % 3, a / 9};
-        if (place[axis] == layer) face.nodes[next++] = ordered[a];
-      }
-      mesh.faces.push_back(face);
-    }
-  }
-
-  AffineConstraints<double> constraints;
-  DoFTools::make_hanging_node_constraints(nodes, constraints);
-  constraints.close();
-  for (const auto& line : constraints.get_lines()) {
-    typename Out::Hanging hanging{static_cast<int>(line.index), {}};
-    mesh.points_m.col(hanging.node).setZero();
-    for (const auto& [master, weight] : line.entries) hanging.masters.emplace_back(static_cast<int>(master), weight);
-    mesh.hanging.push_back(std::move(hanging));
-  }
-  for (const auto& hanging : mesh.hanging) {
-    for (const auto& [master, weight] : hanging.masters) {
-      mesh.points_m.col(hanging.node) += weight * mesh.points_m.col(master);
-    }
-  }
-  return mesh;
-}
-
 }  // namespace
 
-Mesh<3> block_mesh(const BlockSpec& spec) {
-  dealii::Triangulation<3> grid;
+Discretisation<3> block_mesh(const BlockSpec& spec) {
+  const auto grid = std::make_shared<dealii::Triangulation<3>>();
   const Eigen::Vector3d size = spec.upper_m - spec.lower_m;
   const dealii::Point<3> lower(spec.lower_m.x(), spec.lower_m.y(), spec.lower_m.z());
   const dealii::Point<3> upper(spec.upper_m.x(), spec.upper_m.y(), spec.upper_m.z());
-  dealii::GridGenerator::subdivided_hyper_rectangle(grid, coarse_cells({size.x(), size.y(), size.z()}, spec.grading),
+  dealii::GridGenerator::subdivided_hyper_rectangle(*grid, coarse_cells({size.x(), size.y(), size.z()}, spec.grading),
                                                     lower, upper, true);
-  for (const auto& cell : grid.active_cell_iterators()) {
+  for (const auto& cell : grid->active_cell_iterators()) {
     for (const unsigned int f : cell->face_indices()) {
       if (!cell->face(f)->at_boundary()) continue;
       Boundary boundary = Boundary::free;
@@ -212,27 +154,27 @@ Mesh<3> block_mesh(const BlockSpec& spec) {
       cell->face(f)->set_all_boundary_ids(id_of(boundary));
     }
   }
-  refine(grid, spec.grading);
-  return to_arrays(grid);
+  refine(*grid, spec.grading);
+  return Discretisation<3>(grid);
 }
 
-Mesh<2> cylinder_mesh(const CylinderSpec& spec) {
-  dealii::Triangulation<2> grid;
-  dealii::GridGenerator::subdivided_hyper_rectangle(grid, coarse_cells({spec.radius_m, spec.height_m}, spec.grading),
+Discretisation<2> cylinder_mesh(const CylinderSpec& spec) {
+  const auto grid = std::make_shared<dealii::Triangulation<2>>();
+  dealii::GridGenerator::subdivided_hyper_rectangle(*grid, coarse_cells({spec.radius_m, spec.height_m}, spec.grading),
                                                     dealii::Point<2>(0.0, 0.0),
                                                     dealii::Point<2>(spec.radius_m, spec.height_m), true);
-  for (const auto& cell : grid.active_cell_iterators()) {
+  for (const auto& cell : grid->active_cell_iterators()) {
     for (const unsigned int f : cell->face_indices()) {
       if (!cell->face(f)->at_boundary()) continue;
       cell->face(f)->set_boundary_id(id_of(f == 0 ? Boundary::plane_x : (f == 2 ? Boundary::held : Boundary::free)));
     }
   }
-  refine(grid, spec.grading);
-  return to_arrays(grid);
+  refine(*grid, spec.grading);
+  return Discretisation<2>(grid);
 }
 
 template <int dim>
-Mesh<dim> mapped_mesh(const MappedSpec<dim>& spec) {
+Discretisation<dim> mapped_mesh(const MappedSpec<dim>& spec) {
   std::vector<dealii::Point<dim>> vertices(spec.vertices.size());
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     for (int d = 0; d < dim; ++d) vertices[v][d] = spec.vertices[v][d];
@@ -241,19 +183,19 @@ Mesh<dim> mapped_mesh(const MappedSpec<dim>& spec) {
   for (std::size_t c = 0; c < cells.size(); ++c) cells[c].vertices.assign(spec.cells[c].begin(), spec.cells[c].end());
   // Refinement in the plane relies on both cells at an edge running it the same way.
   if constexpr (dim == 2) dealii::GridTools::consistently_order_cells(cells);
-  dealii::Triangulation<dim> grid;
-  grid.create_triangulation(vertices, cells, dealii::SubCellData());
-  for (const auto& cell : grid.active_cell_iterators()) {
+  const auto grid = std::make_shared<dealii::Triangulation<dim>>();
+  grid->create_triangulation(vertices, cells, dealii::SubCellData());
+  for (const auto& cell : grid->active_cell_iterators()) {
     for (const unsigned int f : cell->face_indices()) {
       const auto face = cell->face(f);
       if (face->at_boundary()) face->set_all_boundary_ids(id_of(spec.boundary(to_eigen<dim>(face->center()))));
     }
   }
-  refine(grid, spec.grading, spec.place_m);
-  return to_arrays(grid, spec.place_m);
+  refine(*grid, spec.grading, spec.place_m);
+  return Discretisation<dim>(grid, spec.place_m);
 }
 
-template Mesh<2> mapped_mesh(const MappedSpec<2>&);
-template Mesh<3> mapped_mesh(const MappedSpec<3>&);
+template Discretisation<2> mapped_mesh(const MappedSpec<2>&);
+template Discretisation<3> mapped_mesh(const MappedSpec<3>&);
 
 }  // namespace touchstone::reference

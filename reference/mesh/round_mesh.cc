@@ -375,7 +375,7 @@ std::string round_fault(const RoundSpec& spec) {
 }
 
 template <int dim>
-Mesh<dim> round_mesh(const RoundSpec& spec, const Grading<dim>& grading) {
+Discretisation<dim> round_mesh(const RoundSpec& spec, const Grading<dim>& grading) {
   const Meridian meridian(spec);
   MappedSpec<dim> mapped;
   Collector<dim> collector(mapped);
@@ -399,7 +399,7 @@ Mesh<dim> round_mesh(const RoundSpec& spec, const Grading<dim>& grading) {
   return mapped_mesh(mapped);
 }
 
-template Mesh<2> round_mesh(const RoundSpec&, const Grading<2>&);
-template Mesh<3> round_mesh(const RoundSpec&, const Grading<3>&);
+template Discretisation<2> round_mesh(const RoundSpec&, const Grading<2>&);
+template Discretisation<3> round_mesh(const RoundSpec&, const Grading<3>&);
 
 }  // namespace touchstone::reference

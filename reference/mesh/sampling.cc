@@ -1,6 +1,6 @@
 #include "reference/mesh/sampling.h"
 
-#include "reference/fe/element.h"
+#include "reference/discretisation/shape.h"
 #include "scene/base/error.h"
 
 #include <Eigen/LU>
@@ -14,12 +14,13 @@ namespace {
 
 /// Nearest place on a quadratic face, in its unit coordinates, by Gauss-Newton kept inside the face.
 template <int dim>
-Eigen::Matrix<double, dim - 1, 1> nearest_on_face(const Eigen::Matrix<double, dim, Mesh<dim>::nodes_per_face>& X_m,
-                                                  const Eigen::Matrix<double, dim, 1>& point_m) {
+Eigen::Matrix<double, dim - 1, 1> nearest_on_face(
+    const Eigen::Matrix<double, dim, Discretisation<dim>::nodes_per_face>& X_m,
+    const Eigen::Matrix<double, dim, 1>& point_m) {
   using Unit = Eigen::Matrix<double, dim - 1, 1>;
   Unit xi = Unit::Constant(0.5);
   for (int iteration = 0; iteration < 20; ++iteration) {
-    const Q2<dim - 1> shape(xi);
+    const Shape<dim - 1> shape(xi);
     const Eigen::Matrix<double, dim, dim - 1> tangent = X_m * shape.gradient;
     const Eigen::Matrix<double, dim - 1, dim - 1> normal_matrix = tangent.transpose() * tangent;
     const Unit step = normal_matrix.inverse() * (tangent.transpose() * (point_m - X_m * shape.value));
@@ -34,19 +35,20 @@ Eigen::Matrix<double, dim - 1, 1> nearest_on_face(const Eigen::Matrix<double, di
 }  // namespace
 
 template <int dim>
-SurfaceSampler<dim>::SurfaceSampler(const Mesh<dim>& mesh, const Eigen::Matrix3Xd& rest_points_m, bool mirror_x,
-                                    bool mirror_y) {
+SurfaceSampler<dim>::SurfaceSampler(const Discretisation<dim>& mesh, const Eigen::Matrix3Xd& rest_points_m,
+                                    bool mirror_x, bool mirror_y) {
   using Point = Eigen::Matrix<double, dim, 1>;
   struct Candidate {
-    const typename Mesh<dim>::Face* face;
-    Eigen::Matrix<double, dim, Mesh<dim>::nodes_per_face> X_m;
+    const typename Discretisation<dim>::Face* face;
+    Eigen::Matrix<double, dim, Discretisation<dim>::nodes_per_face> X_m;
     Point low_m, high_m;
   };
   std::vector<Candidate> candidates;
   for (const auto& face : mesh.faces) {
     if (face.boundary != Boundary::free && face.boundary != Boundary::held) continue;
     Candidate candidate{&face, {}, {}, {}};
-    for (int a = 0; a < Mesh<dim>::nodes_per_face; ++a) candidate.X_m.col(a) = mesh.points_m.col(face.nodes[a]);
+    for (int a = 0; a < Discretisation<dim>::nodes_per_face; ++a)
+      candidate.X_m.col(a) = mesh.points_m.col(face.nodes[a]);
     candidate.low_m = candidate.X_m.rowwise().minCoeff();
     candidate.high_m = candidate.X_m.rowwise().maxCoeff();
     candidates.push_back(candidate);
@@ -75,7 +77,7 @@ SurfaceSampler<dim>::SurfaceSampler(const Mesh<dim>& mesh, const Eigen::Matrix3X
       const Point outside = (candidate.low_m - folded).cwiseMax(folded - candidate.high_m).cwiseMax(0.0);
       if (outside.norm() >= std::min(nearest_m, off_surface_m)) continue;
       const auto xi = nearest_on_face<dim>(candidate.X_m, folded);
-      const Q2<dim - 1> shape(xi);
+      const Shape<dim - 1> shape(xi);
       const double distance_m = (candidate.X_m * shape.value - folded).norm();
       if (distance_m >= nearest_m) continue;
       nearest_m = distance_m;
@@ -94,7 +96,8 @@ Eigen::Matrix3Xd SurfaceSampler<dim>::displacement_m(const Eigen::Matrix<double,
   Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(samples_.size()));
   for (std::size_t k = 0; k < samples_.size(); ++k) {
     Eigen::Matrix<double, dim, 1> u = Eigen::Matrix<double, dim, 1>::Zero();
-    for (int a = 0; a < Mesh<dim>::nodes_per_face; ++a) u += samples_[k].weights[a] * u_m.col(samples_[k].nodes[a]);
+    for (int a = 0; a < Discretisation<dim>::nodes_per_face; ++a)
+      u += samples_[k].weights[a] * u_m.col(samples_[k].nodes[a]);
     result.col(static_cast<Eigen::Index>(k)) = samples_[k].to_world * u;
   }
   return result;

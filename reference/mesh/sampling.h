@@ -1,7 +1,7 @@
 // Displacement at points of the rest surface, from nodal values on any of our meshes.
 #pragma once
 
-#include "reference/mesh/mesh.h"
+#include "reference/discretisation/discretisation.h"
 
 #include <Eigen/Core>
 
@@ -17,15 +17,15 @@ class SurfaceSampler {
   /// @param rest_points_m  3 x n, on the body's rest surface, world frame; mirror images and all angles around the axis
   ///                       are folded onto the mesh
   /// @throws scene::InputError when a point is not on the surface (further than a thousandth of the body's size)
-  SurfaceSampler(const Mesh<dim>& mesh, const Eigen::Matrix3Xd& rest_points_m, bool mirror_x, bool mirror_y);
+  SurfaceSampler(const Discretisation<dim>& mesh, const Eigen::Matrix3Xd& rest_points_m, bool mirror_x, bool mirror_y);
 
   /// @param u_m  nodal displacements; @returns 3 x n, world frame
   [[nodiscard]] Eigen::Matrix3Xd displacement_m(const Eigen::Matrix<double, dim, Eigen::Dynamic>& u_m) const;
 
  private:
   struct Sample {
-    std::array<int, Mesh<dim>::nodes_per_face> nodes;
-    Eigen::Matrix<double, Mesh<dim>::nodes_per_face, 1> weights;
+    std::array<int, Discretisation<dim>::nodes_per_face> nodes;
+    Eigen::Matrix<double, Discretisation<dim>::nodes_per_face, 1> weights;
     Eigen::Matrix<double, 3, dim> to_world;  // unfolds the mesh's directions at this point
   };
   std::vector<Sample> samples_;

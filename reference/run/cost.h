@@ -2,7 +2,7 @@
 // `touchstone plan`, the limits of a run and the time left in its progress.
 #pragma once
 
-#include "reference/mesh/mesh.h"
+#include "reference/discretisation/discretisation.h"
 
 #include <string>
 
@@ -47,8 +47,8 @@ class Pace {
 
 /// Displacement unknowns of a mesh, those at the support and on symmetry planes included.
 template <int dim>
-[[nodiscard]] double unknowns_of(const Mesh<dim>& mesh) {
-  return dim * (static_cast<double>(mesh.node_count()) - static_cast<double>(mesh.hanging.size()));
+[[nodiscard]] double unknowns_of(const Discretisation<dim>& mesh) {
+  return static_cast<double>(dim) * (mesh.node_count() - mesh.hanging_count());
 }
 
 /// "40 s", "12 min", "3.5 h".

@@ -93,7 +93,7 @@ Grading<dim> level_grading(const Scene& scene, const ModelChoice& choice, int le
 template <int dim>
 constexpr double growth = dim == 2 ? 0.5 : 1.3;
 
-Mesh<3> box_mesh(const Scene& scene, const ModelChoice& choice, int level, const MeshChange& change) {
+Discretisation<3> box_mesh(const Scene& scene, const ModelChoice& choice, int level, const MeshChange& change) {
   const Vec3 size_m = scene.body.size_m;
   BlockSpec spec;
   spec.lower_m = {choice.mirror_x ? 0.0 : -0.5 * size_m.x(), choice.mirror_y ? 0.0 : -0.5 * size_m.y(), 0.0};
@@ -108,7 +108,7 @@ Mesh<3> box_mesh(const Scene& scene, const ModelChoice& choice, int level, const
 }
 
 template <int dim>
-Mesh<dim> round_level(const Scene& scene, const ModelChoice& choice, int level, const MeshChange& change) {
+Discretisation<dim> round_level(const Scene& scene, const ModelChoice& choice, int level, const MeshChange& change) {
   RoundSpec spec = round_spec(scene.body);
   spec.symmetric_x = choice.mirror_x;
   spec.symmetric_y = choice.mirror_y;
@@ -256,8 +256,8 @@ double refinement(int level) { return std::exp2(level); }
 double far_share(int level) { return std::exp2(-(level / 4)); }
 
 template <int dim>
-Mesh<dim> level_mesh(const Scene& scene, const ModelChoice& choice, int level, const MeshChange& change) {
-  Mesh<dim> mesh;
+Discretisation<dim> level_mesh(const Scene& scene, const ModelChoice& choice, int level, const MeshChange& change) {
+  Discretisation<dim> mesh;
   if constexpr (dim == 3) {
     mesh = scene.body.shape == BodyShape::box ? box_mesh(scene, choice, level, change)
                                               : round_level<dim>(scene, choice, level, change);
@@ -268,7 +268,7 @@ Mesh<dim> level_mesh(const Scene& scene, const ModelChoice& choice, int level, c
   return mesh;
 }
 
-template Mesh<2> level_mesh(const Scene&, const ModelChoice&, int, const MeshChange&);
-template Mesh<3> level_mesh(const Scene&, const ModelChoice&, int, const MeshChange&);
+template Discretisation<2> level_mesh(const Scene&, const ModelChoice&, int, const MeshChange&);
+template Discretisation<3> level_mesh(const Scene&, const ModelChoice&, int, const MeshChange&);
 
 }  // namespace touchstone::reference

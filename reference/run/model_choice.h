@@ -1,7 +1,7 @@
 // What a scene is reduced to before anything is solved: symmetry, meshes, and what cannot be done.
 #pragma once
 
-#include "reference/mesh/mesh.h"
+#include "reference/discretisation/discretisation.h"
 #include "reference/run/contact_patch.h"
 #include "scene/base/error.h"
 #include "scene/model/plan.h"
@@ -66,7 +66,7 @@ struct MeshChange {
 /// displacement has a singular gradient: 1/32 of half the body's size there on the coarsest level in two dimensions,
 /// 1/8 in three. Measured on a ball on a ball in two dimensions, 1/8 to 1/64 all give the force of 1/512 to 0.07 %.
 template <int dim>
-[[nodiscard]] Mesh<dim> level_mesh(const scene::Scene& scene, const ModelChoice& choice, int level,
-                                   const MeshChange& change = {});
+[[nodiscard]] Discretisation<dim> level_mesh(const scene::Scene& scene, const ModelChoice& choice, int level,
+                                             const MeshChange& change = {});
 
 }  // namespace touchstone::reference

@@ -143,7 +143,7 @@ class Run {
   }
 
   /// What the sensitivities take that the store has not.
-  [[nodiscard]] std::vector<SensitivityWork> missing_sensitivities(const Mesh<dim>& coarsest,
+  [[nodiscard]] std::vector<SensitivityWork> missing_sensitivities(const Discretisation<dim>& coarsest,
                                                                    const Store& store) const {
     const auto until = depths_m_.begin() + deepest() + 1;
     const auto touching = std::count_if(depths_m_.begin(), until, [](double depth_m) { return depth_m > 0.0; });
@@ -151,7 +151,7 @@ class Run {
   }
 
   /// Expected time of the known levels after this one and of the sensitivities, before the run's own pace [s].
-  [[nodiscard]] double expected_after_s(int level, const Mesh<dim>& mesh, const Store& store) const {
+  [[nodiscard]] double expected_after_s(int level, const Discretisation<dim>& mesh, const Store& store) const {
     double seconds = 0.0;
     for (int next = level + 1; next < known_levels(); ++next) {
       const int missing = missing_steps(store, next);
@@ -190,10 +190,10 @@ class Run {
     if (!scene_.reference.levels && level >= most_levels) {
       return stop_at(EndedBy::done, not_started(level) + "no scene is refined further");
     }
-    std::unique_ptr<Mesh<dim>> mesh;
+    std::unique_ptr<Discretisation<dim>> mesh;
     Level answer;
     try {
-      mesh = std::make_unique<Mesh<dim>>(level_mesh<dim>(scene_, choice_, level));
+      mesh = std::make_unique<Discretisation<dim>>(level_mesh<dim>(scene_, choice_, level));
       if (const std::optional<Limit> limit = limit_before(level, *mesh, store)) return end_before(level, *limit);
       solve_level(level, *mesh, store, answer);
     } catch (const TimeIsUp&) {
@@ -304,7 +304,8 @@ class Run {
   }
 
   /// What forbids to begin with a level, if anything does.
-  [[nodiscard]] std::optional<Limit> limit_before(int level, const Mesh<dim>& mesh, const Store& store) const {
+  [[nodiscard]] std::optional<Limit> limit_before(int level, const Discretisation<dim>& mesh,
+                                                  const Store& store) const {
     const int missing = missing_steps(store, level);
     if (missing == 0) return std::nullopt;
     const Cost needed = cost(unknowns_of(mesh), missing);
@@ -325,7 +326,8 @@ class Run {
   }
 
   /// That the time was up within a level, what is kept of it, and how long the rest probably takes.
-  [[nodiscard]] std::string time_up_text(int level, const Mesh<dim>& mesh, const Store& store, int finished) const {
+  [[nodiscard]] std::string time_up_text(int level, const Discretisation<dim>& mesh, const Store& store,
+                                         int finished) const {
     const double mesh_s = pace_.factor() * cost(unknowns_of(mesh), missing_steps(store, level)).seconds;
     return fmt::format(
         "the time was up after {} of its {} instants, which are kept; the next run goes on from there, and needs about "
@@ -384,7 +386,7 @@ class Run {
   }
 
   /// Reads what the store has and solves the rest, in track order. @throws TimeIsUp with the answer up to there
-  void solve_level(int level, const Mesh<dim>& mesh, const Store& store, Level& answer) {
+  void solve_level(int level, const Discretisation<dim>& mesh, const Store& store, Level& answer) {
     const SurfaceSampler<dim> sampler(mesh, rest_points_m_, choice_.mirror_x, choice_.mirror_y);
     std::optional<ContactProblem<dim>> problem;  // only when something has to be solved
     std::optional<Prolongation<dim>> prolongation;
@@ -634,8 +636,8 @@ class Run {
   std::vector<double> depths_m_;  // of the tool in the body at rest, per instant
   Pace pace_;
   Result result_;
-  std::unique_ptr<Mesh<dim>> coarser_;  // of the level solved last
-  Mesh<dim> coarsest_;
+  std::unique_ptr<Discretisation<dim>> coarser_;  // of the level solved last
+  Discretisation<dim> coarsest_;
   std::vector<std::vector<Eigen::Matrix3Xd>> shapes_;  // per level and instant, 3 x rest points
   bool sensitivities_known_ = false;
 };

@@ -69,8 +69,8 @@ std::vector<Change> changes(const scene::Scene& scene) {
 std::string name_of(const Change& change) { return std::string("sensitivity-") + change.part; }
 
 template <int dim>
-Mesh<dim> changed_mesh(const scene::Scene& scene, const ModelChoice& choice, const Mesh<dim>& coarsest,
-                       const Change& change) {
+Discretisation<dim> changed_mesh(const scene::Scene& scene, const ModelChoice& choice,
+                                 const Discretisation<dim>& coarsest, const Change& change) {
   return change.other_mesh() ? level_mesh<dim>(scene, choice, 0, change.mesh) : coarsest;
 }
 
@@ -81,7 +81,7 @@ class Repeat {
       : given_(given), watch_(watch), body_(scene::body_shape(given.scene.body)) {}
 
   /// The instant's solution with one choice changed. @throws NotConverged
-  std::pair<Solved<dim>, Step> solve(const Change& change, const Mesh<dim>& mesh) const {
+  std::pair<Solved<dim>, Step> solve(const Change& change, const Discretisation<dim>& mesh) const {
     const scene::Stopwatch time;
     const scene::Scene& scene = given_.scene;
     ContactProblem<dim> problem(mesh, scene.body.material, scene.reference.kinematics, given_.choice.mirror_x,
@@ -174,7 +174,8 @@ double share_at(const Sensitivity& sensitivity, int level) {
 
 template <int dim>
 std::vector<SensitivityWork> missing_sensitivities(const scene::Scene& scene, const ModelChoice& choice,
-                                                   const Mesh<dim>& coarsest, int touching, const Store* store) {
+                                                   const Discretisation<dim>& coarsest, int touching,
+                                                   const Store* store) {
   std::vector<SensitivityWork> list;
   for (const Change& change : changes(scene)) {
     if (store && store->read(name_of(change))) continue;
@@ -192,7 +193,7 @@ std::vector<SensitivityWork> missing_sensitivities(const scene::Scene& scene, co
 template <int dim>
 std::vector<Sensitivity> sensitivities(const SensitivityCase<dim>& given, const Store& store,
                                        const SensitivityWatch& watch) {
-  const auto sampled = [&](const Mesh<dim>& mesh, const Solved<dim>& solved) {
+  const auto sampled = [&](const Discretisation<dim>& mesh, const Solved<dim>& solved) {
     return SurfaceSampler<dim>(mesh, given.rest_points_m, given.choice.mirror_x, given.choice.mirror_y)
         .displacement_m(solved.state.u_m);
   };
@@ -202,7 +203,7 @@ std::vector<Sensitivity> sensitivities(const SensitivityCase<dim>& given, const 
   const Repeat<dim> repeat(given, watch);
   std::vector<Sensitivity> list;
   for (const Change& change : changes(given.scene)) {
-    const Mesh<dim> mesh = changed_mesh(given.scene, given.choice, given.mesh, change);
+    const Discretisation<dim> mesh = changed_mesh(given.scene, given.choice, given.mesh, change);
     std::optional<std::pair<Solved<dim>, Step>> found;
     const std::string name = name_of(change);
     if (const auto record = store.read(name)) found = from_record<dim>(*record, mesh);
@@ -222,10 +223,10 @@ std::vector<Sensitivity> sensitivities(const SensitivityCase<dim>& given, const 
   return list;
 }
 
-template std::vector<SensitivityWork> missing_sensitivities(const scene::Scene&, const ModelChoice&, const Mesh<2>&,
-                                                            int, const Store*);
-template std::vector<SensitivityWork> missing_sensitivities(const scene::Scene&, const ModelChoice&, const Mesh<3>&,
-                                                            int, const Store*);
+template std::vector<SensitivityWork> missing_sensitivities(const scene::Scene&, const ModelChoice&,
+                                                            const Discretisation<2>&, int, const Store*);
+template std::vector<SensitivityWork> missing_sensitivities(const scene::Scene&, const ModelChoice&,
+                                                            const Discretisation<3>&, int, const Store*);
 template std::vector<Sensitivity> sensitivities(const SensitivityCase<2>&, const Store&, const SensitivityWatch&);
 template std::vector<Sensitivity> sensitivities(const SensitivityCase<3>&, const Store&, const SensitivityWatch&);
 

@@ -19,7 +19,7 @@ template <int dim>
 struct SensitivityCase {
   const scene::Scene& scene;
   const ModelChoice& choice;
-  const Mesh<dim>& mesh;
+  const Discretisation<dim>& mesh;
   const Eigen::Matrix3Xd& rest_points_m;
   const std::vector<double>& rest_area_m2;  ///< see Options
   const std::vector<double>& times_s;       ///< of the instants up to the one measured, which is the last
@@ -42,7 +42,7 @@ struct SensitivityWork {
 /// @param store  nullptr: as if it were empty
 template <int dim>
 [[nodiscard]] std::vector<SensitivityWork> missing_sensitivities(const scene::Scene& scene, const ModelChoice& choice,
-                                                                 const Mesh<dim>& coarsest, int touching,
+                                                                 const Discretisation<dim>& coarsest, int touching,
                                                                  const Store* store);
 
 using SensitivityWatch = std::function<void(const std::string& part, int iteration)>;

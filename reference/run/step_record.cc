@@ -44,7 +44,7 @@ std::string to_record(const Solved<dim>& solved, const Step& step) {
 }
 
 template <int dim>
-std::optional<std::pair<Solved<dim>, Step>> from_record(std::string_view bytes, const Mesh<dim>& mesh) {
+std::optional<std::pair<Solved<dim>, Step>> from_record(std::string_view bytes, const Discretisation<dim>& mesh) {
   std::pair<Solved<dim>, Step> result;
   auto& [solved, step] = result;
   solved.state.u_m.resize(dim, mesh.node_count());
@@ -63,7 +63,7 @@ std::optional<std::pair<Solved<dim>, Step>> from_record(std::string_view bytes, 
 
 template std::string to_record(const Solved<2>&, const Step&);
 template std::string to_record(const Solved<3>&, const Step&);
-template std::optional<std::pair<Solved<2>, Step>> from_record(std::string_view, const Mesh<2>&);
-template std::optional<std::pair<Solved<3>, Step>> from_record(std::string_view, const Mesh<3>&);
+template std::optional<std::pair<Solved<2>, Step>> from_record(std::string_view, const Discretisation<2>&);
+template std::optional<std::pair<Solved<3>, Step>> from_record(std::string_view, const Discretisation<3>&);
 
 }  // namespace touchstone::reference

@@ -27,6 +27,7 @@ template <int dim>
 
 /// @returns nothing when the record does not belong to this mesh
 template <int dim>
-[[nodiscard]] std::optional<std::pair<Solved<dim>, Step>> from_record(std::string_view record, const Mesh<dim>& mesh);
+[[nodiscard]] std::optional<std::pair<Solved<dim>, Step>> from_record(std::string_view record,
+                                                                      const Discretisation<dim>& mesh);
 
 }  // namespace touchstone::reference

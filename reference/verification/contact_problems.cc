@@ -1,4 +1,5 @@
 // A rigid tool on an elastic body.
+#include "reference/mesh/mesh.h"
 #include "reference/run/model_choice.h"
 #include "reference/solver.h"
 #include "reference/tool/tool_distance.h"
@@ -22,7 +23,7 @@ namespace touchstone::verification {
 namespace {
 
 using reference::ContactProblem;
-using reference::Mesh;
+using reference::Discretisation;
 using reference::State;
 using scene::Kinematics;
 using scene::Material;
@@ -97,7 +98,7 @@ Findings contact_patch(const Effort& effort) {
     if (effort.quick && nu == 0.3) continue;
     effort.tell(fmt::format("rigid flat on a block, nu = {:.3g}", nu));
     const Material material{E_pa, nu};
-    const Mesh<3> mesh = graded_cube(side_m);
+    const Discretisation<3> mesh = graded_cube(side_m);
     ContactProblem<3> body(mesh, material, Kinematics::finite, true, true);
     for (const int i : {0, 1, 2}) {
       for (const int node : nodes_where<3>(mesh, [i](const Vec3& x_m) { return std::abs(x_m[i]) < 1e-9 * side_m; })) {
@@ -294,7 +295,7 @@ PressedBall press_half_ball(double radius_m, const Material& material, double de
   choice.half_width_m = std::sqrt(radius_m * depth_m);
   const Vec3 top_m(0.0, 0.0, radius_m);
   choice.contacts = {{top_m, Vec3::UnitZ(), depth_m, choice.half_width_m, {{top_m, choice.half_width_m}}, {}}};
-  Mesh<2> mesh = reference::level_mesh<2>(scene, choice, level);
+  Discretisation<2> mesh = reference::level_mesh<2>(scene, choice, level);
   // In the meridian plane the second direction is z, so this is a row of rollers.
   for (auto& face : mesh.faces) {
     if (face.boundary == reference::Boundary::held) face.boundary = reference::Boundary::plane_y;

@@ -104,7 +104,7 @@ HalfSpaceAnswer indent_half_space(const HalfSpaceProblem& problem) {
   choice.tool = punch.tool;
   choice.contacts = {patch};
   choice.half_width_m = punch.patch_radius_m;
-  const reference::Mesh<2> mesh = reference::level_mesh<2>(scene, choice, problem.level);
+  const reference::Discretisation<2> mesh = reference::level_mesh<2>(scene, choice, problem.level);
   reference::ContactProblem<2> body(mesh, problem.material, problem.kinematics, false, false);
 
   const reference::Solved<2> rest{0.0, body.rest(), false};

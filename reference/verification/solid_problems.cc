@@ -13,7 +13,7 @@ namespace touchstone::verification {
 namespace {
 
 using reference::ContactProblem;
-using reference::Mesh;
+using reference::Discretisation;
 using reference::State;
 using scene::Kinematics;
 using Vec3 = Eigen::Vector3d;
@@ -23,7 +23,7 @@ Findings patch(const Effort& effort) {
   const Eigen::Matrix3d H = (Eigen::Matrix3d() << 0.05, 0.08, -0.02, 0.01, -0.06, 0.03, 0.02, -0.04, 0.07).finished();
   Findings findings;
   for (const bool hanging : {false, true}) {
-    const Mesh<3> mesh = hanging ? graded_cube(0.02) : distorted_cube(0.02);
+    const Discretisation<3> mesh = hanging ? graded_cube(0.02) : distorted_cube(0.02);
     const PatchDeviation off = patch_deviation<3>(mesh, H, {3e6, 0.45}, Kinematics::finite);
     const std::string cells = hanging ? "hanging nodes" : "distorted cells";
     findings.checks.push_back({"displacement off, " + cells, "", 0.0, off.displacement_rel, 1e-12, 1.0, {}, {}});
@@ -54,7 +54,7 @@ Findings uniaxial(const Effort& effort) {
 
 /// A block of uniform stress under a dead force on its top, held in y: the displacement of the top over the height.
 double plane_strain_top(double mu_pa, double pressure_pa) {
-  const Mesh<3> mesh = lattice_mesh<3>({2, 1, 2}, [](const Vec3& x) { return x; });
+  const Discretisation<3> mesh = lattice_mesh<3>({2, 1, 2}, [](const Vec3& x) { return x; });
   ContactProblem<3> body(mesh, {3.0 * mu_pa, 0.5}, Kinematics::finite, false, false);
   for (const int node : nodes_where<3>(mesh, [](const Vec3&) { return true; })) body.prescribe(node, 1, 0.0);
   for (const int i : {0, 2}) {
@@ -114,7 +114,8 @@ Findings thick_sphere(const Effort& effort) {
 /// Displacement of the top's centre over the height at 20, 40, ... % of the full pressure.
 std::vector<double> reese_block(int cells, int last, const Effort& effort) {
   constexpr double side_m = 1e-3, nu = 0.4999, mu_pa = 80.194e6, full_pa = 400e6;
-  const Mesh<3> mesh = lattice_mesh<3>({cells, cells, cells}, [=](const Vec3& x) -> Vec3 { return side_m * x; });
+  const Discretisation<3> mesh =
+      lattice_mesh<3>({cells, cells, cells}, [=](const Vec3& x) -> Vec3 { return side_m * x; });
   ContactProblem<3> body(mesh, {2.0 * mu_pa * (1.0 + nu), nu}, Kinematics::finite, true, true);
   for (const int i : {0, 1, 2}) {
     for (const int node : nodes_where<3>(mesh, [i](const Vec3& x_m) { return x_m[i] == 0.0; })) {
@@ -167,7 +168,7 @@ Findings reese(const Effort& effort) {
 /// Upward displacement of the middle of the free edge of Cook's membrane, in plane strain, n x n cells [m].
 double cook_tip_m(int n) {
   constexpr double mm = 1e-3, nu = 0.3, mu_pa = 422.5e3, force_n = 1.0;
-  const Mesh<3> mesh = lattice_mesh<3>({n, 1, n}, [=](const Vec3& x) -> Vec3 {
+  const Discretisation<3> mesh = lattice_mesh<3>({n, 1, n}, [=](const Vec3& x) -> Vec3 {
     const double low = 44.0 * x[0], high = 44.0 + 16.0 * x[0];
     return mm * Vec3(48.0 * x[0], x[1], low + (high - low) * x[2]);
   });
@@ -200,9 +201,10 @@ Findings cook(const Effort& effort) {
 double cantilever_over_beam(double length_m, double height_m, double ratio, int cells_along, int cells_high) {
   constexpr double E_pa = 3e6, nu = 0.3, force_n = 1e-6;
   // The half y >= 0 of the beam, its axis along x.
-  Mesh<3> mesh = lattice_mesh<3>({cells_along, std::max(1, cells_high / 2), cells_high}, [&](const Vec3& x) -> Vec3 {
-    return {length_m * x[0], 0.5 * height_m * x[1], height_m * (x[2] - 0.5)};
-  });
+  Discretisation<3> mesh =
+      lattice_mesh<3>({cells_along, std::max(1, cells_high / 2), cells_high}, [&](const Vec3& x) -> Vec3 {
+        return {length_m * x[0], 0.5 * height_m * x[1], height_m * (x[2] - 0.5)};
+      });
   scene::Body with_middle;
   scene::Inclusion& middle = with_middle.inclusions.emplace_back();
   middle.shape = scene::BodyShape::box;

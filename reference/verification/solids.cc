@@ -1,5 +1,6 @@
 #include "reference/verification/solids.h"
 
+#include "reference/mesh/mesh.h"
 #include "reference/solver.h"
 #include "reference/verification/closed_forms.h"
 
@@ -15,62 +16,35 @@ namespace touchstone::verification {
 
 using reference::Boundary;
 using reference::ContactProblem;
-using reference::Mesh;
+using reference::Discretisation;
 using reference::State;
 
 template <int dim>
-Mesh<dim> lattice_mesh(const std::array<int, dim>& cells, const std::function<Place<dim>(const Place<dim>&)>& place_m) {
-  using Index = Eigen::Matrix<int, dim, 1>;
-  // Of a lattice with so many points a side, the first coordinate fastest.
-  const auto coordinates = [](int number, const Index& sides) {
-    Index at;
-    for (int d = 0; d < dim; ++d) {
-      at[d] = number % sides[d];
-      number /= sides[d];
-    }
-    return at;
-  };
-  const Index cell_sides = Eigen::Map<const Index>(cells.data());
-  const Index node_sides = 2 * cell_sides.array() + 1;
-  Mesh<dim> mesh;
-  mesh.points_m.resize(dim, node_sides.prod());
-  for (int node = 0; node < mesh.node_count(); ++node) {
-    mesh.points_m.col(node) = place_m(
-        coordinates(node, node_sides).template cast<double>().cwiseQuotient(2.0 * cell_sides.template cast<double>()));
+Discretisation<dim> lattice_mesh(const std::array<int, dim>& cells,
+                                 const std::function<Place<dim>(const Place<dim>&)>& place_m) {
+  // A cell of the grid is a unit cube, so that its nodes are at exact places.
+  Place<dim> sides;
+  for (int d = 0; d < dim; ++d) sides[d] = cells[d];
+  Discretisation<dim> mesh;
+  if constexpr (dim == 3) {
+    mesh = reference::block_mesh({Place<dim>::Zero(), sides, false, false, {{}, 0.5, 1.0}});
+  } else {
+    mesh = reference::cylinder_mesh({sides[0], sides[1], {{}, 0.5, 1.0}});
   }
-  for (int number = 0; number < cell_sides.prod(); ++number) {
-    const Index at = coordinates(number, cell_sides);
-    std::array<int, Mesh<dim>::nodes_per_cell> cell;
-    for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
-      const Index node = 2 * at + coordinates(a, Index::Constant(3));
-      cell[a] = 0;
-      for (int d = dim - 1; d >= 0; --d) cell[a] = cell[a] * node_sides[d] + node[d];
-    }
-    mesh.cells.push_back(cell);
-    for (int d = 0; d < dim; ++d) {
-      for (const bool upper : {false, true}) {
-        if (at[d] != (upper ? cell_sides[d] - 1 : 0)) continue;
-        typename Mesh<dim>::Face face{{}, Boundary::free};
-        int next = 0;
-        for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
-          if (coordinates(a, Index::Constant(3))[d] == (upper ? 2 : 0)) face.nodes[next++] = cell[a];
-        }
-        mesh.faces.push_back(face);
-      }
-    }
-  }
-  return mesh;
-}
-
-Mesh<3> graded_cube(double side_m) {
-  reference::BlockSpec spec{Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(side_m), true, true, {}};
-  spec.grading = {{{{0.0, 0.0, side_m}, {0.0, 0.0, 1.0}, 0.1 * side_m, 0.125 * side_m}}, 0.5, 0.5 * side_m};
-  Mesh<3> mesh = reference::block_mesh(spec);
+  mesh = mesh.moved([&](const Place<dim>& x) -> Place<dim> { return place_m(x.cwiseQuotient(sides)); });
   free_all_boundaries(mesh);
   return mesh;
 }
 
-Mesh<3> distorted_cube(double side_m) {
+Discretisation<3> graded_cube(double side_m) {
+  reference::BlockSpec spec{Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(side_m), true, true, {}};
+  spec.grading = {{{{0.0, 0.0, side_m}, {0.0, 0.0, 1.0}, 0.1 * side_m, 0.125 * side_m}}, 0.5, 0.5 * side_m};
+  Discretisation<3> mesh = reference::block_mesh(spec);
+  free_all_boundaries(mesh);
+  return mesh;
+}
+
+Discretisation<3> distorted_cube(double side_m) {
   return lattice_mesh<3>({2, 2, 2}, [side_m](const Eigen::Vector3d& x) -> Eigen::Vector3d {
     const Eigen::Array3d share = 1.0 - 2.0 * (x.array() - 0.5).abs();
     return side_m * (x + share.prod() * Eigen::Vector3d(0.12, -0.09, 0.06));
@@ -78,22 +52,20 @@ Mesh<3> distorted_cube(double side_m) {
 }
 
 template <int dim>
-void free_all_boundaries(Mesh<dim>& mesh) {
+void free_all_boundaries(Discretisation<dim>& mesh) {
   for (auto& face : mesh.faces) face.boundary = Boundary::free;
 }
 
-Nodal<3> traction_force_n(const Mesh<3>& mesh, const Eigen::Vector3d& traction_pa,
+Nodal<3> traction_force_n(const Discretisation<3>& mesh, const Eigen::Vector3d& traction_pa,
                           const std::function<bool(const Eigen::Vector3d&)>& on) {
   Nodal<3> force_n = Nodal<3>::Zero(3, mesh.node_count());
-  const reference::GaussRule<2> rule;
   for (const auto& face : mesh.faces) {
     if (!on(mesh.points_m.col(face.nodes[4]))) continue;
     Eigen::Matrix<double, 3, 9> X_m;
     for (int a = 0; a < 9; ++a) X_m.col(a) = mesh.points_m.col(face.nodes[a]);
-    for (int q = 0; q < reference::GaussRule<2>::size; ++q) {
-      const reference::Q2<2> shape(rule.points[q]);
+    for (const auto& [xi, weight, shape] : reference::gauss_points<2>()) {
       const Eigen::Matrix<double, 3, 2> tangents = X_m * shape.gradient;
-      const double area_m2 = rule.weights[q] * tangents.col(0).cross(tangents.col(1)).norm();
+      const double area_m2 = weight * tangents.col(0).cross(tangents.col(1)).norm();
       for (int a = 0; a < 9; ++a) force_n.col(face.nodes[a]) += area_m2 * shape.value[a] * traction_pa;
     }
   }
@@ -101,18 +73,16 @@ Nodal<3> traction_force_n(const Mesh<3>& mesh, const Eigen::Vector3d& traction_p
 }
 
 template <int dim>
-std::vector<int> nodes_where(const Mesh<dim>& mesh, const std::function<bool(const Place<dim>&)>& on) {
-  std::vector<char> hangs(mesh.node_count(), 0);
-  for (const auto& hanging : mesh.hanging) hangs[hanging.node] = 1;
+std::vector<int> nodes_where(const Discretisation<dim>& mesh, const std::function<bool(const Place<dim>&)>& on) {
   std::vector<int> nodes;
   for (int node = 0; node < mesh.node_count(); ++node) {
-    if (!hangs[node] && on(mesh.points_m.col(node))) nodes.push_back(node);
+    if (!mesh.hangs(node) && on(mesh.points_m.col(node))) nodes.push_back(node);
   }
   return nodes;
 }
 
 template <int dim>
-int node_at(const Mesh<dim>& mesh, const Place<dim>& place_m) {
+int node_at(const Discretisation<dim>& mesh, const Place<dim>& place_m) {
   Eigen::Index nearest = 0;
   (mesh.points_m.colwise() - place_m).colwise().squaredNorm().minCoeff(&nearest);
   return static_cast<int>(nearest);
@@ -136,7 +106,7 @@ State<dim> solve_in_steps(ContactProblem<dim>& body, int steps, const std::strin
 }
 
 double axis_pressure_pa(const ContactProblem<2>& body, const State<2>& state, scene::Kinematics kinematics) {
-  const Mesh<2>& mesh = body.mesh();
+  const Discretisation<2>& mesh = body.mesh();
   const Nodal<2> F_n = body.internal_forces(state);
   Nodal<2> x_m = mesh.points_m;
   if (kinematics == scene::Kinematics::finite) x_m += state.u_m;
@@ -153,14 +123,13 @@ double axis_pressure_pa(const ContactProblem<2>& body, const State<2>& state, sc
 }
 
 template <int dim>
-PatchDeviation patch_deviation(Mesh<dim> mesh, const Eigen::Matrix<double, dim, dim>& H,
+PatchDeviation patch_deviation(Discretisation<dim> mesh, const Eigen::Matrix<double, dim, dim>& H,
                                const scene::Material& material, scene::Kinematics kinematics) {
   free_all_boundaries(mesh);
   std::vector<char> boundary(mesh.node_count(), 0);
   for (const auto& face : mesh.faces) {
-    for (const int node : face.nodes) boundary[node] = 1;
+    for (const int node : face.nodes) boundary[node] = mesh.hangs(node) ? 0 : 1;
   }
-  for (const auto& hanging : mesh.hanging) boundary[hanging.node] = 0;
   const Nodal<dim> exact_m = H * mesh.points_m;
   ContactProblem<dim> body(mesh, material, kinematics, false, false);
   for (int node = 0; node < mesh.node_count(); ++node) {
@@ -176,7 +145,7 @@ PatchDeviation patch_deviation(Mesh<dim> mesh, const Eigen::Matrix<double, dim, 
 
 PulledBar pull_bar(const scene::Material& material, double stretch) {
   constexpr double side_m = 0.02;
-  const Mesh<3> mesh = distorted_cube(side_m);
+  const Discretisation<3> mesh = distorted_cube(side_m);
   const auto near = [](double a_m, double b_m) { return std::abs(a_m - b_m) < 1e-9 * side_m; };
   ContactProblem<3> body(mesh, material, scene::Kinematics::finite, true, true);
   for (const int i : {0, 1, 2}) {
@@ -198,7 +167,7 @@ InflatedSphere inflate_sphere(double stretch, int n) {
   constexpr double A_m = 0.01, B_m = 0.02;
   const scene::Material rubber{3e6, 0.5};
   // Upper half of the sphere in its meridian plane: radius, then angle from the equator's plane up to the axis.
-  Mesh<2> mesh = lattice_mesh<2>({n, n}, [](const Eigen::Vector2d& x) -> Eigen::Vector2d {
+  Discretisation<2> mesh = lattice_mesh<2>({n, n}, [](const Eigen::Vector2d& x) -> Eigen::Vector2d {
     const double R_m = A_m + (B_m - A_m) * x[0], angle = 0.5 * std::numbers::pi * x[1];
     return {x[1] == 1.0 ? 0.0 : R_m * std::cos(angle), R_m * std::sin(angle)};
   });
@@ -218,21 +187,16 @@ InflatedSphere inflate_sphere(double stretch, int n) {
 
   InflatedSphere sphere;
   double difference2 = 0.0, size2 = 0.0;
-  const reference::GaussRule<2> rule;
-  for (const auto& cell : mesh.cells) {
-    Eigen::Matrix<double, 2, 9> X_m, u_m;
-    for (int a = 0; a < 9; ++a) {
-      X_m.col(a) = mesh.points_m.col(cell[a]);
-      u_m.col(a) = state.u_m.col(cell[a]);
-    }
-    for (int q = 0; q < reference::GaussRule<2>::size; ++q) {
-      const reference::Q2<2> shape(rule.points[q]);
-      const Eigen::Vector2d place_m = X_m * shape.value;
+  const std::vector<reference::GaussPoint<2>>& points = reference::gauss_points<2>();
+  const std::vector<reference::CellGeometry<2>> geometry = mesh.cell_geometry();
+  for (std::size_t c = 0; c < geometry.size(); ++c) {
+    const Eigen::Matrix<double, 2, 9> u_m = state.u_m(Eigen::all, mesh.cells[c]);
+    for (std::size_t q = 0; q < points.size(); ++q) {
+      const Eigen::Vector2d& place_m = geometry[c].place_m[q];
       const double R_m = place_m.norm();
-      const double weight =
-          rule.weights[q] * std::abs(Eigen::Matrix2d(X_m * shape.gradient).determinant()) * place_m[0];
+      const double weight = geometry[c].weight[q] * place_m[0];
       const Eigen::Vector2d exact_m = place_m * (thick_sphere_radius_m(A_m, stretch, R_m) / R_m - 1.0);
-      difference2 += weight * (u_m * shape.value - exact_m).squaredNorm();
+      difference2 += weight * (u_m * points[q].shape.value - exact_m).squaredNorm();
       size2 += weight * exact_m.squaredNorm();
     }
   }
@@ -247,19 +211,21 @@ InflatedSphere inflate_sphere(double stretch, int n) {
   return sphere;
 }
 
-template Mesh<2> lattice_mesh<2>(const std::array<int, 2>&, const std::function<Place<2>(const Place<2>&)>&);
-template Mesh<3> lattice_mesh<3>(const std::array<int, 3>&, const std::function<Place<3>(const Place<3>&)>&);
-template void free_all_boundaries(Mesh<2>&);
-template void free_all_boundaries(Mesh<3>&);
-template std::vector<int> nodes_where(const Mesh<2>&, const std::function<bool(const Place<2>&)>&);
-template std::vector<int> nodes_where(const Mesh<3>&, const std::function<bool(const Place<3>&)>&);
-template int node_at(const Mesh<2>&, const Place<2>&);
-template int node_at(const Mesh<3>&, const Place<3>&);
+template Discretisation<2> lattice_mesh<2>(const std::array<int, 2>&, const std::function<Place<2>(const Place<2>&)>&);
+template Discretisation<3> lattice_mesh<3>(const std::array<int, 3>&, const std::function<Place<3>(const Place<3>&)>&);
+template void free_all_boundaries(Discretisation<2>&);
+template void free_all_boundaries(Discretisation<3>&);
+template std::vector<int> nodes_where(const Discretisation<2>&, const std::function<bool(const Place<2>&)>&);
+template std::vector<int> nodes_where(const Discretisation<3>&, const std::function<bool(const Place<3>&)>&);
+template int node_at(const Discretisation<2>&, const Place<2>&);
+template int node_at(const Discretisation<3>&, const Place<3>&);
 template void advance(ContactProblem<2>&, State<2>&, const std::string&);
 template void advance(ContactProblem<3>&, State<3>&, const std::string&);
 template State<2> solve_in_steps(ContactProblem<2>&, int, const std::string&, const std::function<void(double)>&);
 template State<3> solve_in_steps(ContactProblem<3>&, int, const std::string&, const std::function<void(double)>&);
-template PatchDeviation patch_deviation(Mesh<2>, const Eigen::Matrix2d&, const scene::Material&, scene::Kinematics);
-template PatchDeviation patch_deviation(Mesh<3>, const Eigen::Matrix3d&, const scene::Material&, scene::Kinematics);
+template PatchDeviation patch_deviation(Discretisation<2>, const Eigen::Matrix2d&, const scene::Material&,
+                                        scene::Kinematics);
+template PatchDeviation patch_deviation(Discretisation<3>, const Eigen::Matrix3d&, const scene::Material&,
+                                        scene::Kinematics);
 
 }  // namespace touchstone::verification

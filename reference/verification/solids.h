@@ -2,7 +2,7 @@
 #pragma once
 
 #include "reference/contact/contact_problem.h"
-#include "reference/mesh/mesh.h"
+#include "reference/discretisation/discretisation.h"
 #include "scene/model/scene.h"
 
 #include <Eigen/Core>
@@ -22,30 +22,30 @@ using Nodal = Eigen::Matrix<double, dim, Eigen::Dynamic>;
 /// Cells in rows, columns and layers over the unit square or cube, each node at the place of its coordinates. The
 /// boundary is free unless a caller prescribes it. @param place_m keeps the orientation
 template <int dim>
-[[nodiscard]] reference::Mesh<dim> lattice_mesh(const std::array<int, dim>& cells,
-                                                const std::function<Place<dim>(const Place<dim>&)>& place_m);
+[[nodiscard]] reference::Discretisation<dim> lattice_mesh(const std::array<int, dim>& cells,
+                                                          const std::function<Place<dim>(const Place<dim>&)>& place_m);
 
 /// A cube with hanging nodes around one corner of the top, all of its boundary free.
-[[nodiscard]] reference::Mesh<3> graded_cube(double side_m);
+[[nodiscard]] reference::Discretisation<3> graded_cube(double side_m);
 
 /// The cube of 2 x 2 x 2 cells with its middle vertex off the middle; edges are straight. Its boundary is free.
-[[nodiscard]] reference::Mesh<3> distorted_cube(double side_m);
+[[nodiscard]] reference::Discretisation<3> distorted_cube(double side_m);
 
 template <int dim>
-void free_all_boundaries(reference::Mesh<dim>& mesh);
+void free_all_boundaries(reference::Discretisation<dim>& mesh);
 
 /// Nodal forces of a uniform traction on the rest faces whose middle node is `on`.
-[[nodiscard]] Nodal<3> traction_force_n(const reference::Mesh<3>& mesh, const Eigen::Vector3d& traction_pa,
+[[nodiscard]] Nodal<3> traction_force_n(const reference::Discretisation<3>& mesh, const Eigen::Vector3d& traction_pa,
                                         const std::function<bool(const Eigen::Vector3d& middle_m)>& on);
 
 /// Nodes whose displacement may be prescribed: not hanging. @param on of the node's rest place
 template <int dim>
-[[nodiscard]] std::vector<int> nodes_where(const reference::Mesh<dim>& mesh,
+[[nodiscard]] std::vector<int> nodes_where(const reference::Discretisation<dim>& mesh,
                                            const std::function<bool(const Place<dim>&)>& on);
 
 /// The node nearest to a place.
 template <int dim>
-[[nodiscard]] int node_at(const reference::Mesh<dim>& mesh, const Place<dim>& place_m);
+[[nodiscard]] int node_at(const reference::Discretisation<dim>& mesh, const Place<dim>& place_m);
 
 /// Solves on from a state. @throws reference::NotConverged naming `what`
 template <int dim>
@@ -69,8 +69,9 @@ struct PatchDeviation {
   double pressure_rel = 0.0;      ///< variation over Young's modulus
 };
 template <int dim>
-[[nodiscard]] PatchDeviation patch_deviation(reference::Mesh<dim> mesh, const Eigen::Matrix<double, dim, dim>& H,
-                                             const scene::Material& material, scene::Kinematics kinematics);
+[[nodiscard]] PatchDeviation patch_deviation(reference::Discretisation<dim> mesh,
+                                             const Eigen::Matrix<double, dim, dim>& H, const scene::Material& material,
+                                             scene::Kinematics kinematics);
 
 /// A cube on lubricated plates, pulled or pressed to a stretch in four steps.
 struct PulledBar {

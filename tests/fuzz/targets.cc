@@ -151,8 +151,8 @@ void live_log(const std::string& bytes) { (void)live::read_log(folder().file("li
 
 /// The record of a load step as the store keeps it, on a mesh of one cell; its checksum is taken to be right.
 void store_record(const std::string& bytes) {
-  reference::Mesh<2> mesh;
-  mesh.points_m.setZero(2, reference::Mesh<2>::nodes_per_cell);
+  reference::Discretisation<2> mesh;
+  mesh.points_m.setZero(2, reference::Discretisation<2>::nodes_per_cell);
   mesh.cells.resize(1);
   (void)reference::from_record<2>(bytes, mesh);
 }

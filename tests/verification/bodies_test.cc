@@ -16,7 +16,7 @@ constexpr double ball_m = 0.01;
 
 /// Force of a ball pressed 2 mm into the body's top, on the axis.
 template <int dim>
-double pressed_n(const Mesh<dim>& mesh, double top_m, double nu, bool mirror_x = true, bool mirror_y = true) {
+double pressed_n(const Discretisation<dim>& mesh, double top_m, double nu, bool mirror_x = true, bool mirror_y = true) {
   constexpr double depth_m = 0.002;
   constexpr int steps = 2;
   ContactProblem<dim> body(mesh, {3e6, nu}, scene::Kinematics::finite, mirror_x, mirror_y, 1);
@@ -86,8 +86,8 @@ TEST(Bodies, EllipsoidWithEqualAxesIsTheSphere) {
   scene::Body ellipsoid = sphere();
   ellipsoid.shape = scene::BodyShape::ellipsoid;
   ellipsoid.semi_axes_m = scene::Vec3::Constant(0.03);
-  const Mesh<3> a = round_mesh<3>(round_spec(sphere()), fine_at<3>(0.06, 0.004));
-  const Mesh<3> b = round_mesh<3>(round_spec(ellipsoid), fine_at<3>(0.06, 0.004));
+  const Discretisation<3> a = round_mesh<3>(round_spec(sphere()), fine_at<3>(0.06, 0.004));
+  const Discretisation<3> b = round_mesh<3>(round_spec(ellipsoid), fine_at<3>(0.06, 0.004));
   ASSERT_EQ(a.node_count(), b.node_count());
   EXPECT_LT((a.points_m - b.points_m).cwiseAbs().maxCoeff(), 1e-15);
 }
@@ -136,7 +136,7 @@ TEST(Bodies, SmallStrainOnASphereIsTheLimitOfFiniteStrain) {
   const RoundSpec whole = round_spec(sphere());
   RoundSpec quarter = whole;
   quarter.symmetric_x = quarter.symmetric_y = true;
-  const auto force_n = [&]<int dim>(const Mesh<dim>& mesh, scene::Kinematics kinematics) {
+  const auto force_n = [&]<int dim>(const Discretisation<dim>& mesh, scene::Kinematics kinematics) {
     ContactProblem<dim> body(mesh, {3e6, 0.5}, kinematics, true, true, 1);
     State<dim> state = body.rest();
     body.set_tool(ball_tool<dim>(ball_m, (top_m + ball_m - depth_m) * Eigen::Matrix<double, dim, 1>::Unit(dim - 1)));
@@ -144,10 +144,10 @@ TEST(Bodies, SmallStrainOnASphereIsTheLimitOfFiniteStrain) {
     EXPECT_TRUE(report.converged) << report.trouble;
     return body.observe(state).force_n.z();
   };
-  const Mesh<2> plane = round_mesh<2>(whole, fine_at<2>(top_m, 0.00005));
+  const Discretisation<2> plane = round_mesh<2>(whole, fine_at<2>(top_m, 0.00005));
   const double small_n = force_n(plane, scene::Kinematics::small);
   EXPECT_NEAR(small_n / force_n(plane, scene::Kinematics::finite), 1.0, 0.01);
-  const Mesh<3> space = round_mesh<3>(quarter, fine_at<3>(top_m, 0.0015));
+  const Discretisation<3> space = round_mesh<3>(quarter, fine_at<3>(top_m, 0.0015));
   EXPECT_NEAR(force_n(space, scene::Kinematics::small) / force_n(space, scene::Kinematics::finite), 1.0, 0.02);
   // Hertz with the curvatures added; the ball's other side gives way by a/R of that.
   const double R_m = 1.0 / (1.0 / ball_m + 1.0 / 0.03);

@@ -34,7 +34,7 @@ double bar_over_series(double from_m, double ratio) {
   top.center_m.z() = L_m;
   top.material = other;
   body.inclusions = {top};
-  Mesh<3> mesh =
+  Discretisation<3> mesh =
       block_mesh({Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(L_m), true, true, {{}, 0.5, 0.25 * L_m}});
   embed_inclusions(body, mesh);
   for (auto& face : mesh.faces) {
@@ -75,14 +75,13 @@ double concentric_over_exact(const scene::Material& outer, const scene::Material
   grading.growth = 0.4;
   grading.largest_m = 0.25 * b_m;
   refine_at_inclusions(body, cells, grading);
-  Mesh<2> mesh = round_mesh<2>(round_spec(body), grading);
+  Discretisation<2> mesh = round_mesh<2>(round_spec(body), grading);
   embed_inclusions(body, mesh);
-  std::vector<char> hangs(mesh.node_count(), 0), outside(mesh.node_count(), 0);
-  for (const auto& hanging : mesh.hanging) hangs[hanging.node] = 1;
+  std::vector<char> outside(mesh.node_count(), 0);
   for (auto& face : mesh.faces) {
     if (face.boundary == Boundary::plane_x) continue;
     face.boundary = Boundary::free;
-    for (const int node : face.nodes) outside[node] = !hangs[node];
+    for (const int node : face.nodes) outside[node] = mesh.hangs(node) ? 0 : 1;
   }
   ContactProblem<2> problem(mesh, outer, scene::Kinematics::small, false, false, 1);
   const Eigen::Matrix2Xd from_middle_m = mesh.points_m.colwise() - Eigen::Vector2d(0.0, b_m);
@@ -122,7 +121,7 @@ TEST(Inclusions, OfTheBodysOwnMaterialChangesNothing) {
     body.inclusions = {ball(0.008, 0.045, body.material)};
     Grading<2> grading;
     grading.largest_m = 0.004;
-    Mesh<2> mesh = round_mesh<2>(round_spec(body), grading);
+    Discretisation<2> mesh = round_mesh<2>(round_spec(body), grading);
     double force_n[2];
     for (const int k : {0, 1}) {
       if (k == 1) embed_inclusions(body, mesh);
@@ -149,7 +148,7 @@ double pressed_n(const scene::Material& inner, int steps) {
   grading.largest_m = 0.004;
   grading.discs.push_back({{0.0, 0.06}, {0.0, 1.0}, 0.006, 0.0015});
   refine_at_inclusions(body, 4.0, grading);
-  Mesh<2> mesh = round_mesh<2>(round_spec(body), grading);
+  Discretisation<2> mesh = round_mesh<2>(round_spec(body), grading);
   embed_inclusions(body, mesh);
   ContactProblem<2> problem(mesh, body.material, scene::Kinematics::finite, false, false, 1);
   State<2> state = problem.rest();

@@ -45,7 +45,7 @@ class UncertaintyBand : public testing::Test {
   /// The scene in the meridian plane, on a mesh that is finer everywhere.
   Result truth(int level) {
     const ModelChoice choice = choose_model(scene_);
-    const Mesh<2> mesh = level_mesh<2>(scene_, choice, level, {.far_field = 0.4, .inclusions = 1.0});
+    const Discretisation<2> mesh = level_mesh<2>(scene_, choice, level, {.far_field = 0.4, .inclusions = 1.0});
     points_m_ = scene::tessellate(*scene::body_shape(scene_.body), 200).points_m;
     const SurfaceSampler<2> sampler(mesh, points_m_, true, true);
     ContactProblem<2> problem(mesh, scene_.body.material, scene_.reference.kinematics, true, true, 1);

@@ -8,7 +8,7 @@
 namespace touchstone::reference {
 namespace {
 
-Mesh<3> block(double size_m) {
+Discretisation<3> block(double size_m) {
   return block_mesh({{0.0, 0.0, 0.0},
                      {0.03, 0.03, 0.03},
                      true,
@@ -16,14 +16,14 @@ Mesh<3> block(double size_m) {
                      {{{{0.0, 0.0, 0.03}, {0.0, 0.0, 1.0}, 0.005, size_m}}, 0.5, 0.015}});
 }
 
-Mesh<2> ball(double size_m) {
+Discretisation<2> ball(double size_m) {
   return round_mesh<2>({scene::capsule_profile(0.03, 0.0), Eigen::Vector2d::Ones(), 0.006, false, false},
                        {{{{0.0, 0.06}, {0.0, 1.0}, 0.005, size_m}}, 0.5, 0.015});
 }
 
 /// Displacement quadratic in the place, pressure linear in it.
 template <int dim>
-State<dim> smooth(const Mesh<dim>& mesh, double bend_per_m) {
+State<dim> smooth(const Discretisation<dim>& mesh, double bend_per_m) {
   using Point = Eigen::Matrix<double, dim, 1>;
   State<dim> state;
   state.u_m.resize(dim, mesh.node_count());
@@ -47,9 +47,9 @@ State<dim> smooth(const Mesh<dim>& mesh, double bend_per_m) {
 }
 
 TEST(Prolongation, KeepsWhatBothMeshesCanHold) {
-  const Mesh<3> coarse = block(0.006), fine = block(0.0025);
+  const Discretisation<3> coarse = block(0.006), fine = block(0.0025);
   ASSERT_GT(fine.cell_count(), coarse.cell_count());
-  ASSERT_FALSE(fine.hanging.empty());
+  ASSERT_GT(fine.hanging_count(), 0);
   const State<3> carried = Prolongation<3>(coarse, fine)(smooth(coarse, 3.0)), wanted = smooth(fine, 3.0);
   EXPECT_LT((carried.u_m - wanted.u_m).cwiseAbs().maxCoeff(), 1e-14);
   EXPECT_LT((carried.p_pa - wanted.p_pa).cwiseAbs().maxCoeff(), 1e-8);
@@ -57,7 +57,7 @@ TEST(Prolongation, KeepsWhatBothMeshesCanHold) {
 
 /// Curved cells hold linear displacements exactly, and two meshes of one ball differ by little.
 TEST(Prolongation, FollowsCurvedCells) {
-  const Mesh<2> coarse = ball(0.004), fine = ball(0.0015);
+  const Discretisation<2> coarse = ball(0.004), fine = ball(0.0015);
   const State<2> carried = Prolongation<2>(coarse, fine)(smooth(coarse, 0.0)), wanted = smooth(fine, 0.0);
   // The quadratic arc of a coarse cell leaves the circle by some micrometres.
   EXPECT_LT((carried.u_m - wanted.u_m).cwiseAbs().maxCoeff(), 0.1 * 2e-5);
@@ -65,7 +65,7 @@ TEST(Prolongation, FollowsCurvedCells) {
 }
 
 TEST(Prolongation, MarksTheSurfaceThatTouched) {
-  const Mesh<2> coarse = ball(0.004), fine = ball(0.0015);
+  const Discretisation<2> coarse = ball(0.004), fine = ball(0.0015);
   const double edge_m = 0.006;
   State<2> state = smooth(coarse, 0.0);
   for (int n = 0; n < coarse.node_count(); ++n) {

@@ -1,6 +1,8 @@
 // Stress is the slope of the energy, the tangent is the slope of the force: by central differences.
 #include "reference/fe/element.h"
 
+#include "reference/mesh/mesh.h"
+
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
@@ -32,6 +34,27 @@ TEST(NeoHookean, SmallStrainIsItsLimit) {
   EXPECT_NEAR(finite.J_minus_1 / small.J_minus_1, 1.0, 1e-5);
 }
 
+/// A cell with its nodes at X_m.
+template <int dim>
+CellGeometry<dim> cell_of(const typename Element<dim>::Nodal& X_m) {
+  using Point = Eigen::Matrix<double, dim, 1>;
+  MappedSpec<dim> spec;
+  for (int v = 0; v < 1 << dim; ++v) {
+    Point& vertex = spec.vertices.emplace_back();
+    for (int d = 0; d < dim; ++d) vertex[d] = v >> d & 1;
+    spec.cells.resize(1);
+    spec.cells[0][v] = v;
+  }
+  spec.place_m = [&](const Point& xi) -> Point {
+    int a = 0;
+    for (int d = dim - 1; d >= 0; --d) a = 3 * a + static_cast<int>(2.0 * xi[d]);
+    return X_m.col(a);
+  };
+  spec.boundary = [](const Point&) { return Boundary::free; };
+  spec.grading.largest_m = 1e3;
+  return mapped_mesh(spec).cell_geometry().at(0);
+}
+
 template <int dim>
 void expect_consistent_tangent(scene::Kinematics kinematics, double nu, bool crossed = false) {
   const Element<dim> element(MixedMaterial({2.0, nu}, kinematics), {MixedMaterial({9.0, 0.2}, kinematics)});
@@ -45,10 +68,11 @@ void expect_consistent_tangent(scene::Kinematics kinematics, double nu, bool cro
       u(d, a) = 0.05 * std::sin(2.0 * a + 1.7 * d);
     }
   }
+  const CellGeometry<dim> cell = cell_of<dim>(X);
   using Cell = CellResult<dim>;
   typename Element<dim>::Pressure p = Element<dim>::Pressure::Constant(0.1);
   Cell at, up, down;
-  ASSERT_TRUE(element.evaluate(X, u, p, Stiffness::consistent, at, &materials));
+  ASSERT_TRUE(element.evaluate(cell, u, p, Stiffness::consistent, at, &materials));
   // Along du the pressure row asks for dp = gain du; so the condensed stiffness is the slope of the force on that line.
   const double step = 1e-6;
   for (int k = 0; k < Cell::unknowns; k += 5) {
@@ -56,9 +80,9 @@ void expect_consistent_tangent(scene::Kinematics kinematics, double nu, bool cro
     const typename Element<dim>::Pressure dp = at.pressure_gain.col(k);
     typename Element<dim>::Nodal v = u;
     v(i, a) = u(i, a) + step;
-    ASSERT_TRUE(element.evaluate(X, v, p + step * dp, Stiffness::none, up, &materials));
+    ASSERT_TRUE(element.evaluate(cell, v, p + step * dp, Stiffness::none, up, &materials));
     v(i, a) = u(i, a) - step;
-    ASSERT_TRUE(element.evaluate(X, v, p - step * dp, Stiffness::none, down, &materials));
+    ASSERT_TRUE(element.evaluate(cell, v, p - step * dp, Stiffness::none, down, &materials));
     const typename Cell::Vector slope = (up.force_n - down.force_n) / (2.0 * step);
     EXPECT_LT((at.stiffness.col(k) - slope).norm(), 1e-6 * at.stiffness.norm()) << "unknown " << k;
     // The pressure row itself stays solved to first order while kappa is the tangent's.
@@ -80,11 +104,12 @@ void expect_definite_stiffness(double p_pa) {
       u(d, a) = 0.03 * std::sin(2.0 * a + 1.7 * d);
     }
   }
+  const CellGeometry<dim> cell = cell_of<dim>(X);
   typename Element<dim>::Pressure p = Element<dim>::Pressure::Zero();
   p[0] = p_pa;
   const auto eigenvalues = [&](Stiffness stiffness) -> Eigen::VectorXd {
     CellResult<dim> result;
-    EXPECT_TRUE(element.evaluate(X, u, p, stiffness, result));
+    EXPECT_TRUE(element.evaluate(cell, u, p, stiffness, result));
     return result.stiffness.template selfadjointView<Eigen::Lower>().eigenvalues();
   };
   EXPECT_LT(eigenvalues(Stiffness::consistent).minCoeff(), -0.1);

@@ -1,7 +1,7 @@
 // The meshes of round bodies: right in size, closed, on the surface, regular.
 #include "reference/mesh/round_mesh.h"
 
-#include "reference/fe/element.h"
+#include "reference/discretisation/shape.h"
 
 #include <gtest/gtest.h>
 
@@ -79,39 +79,38 @@ double ring_m(double r_m) {
 }
 
 template <int dim>
-Measures measure(const Mesh<dim>& mesh) {
+Measures measure(const Discretisation<dim>& mesh) {
   using Point = Eigen::Matrix<double, dim, 1>;
   Measures sum;
-  const GaussRule<dim> rule;
-  for (const auto& cell : mesh.cells) {
-    Eigen::Matrix<double, dim, Mesh<dim>::nodes_per_cell> X;
-    for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) X.col(a) = mesh.points_m.col(cell[a]);
+  const std::vector<CellGeometry<dim>> geometry = mesh.cell_geometry();
+  for (int c = 0; c < mesh.cell_count(); ++c) {
+    const Eigen::Matrix<double, dim, Discretisation<dim>::nodes_per_cell> X = mesh.points_m(Eigen::all, mesh.cells[c]);
     double least = std::numeric_limits<double>::infinity(), most = -least;
-    const auto determinant = [&](const Q2<dim>& shape) {
+    const auto determinant = [&](const Shape<dim>& shape) {
       const double det = Eigen::Matrix<double, dim, dim>(X * shape.gradient).determinant();
       least = std::min(least, det);
       most = std::max(most, det);
       return det;
     };
-    for (int q = 0; q < GaussRule<dim>::size; ++q) {
-      const Q2<dim> shape(rule.points[q]);
-      sum.volume_m3 += rule.weights[q] * determinant(shape) * ring_m<dim>((X * shape.value)[0]);
+    for (int q = 0; q < CellGeometry<dim>::points; ++q) {
+      const GaussPoint<dim>& point = gauss_points<dim>()[q];
+      const double det = determinant(point.shape), weight = geometry[c].weight[q];
+      EXPECT_NEAR(weight / (point.weight * det), 1.0, 1e-10);
+      sum.volume_m3 += weight * ring_m<dim>(geometry[c].place_m[q][0]);
     }
-    for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) {
+    for (int a = 0; a < Discretisation<dim>::nodes_per_cell; ++a) {
       Point xi;
       for (int d = 0, index = a; d < dim; ++d, index /= 3) xi[d] = 0.5 * (index % 3);
-      determinant(Q2<dim>(xi));
+      determinant(Shape<dim>(xi));
     }
     sum.smallest_ratio = std::min(sum.smallest_ratio, least / most);
   }
   const Point inside_m = mesh.points_m.rowwise().mean();
-  const GaussRule<dim - 1> face_rule;
   for (const auto& face : mesh.faces) {
     if (face.boundary != Boundary::free && face.boundary != Boundary::held) continue;
-    Eigen::Matrix<double, dim, Mesh<dim>::nodes_per_face> X;
-    for (int a = 0; a < Mesh<dim>::nodes_per_face; ++a) X.col(a) = mesh.points_m.col(face.nodes[a]);
-    for (int q = 0; q < GaussRule<dim - 1>::size; ++q) {
-      const Q2<dim - 1> shape(face_rule.points[q]);
+    Eigen::Matrix<double, dim, Discretisation<dim>::nodes_per_face> X;
+    for (int a = 0; a < Discretisation<dim>::nodes_per_face; ++a) X.col(a) = mesh.points_m.col(face.nodes[a]);
+    for (const auto& [xi, xi_weight, shape] : gauss_points<dim - 1>()) {
       const Eigen::Matrix<double, dim, dim - 1> tangents = X * shape.gradient;
       const Point place_m = X * shape.value;
       Point normal;  // its length is the area
@@ -121,7 +120,7 @@ Measures measure(const Mesh<dim>& mesh) {
         normal = {tangents(1), -tangents(0)};
       }
       if (normal.dot(place_m - inside_m) < 0.0) normal *= -1.0;
-      const double weight = face_rule.weights[q] * ring_m<dim>(place_m[0]);
+      const double weight = xi_weight * ring_m<dim>(place_m[0]);
       sum.area_m2 += weight * normal.norm();
       sum.enclosed_m3 += weight * normal.dot(place_m) / 3.0;
     }
@@ -160,7 +159,7 @@ void expect_volume_and_area() {
     for (const int k : {0, 1}) {
       Grading<dim> grading;
       grading.largest_m = (dim == 2 ? 0.012 : 0.016) / (k == 0 ? 1.0 : 4.0);
-      const Mesh<dim> mesh = round_mesh<dim>(spec, grading);
+      const Discretisation<dim> mesh = round_mesh<dim>(spec, grading);
       const Measures seen = measure(mesh);
       error[k] = std::abs(images * seen.volume_m3 / shape->volume_m3() - 1.0) +
                  (pointed ? 0.0 : std::abs(images * seen.area_m2 / shape->area_m2() - 1.0));
@@ -186,13 +185,11 @@ void expect_surface() {
   for (const Named& named : bodies_in<dim>()) {
     SCOPED_TRACE(named.name);
     const RoundSpec spec = quarter_spec<dim>(named.body);
-    const Mesh<dim> mesh = round_mesh<dim>(spec, graded<dim>(named.body, 0.012));
-    EXPECT_GT(mesh.hanging.size(), 0u);
+    const Discretisation<dim> mesh = round_mesh<dim>(spec, graded<dim>(named.body, 0.012));
+    EXPECT_GT(mesh.hanging_count(), 0);
     const auto shape = scene::body_shape(named.body);
     const double size_m = shape->bounds().upper_m.maxCoeff();
     const double held_m = named.body.flat_bottom() ? 0.0 : named.body.support_height_m;
-    std::vector<char> hangs(mesh.node_count(), 0);
-    for (const auto& hanging : mesh.hanging) hangs[hanging.node] = 1;
     double lowest_free_m = size_m, highest_held_m = 0.0;
     for (const auto& face : mesh.faces) {
       for (const int node : face.nodes) {
@@ -201,7 +198,7 @@ void expect_surface() {
           EXPECT_EQ(x_m[face.boundary == Boundary::plane_x ? 0 : 1], 0.0);
           continue;
         }
-        if (hangs[node]) continue;
+        if (mesh.hangs(node)) continue;
         const scene::Vec3 place_m(x_m[0], dim == 3 ? x_m[1] : 0.0, x_m[dim - 1]);
         EXPECT_NEAR(shape->signed_distance_m(place_m), 0.0, 1e-12 * size_m);
         if (face.boundary == Boundary::free) lowest_free_m = std::min(lowest_free_m, x_m[dim - 1]);

@@ -94,10 +94,9 @@ TEST(ModelChoice, EveryLevelResolvesTheInclusion) {
   ball.center_m = {0.0, 0.0, 0.03};
   ball.material = {3e4, 0.33};
   scene.body.inclusions = {ball};
-  const GaussRule<3> rule;
   const double quarter_m3 = M_PI / 3.0 * std::pow(ball.radius_m, 3);
   for (int level = 0; level < 2; ++level) {
-    const Mesh<3> mesh = level_mesh<3>(scene, choose_model(scene), level);
+    const Discretisation<3> mesh = level_mesh<3>(scene, choose_model(scene), level);
     ASSERT_EQ(mesh.materials.size(), mesh.cells.size());
     double volume_m3 = 0.0;
     for (int c = 0; c < mesh.cell_count(); ++c) {
@@ -117,11 +116,11 @@ TEST(ModelChoice, EveryLevelResolvesTheInclusion) {
 
 /// Longest edge of the cells at a place on the surface.
 template <int dim>
-double cell_size_at_m(const Mesh<dim>& mesh, const Eigen::Matrix<double, dim, 1>& place_m) {
+double cell_size_at_m(const Discretisation<dim>& mesh, const Eigen::Matrix<double, dim, 1>& place_m) {
   double largest_m = 0.0;
   for (const auto& cell : mesh.cells) {
-    Eigen::Matrix<double, dim, Mesh<dim>::nodes_per_cell> X_m;
-    for (int a = 0; a < Mesh<dim>::nodes_per_cell; ++a) X_m.col(a) = mesh.points_m.col(cell[a]);
+    Eigen::Matrix<double, dim, Discretisation<dim>::nodes_per_cell> X_m;
+    for (int a = 0; a < Discretisation<dim>::nodes_per_cell; ++a) X_m.col(a) = mesh.points_m.col(cell[a]);
     const Eigen::Matrix<double, dim, 1> low_m = X_m.rowwise().minCoeff(), high_m = X_m.rowwise().maxCoeff();
     const double edge_m = (high_m - low_m).maxCoeff();
     const double near_m = 1e-3 * edge_m;
@@ -142,7 +141,7 @@ TEST(ModelChoice, EveryLevelIsFinerUnderTheToolByWhatItSays) {
   for (int level = 0; level < 3; ++level) {
     EXPECT_DOUBLE_EQ(refinement(level), finer[level]);
     EXPECT_DOUBLE_EQ(element_size_m(scene, choice, 0), finer[level] * element_size_m(scene, choice, level));
-    const Mesh<3> mesh = level_mesh<3>(scene, choice, level);
+    const Discretisation<3> mesh = level_mesh<3>(scene, choice, level);
     EXPECT_NEAR(cell_size_at_m<3>(mesh, {0.0, 0.0, 0.06}) * finer[level] / coarsest_m, 1.0, 1e-9) << level;
     EXPECT_GT(mesh.cell_count(), cells);
     cells = mesh.cell_count();
@@ -154,7 +153,7 @@ TEST(ModelChoice, EveryLevelIsFinerUnderTheToolByWhatItSays) {
   round.body.support_height_m = 0.006;
   const double pole_m = cell_size_at_m<2>(level_mesh<2>(round, choose_model(round), 0), {0.0, 0.06});
   for (int level = 1; level < 3; ++level) {
-    const Mesh<2> mesh = level_mesh<2>(round, choose_model(round), level);
+    const Discretisation<2> mesh = level_mesh<2>(round, choose_model(round), level);
     EXPECT_NEAR(cell_size_at_m<2>(mesh, {0.0, 0.06}) * finer[level] / pole_m, 1.0, 0.1) << level;
   }
 }
@@ -167,12 +166,12 @@ TEST(ModelChoice, MeshChangesDoWhatTheySay) {
   ball.center_m = {0.0, 0.0, 0.03};
   ball.material = {3e4, 0.33};
   const ModelChoice choice = choose_model(scene);
-  const Mesh<3> usual = level_mesh<3>(scene, choice, 0);
+  const Discretisation<3> usual = level_mesh<3>(scene, choice, 0);
   const Eigen::Vector3d contact_m(0.0, 0.0, 0.06), corner_m(0.03, 0.03, 0.0), ball_m(0.0, 0.0, 0.022);
-  const Mesh<3> far = level_mesh<3>(scene, choice, 0, {.far_field = 0.5, .inclusions = 1.0});
+  const Discretisation<3> far = level_mesh<3>(scene, choice, 0, {.far_field = 0.5, .inclusions = 1.0});
   EXPECT_NEAR(cell_size_at_m<3>(far, contact_m), cell_size_at_m<3>(usual, contact_m), 1e-12);
   EXPECT_NEAR(cell_size_at_m<3>(far, corner_m), 0.5 * cell_size_at_m<3>(usual, corner_m), 1e-12);
-  const Mesh<3> inside = level_mesh<3>(scene, choice, 0, {.far_field = 1.0, .inclusions = 0.5});
+  const Discretisation<3> inside = level_mesh<3>(scene, choice, 0, {.far_field = 1.0, .inclusions = 0.5});
   EXPECT_NEAR(cell_size_at_m<3>(inside, contact_m), cell_size_at_m<3>(usual, contact_m), 1e-12);
   EXPECT_NEAR(cell_size_at_m<3>(inside, ball_m), 0.5 * cell_size_at_m<3>(usual, ball_m), 1e-12);
 }
@@ -305,7 +304,7 @@ TEST(SurfaceSampler, FindsTheSurfaceOfRoundBodies) {
   scene.body.semi_axes_m = {0.04, 0.02, 0.03};
   scene.body.support_height_m = 0.005;
   const ModelChoice choice = choose_model(scene);
-  const Mesh<3> mesh = level_mesh<3>(scene, choice, 0);
+  const Discretisation<3> mesh = level_mesh<3>(scene, choice, 0);
   const Eigen::Matrix3Xd points_m = scene::tessellate(*scene::body_shape(scene.body), 1000).points_m;
   const SurfaceSampler<3> sampler(mesh, points_m, choice.mirror_x, choice.mirror_y);
   EXPECT_LT((sampler.displacement_m(mesh.points_m) - points_m).cwiseAbs().maxCoeff(), 2e-4);
@@ -314,7 +313,7 @@ TEST(SurfaceSampler, FindsTheSurfaceOfRoundBodies) {
 TEST(SurfaceSampler, GivesBackALinearFieldEverywhereAroundTheBody) {
   const scene::Scene scene = cube({0, 0, .07}, {0, 0, .068});
   const ModelChoice choice = choose_model(scene);
-  const Mesh<3> mesh = level_mesh<3>(scene, choice, 0);
+  const Discretisation<3> mesh = level_mesh<3>(scene, choice, 0);
   Eigen::Matrix3Xd points_m(3, 3);
   points_m << .0123, -.0123, .03, .0077, -.0177, -.011, .06, .06, .02;
   const SurfaceSampler<3> sampler(mesh, points_m, choice.mirror_x, choice.mirror_y);

@@ -12,8 +12,8 @@ namespace {
 constexpr int cells = 2;
 constexpr int nodes = 15;
 
-Mesh<2> mesh_of_two_cells() {
-  Mesh<2> mesh;
+Discretisation<2> mesh_of_two_cells() {
+  Discretisation<2> mesh;
   mesh.points_m.setZero(2, nodes);
   mesh.cells.resize(cells);
   return mesh;
@@ -93,7 +93,7 @@ TEST(StepRecord, GivesBackEveryBit) {
 }
 
 TEST(StepRecord, OfAnotherMeshOrLengthIsNone) {
-  Mesh<2> larger = mesh_of_two_cells();
+  Discretisation<2> larger = mesh_of_two_cells();
   larger.cells.resize(cells + 1);
   EXPECT_FALSE(from_record<2>(bytes_of(false), larger));
   for (const bool friction : {false, true}) {
