@@ -43,45 +43,37 @@ std::vector<MixedMaterial> mixed(const std::vector<scene::Material>& materials, 
 }
 
 /// Values on the pattern of a symmetric matrix, to which deal.II's constraints add rows of degrees of freedom.
-class LowerTriangle {
- public:
-  LowerTriangle(const SymmetricMatrix& pattern, const std::vector<int>& unknown, std::vector<double>& value)
-      : pattern_(pattern), unknown_(unknown), value_(value) {}
-  virtual ~LowerTriangle() = default;  // deal.II asks for the dynamic type
+struct LowerTriangle {
+  const SymmetricMatrix& pattern;
+  const std::vector<int>& unknown;
+  std::vector<double>& value;
 
+  LowerTriangle(const SymmetricMatrix& pattern_in, const std::vector<int>& unknown_in, std::vector<double>& value_in)
+      : pattern(pattern_in), unknown(unknown_in), value(value_in) {}
+  virtual ~LowerTriangle() = default;  // deal.II asks for the dynamic type
   /// @param dofs  ascending, and so their unknowns
   void add(Dof row, Dof count, const Dof* dofs, const double* values, bool /*elide_zeros*/, bool /*sorted*/) {
-    const int column = unknown_[row];
-    std::int64_t k = pattern_.column_begin[column];
+    std::int64_t k = pattern.column_begin[unknown[row]];
     for (const Dof* dof = std::lower_bound(dofs, dofs + count, row); dof != dofs + count; ++dof) {
-      const int wanted = unknown_[*dof];
-      while (pattern_.row[k] < wanted) ++k;
-      value_[k] += values[dof - dofs];
+      while (pattern.row[k] < unknown[*dof]) ++k;
+      value[k] += values[dof - dofs];
     }
   }
   /// The diagonal of what is constrained, which has no unknown.
   void add(Dof, Dof, double) {}
-
- private:
-  const SymmetricMatrix& pattern_;
-  const std::vector<int>& unknown_;
-  std::vector<double>& value_;
 };
 
 /// The same for a right-hand side.
-class RightSide {
- public:
+struct RightSide {
   using value_type = double;
-  RightSide(const std::vector<int>& unknown, double* value) : unknown_(unknown), value_(value) {}
+  const std::vector<int>& unknown;
+  double* value;
+
   void add(const std::vector<Dof>& dofs, const std::vector<double>& values) {
     for (std::size_t k = 0; k < dofs.size(); ++k) (*this)(dofs[k]) += values[k];
   }
-  double& operator()(Dof dof) { return value_[unknown_[dof]]; }
-  [[nodiscard]] std::size_t size() const { return unknown_.size(); }
-
- private:
-  const std::vector<int>& unknown_;
-  double* value_;
+  double& operator()(Dof dof) { return value[unknown[dof]]; }
+  [[nodiscard]] std::size_t size() const { return unknown.size(); }
 };
 
 }  // namespace
@@ -281,7 +273,7 @@ void ElasticBody<dim>::assemble_share(const State<dim>& state, Stiffness stiffne
     lane.reaction_n.assign(static_cast<std::size_t>(sums), 0.0);
     lane.reaction_rows.clear();
     LowerTriangle matrix(matrix_, unknown_, lane.value);
-    RightSide right(unknown_, lane.right_n.data());
+    RightSide right{unknown_, lane.right_n.data()};
     std::vector<Dof> dofs(n);
     dealii::FullMatrix<double> K(n, n);
     dealii::Vector<double> f(n);
@@ -371,13 +363,13 @@ void ElasticBody<dim>::add(int node, const Eigen::Matrix<double, dim, dim>& K,
     for (int j = 0; j < dim; ++j) K_in(i, j) = K(i, j);
   }
   LowerTriangle matrix(matrix_, unknown_, matrix_.value);
-  RightSide right(unknown_, right_n_.data());
+  RightSide right{unknown_, right_n_.data()};
   constraints_->distribute_local_to_global(K_in, f_in, dofs, matrix, right);
 }
 
 template <int dim>
 void ElasticBody<dim>::add_load(const Nodal& force_n) {
-  RightSide right(unknown_, right_n_.data());
+  RightSide right{unknown_, right_n_.data()};
   for (std::size_t dof = 0; dof < unknown_.size(); ++dof) {
     const double one_n = force_n.data()[dof];
     if (one_n != 0.0) constraints_->distribute_local_to_global(static_cast<Dof>(dof), one_n, right);

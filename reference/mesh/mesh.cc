@@ -135,42 +135,41 @@ std::vector<unsigned int> coarse_cells(const std::vector<double>& lengths, const
   return cells;
 }
 
+/// @param sides  lower and upper one of each direction
+template <int dim>
+Discretisation<dim> rectangular_mesh(const Eigen::Matrix<double, dim, 1>& lower_m,
+                                     const Eigen::Matrix<double, dim, 1>& upper_m, const Grading<dim>& grading,
+                                     const std::array<Boundary, 2 * dim>& sides) {
+  dealii::Point<dim> lower, upper;
+  std::vector<double> lengths;
+  for (int d = 0; d < dim; ++d) {
+    lower[d] = lower_m[d];
+    upper[d] = upper_m[d];
+    lengths.push_back(upper[d] - lower[d]);
+  }
+  const auto grid = std::make_shared<dealii::Triangulation<dim>>();
+  dealii::GridGenerator::subdivided_hyper_rectangle(*grid, coarse_cells(lengths, grading), lower, upper, true);
+  for (const auto& cell : grid->active_cell_iterators()) {
+    for (const unsigned int f : cell->face_indices()) {
+      if (cell->face(f)->at_boundary()) cell->face(f)->set_all_boundary_ids(id_of(sides[f]));
+    }
+  }
+  refine(*grid, grading);
+  return Discretisation<dim>(grid);
+}
+
 }  // namespace
 
 Discretisation<3> block_mesh(const BlockSpec& spec) {
-  const auto grid = std::make_shared<dealii::Triangulation<3>>();
-  const Eigen::Vector3d size = spec.upper_m - spec.lower_m;
-  const dealii::Point<3> lower(spec.lower_m.x(), spec.lower_m.y(), spec.lower_m.z());
-  const dealii::Point<3> upper(spec.upper_m.x(), spec.upper_m.y(), spec.upper_m.z());
-  dealii::GridGenerator::subdivided_hyper_rectangle(*grid, coarse_cells({size.x(), size.y(), size.z()}, spec.grading),
-                                                    lower, upper, true);
-  for (const auto& cell : grid->active_cell_iterators()) {
-    for (const unsigned int f : cell->face_indices()) {
-      if (!cell->face(f)->at_boundary()) continue;
-      Boundary boundary = Boundary::free;
-      if (f == 0 && spec.symmetric_x) boundary = Boundary::plane_x;
-      if (f == 2 && spec.symmetric_y) boundary = Boundary::plane_y;
-      if (f == 4) boundary = Boundary::held;
-      cell->face(f)->set_all_boundary_ids(id_of(boundary));
-    }
-  }
-  refine(*grid, spec.grading);
-  return Discretisation<3>(grid);
+  using enum Boundary;
+  return rectangular_mesh<3>(
+      spec.lower_m, spec.upper_m, spec.grading,
+      {spec.symmetric_x ? plane_x : free, free, spec.symmetric_y ? plane_y : free, free, held, free});
 }
 
 Discretisation<2> cylinder_mesh(const CylinderSpec& spec) {
-  const auto grid = std::make_shared<dealii::Triangulation<2>>();
-  dealii::GridGenerator::subdivided_hyper_rectangle(*grid, coarse_cells({spec.radius_m, spec.height_m}, spec.grading),
-                                                    dealii::Point<2>(0.0, 0.0),
-                                                    dealii::Point<2>(spec.radius_m, spec.height_m), true);
-  for (const auto& cell : grid->active_cell_iterators()) {
-    for (const unsigned int f : cell->face_indices()) {
-      if (!cell->face(f)->at_boundary()) continue;
-      cell->face(f)->set_boundary_id(id_of(f == 0 ? Boundary::plane_x : (f == 2 ? Boundary::held : Boundary::free)));
-    }
-  }
-  refine(*grid, spec.grading);
-  return Discretisation<2>(grid);
+  using enum Boundary;
+  return rectangular_mesh<2>({0.0, 0.0}, {spec.radius_m, spec.height_m}, spec.grading, {plane_x, free, held, free});
 }
 
 template <int dim>

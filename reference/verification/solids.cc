@@ -59,15 +59,12 @@ void free_all_boundaries(Discretisation<dim>& mesh) {
 Nodal<3> traction_force_n(const Discretisation<3>& mesh, const Eigen::Vector3d& traction_pa,
                           const std::function<bool(const Eigen::Vector3d&)>& on) {
   Nodal<3> force_n = Nodal<3>::Zero(3, mesh.node_count());
-  for (const auto& face : mesh.faces) {
-    if (!on(mesh.points_m.col(face.nodes[4]))) continue;
-    Eigen::Matrix<double, 3, 9> X_m;
-    for (int a = 0; a < 9; ++a) X_m.col(a) = mesh.points_m.col(face.nodes[a]);
-    for (const auto& [xi, weight, shape] : reference::gauss_points<2>()) {
-      const Eigen::Matrix<double, 3, 2> tangents = X_m * shape.gradient;
-      const double area_m2 = weight * tangents.col(0).cross(tangents.col(1)).norm();
-      for (int a = 0; a < 9; ++a) force_n.col(face.nodes[a]) += area_m2 * shape.value[a] * traction_pa;
-    }
+  const auto geometry = mesh.face_geometry();
+  for (std::size_t f = 0; f < geometry.size(); ++f) {
+    const auto& nodes = mesh.faces[f].nodes;
+    if (!on(mesh.points_m.col(nodes[4]))) continue;
+    // On a flat parallelogram the nodes' areas are the integrals of their shape functions.
+    for (int a = 0; a < 9; ++a) force_n.col(nodes[a]) += geometry[f].weight[a] * traction_pa;
   }
   return force_n;
 }
