@@ -39,9 +39,10 @@ install_packages() {
     fail "apt-get could not add the packages (is the network up?); its messages are in $log."
 }
 
-# build PRESET [CMAKE_OPTION...] -- [TARGET...]
+# build PRESET [CMAKE_OPTION...] -- [TARGET...]; a folder that is there keeps its options
 build() {
   local preset=$1 folder=build/$1 options=()
+  [ -e "$folder/CMakeCache.txt" ] || options=(-DTOUCHSTONE_UNITY=ON)
   shift
   while [ $# -gt 0 ] && [ "$1" != -- ]; do options+=("$1"); shift; done
   shift

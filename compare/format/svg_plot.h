@@ -2,12 +2,21 @@
 // Text and axes take the page's text colour; every marker shows its numbers when pointed at.
 #pragma once
 
+#include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace touchstone::compare {
+
+/// A point that is not there.
+inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+
+/// For many curves of one kind: told apart on white and on black, by the colour-blind too (Okabe and Ito, without
+/// yellow and black).
+inline constexpr std::array palette = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"};
 
 /// Who a curve belongs to; fixes colour and dash so that a side looks the same in every figure and in grey print. The
 /// last three distinguish curves of one solver.

@@ -84,6 +84,8 @@ std::string thousands_text(int count) {
   return count < 1000 ? std::to_string(count) : fmt::format("{:.0f}k", 1e-3 * count);
 }
 
+std::string seconds_text(double time_s) { return fmt::format("{}{}s", number_text(time_s), no_break); }
+
 std::string percent_text(double ratio) {
   if (!std::isfinite(ratio)) return "not finite";
   if (ratio != 0.0 && std::abs(ratio) < least_ratio)

@@ -27,7 +27,7 @@ struct Axis {
   std::vector<std::vector<Setting>> settings;
 };
 
-class Reader : TomlReader {
+class StudyReader : TomlReader {
  public:
   using TomlReader::TomlReader;
 
@@ -248,7 +248,7 @@ Fault in_study(const Fault& fault, const StudyCase& one) {
 Study load_study(const std::filesystem::path& file) {
   const toml::table document = read_document(file, "the study");
   require_kind(document, file, FileKind::sweep);
-  return Reader(document, file).read();
+  return StudyReader(document, file).read();
 }
 
 std::optional<std::string> value_in(std::string_view text, const std::filesystem::path& file, const std::string& key) {

@@ -46,10 +46,10 @@ Scene with_law(Scene scene, ContactLaw law) {
   return scene;
 }
 
-class Reader : TomlReader {
+class TuningReader : TomlReader {
  public:
-  Reader(const toml::table& document, const std::filesystem::path& file,
-         const std::function<std::vector<Fault>(const Scene&)>& check)
+  TuningReader(const toml::table& document, const std::filesystem::path& file,
+               const std::function<std::vector<Fault>(const Scene&)>& check)
       : TomlReader(document, file), check_(check) {}
 
   TuningStudy read() {
@@ -330,7 +330,7 @@ TuningStudy load_tuning_study(const std::filesystem::path& file,
                               const std::function<std::vector<Fault>(const Scene&)>& check) {
   const toml::table document = read_document(file, "the study");
   require_kind(document, file, FileKind::tuning);
-  return Reader(document, file, check).read();
+  return TuningReader(document, file, check).read();
 }
 
 }  // namespace touchstone::compare

@@ -7,12 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace touchstone::compare {
 namespace {
 
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* band_name = "reference's uncertainty";
 
 /// One number per instant; NaN where there is none, which a plot leaves out.

@@ -21,8 +21,6 @@ using scene::InstantRecord;
 using scene::RegionRecord;
 using scene::Vec3;
 
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-
 /// More markers than this on a curve would hide it.
 constexpr std::size_t most_markers = 32;
 

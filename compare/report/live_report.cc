@@ -13,8 +13,6 @@
 namespace touchstone::compare {
 namespace {
 
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-
 std::string us_text(double us) { return quantity_text(us, "us"); }
 
 /// "1 tick", "2000 ticks".
@@ -24,8 +22,6 @@ std::string counted(double count, const std::string& one) {
 std::string counted(std::int64_t count, const std::string& one) { return counted(static_cast<double>(count), one); }
 
 /// Unscaled, as on the time axes.
-std::string seconds_text(double time_s) { return fmt::format("{}{}s", number_text(time_s), no_break); }
-
 double period_us(const live::LiveResult& result) { return 1e6 / result.rate_hz; }
 
 /// Ticks that were due.

@@ -2,6 +2,7 @@
 
 #include "compare/errors/figures.h"
 #include "compare/format/page.h"
+#include "compare/format/svg_plot.h"
 #include "compare/format/text.h"
 #include "compare/report/viewer.h"
 
@@ -9,12 +10,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace touchstone::compare {
 namespace {
-
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 std::string measure_note(const Measure& measure) {
   if (!measure.value) return "no contact to relate it to";

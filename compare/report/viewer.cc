@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int chart_width_px = 560, chart_height_px = 250;
-constexpr int tool_triangles = 1500;
+constexpr int viewer_tool_triangles = 1500;
 
 /// Numbers in all instants together that keep the page at a few megabytes.
 constexpr std::size_t numbers_max = 600'000;
@@ -76,7 +76,7 @@ Json data_of(const scene::Scene& scene, const fast::Run& run, const reference::R
   Json data;
   data["points_m"] = encoded(run.surface.points_m);
   data["triangles"] = encoded(run.surface.triangles);
-  const scene::Surface tool = scene::tool_surface(scene.tool, tool_triangles);
+  const scene::Surface tool = scene::tool_surface(scene.tool, viewer_tool_triangles);
   data["tool"] = {{"points_m", encoded(tool.points_m)}, {"triangles", encoded(tool.triangles)}};
   for (const ColourMap map : {ColourMap::displacement, ColourMap::error}) {
     data["colours"][map == ColourMap::error ? "error" : "displacement"] = colour_table(map);

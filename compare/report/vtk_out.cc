@@ -19,7 +19,7 @@ namespace touchstone::compare {
 namespace {
 
 /// Of an analytic tool's surface, to look round.
-constexpr int tool_triangles = 3000;
+constexpr int vtk_tool_triangles = 3000;
 
 void add_vectors(vtkPolyData* data, const char* name, const Eigen::Matrix3Xd& vectors) {
   vtkNew<vtkDoubleArray> array;
@@ -101,7 +101,7 @@ void write_surfaces(const std::filesystem::path& folder, const fast::Run& run, c
 }
 
 void write_tool(const std::filesystem::path& folder, const scene::Tool& tool, const scene::Instants& instants) {
-  const scene::Surface own = scene::tool_surface(tool, tool_triangles);
+  const scene::Surface own = scene::tool_surface(tool, vtk_tool_triangles);
   write_series(folder, "tool", instants, [&](std::size_t t) {
     const scene::Pose& pose = instants[t].tool;
     return polydata_of((pose.orientation.toRotationMatrix() * own.points_m).colwise() + pose.position_m, own.triangles);

@@ -11,9 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <set>
 
@@ -21,10 +19,6 @@ namespace touchstone::compare {
 namespace {
 
 /// Told apart on white and on black, by the colour-blind too (Okabe and Ito, without yellow and black).
-constexpr std::array palette = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"};
-
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-
 /// A result with what the page calls it.
 struct Entry {
   const ResultFolder& result;

@@ -22,11 +22,6 @@
 namespace touchstone::compare {
 namespace {
 
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-
-/// Told apart on white and on black, by the colour-blind too (Okabe and Ito, without yellow and black).
-constexpr std::array palette = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"};
-
 /// A range of values this wide is drawn logarithmically.
 constexpr double log_ratio = 30.0;
 

@@ -19,13 +19,13 @@ namespace {
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 /// "3.5 mm" as 3.5 and "mm"; nothing for a text that does not begin with a number.
-struct Quantity {
+struct NumberWithUnit {
   double number = 0.0;
   std::string unit;
 };
-std::optional<Quantity> quantity_of(std::string_view text) {
+std::optional<NumberWithUnit> quantity_of(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
-  Quantity out;
+  NumberWithUnit out;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out.number);
   if (error != std::errc()) return std::nullopt;
   out.unit = std::string(end, text.data() + text.size());
@@ -39,7 +39,8 @@ void read_numbers(StudyParameter& parameter) {
   std::optional<std::string> unit;
   std::vector<double> numbers;
   for (const std::string& value : parameter.values) {
-    const std::optional<Quantity> one = value.empty() ? Quantity{no_number, unit.value_or("")} : quantity_of(value);
+    const std::optional<NumberWithUnit> one =
+        value.empty() ? NumberWithUnit{no_number, unit.value_or("")} : quantity_of(value);
     if (!one || (!value.empty() && unit && *unit != one->unit)) return;
     if (!value.empty()) unit = one->unit;
     numbers.push_back(one->number);

@@ -26,7 +26,7 @@ bool dominates(const Point& a, const Point& b) {
   return a.step_us <= b.step_us && a.error <= b.error && (a.step_us < b.step_us || a.error < b.error);
 }
 
-std::string error_text(const Measure& error) {
+std::string error_in_words(const Measure& error) {
   return percent_text(*error.value) + (error.distinguishable() ? "" : " (not distinguishable from none)");
 }
 
@@ -48,7 +48,7 @@ const TradeRow* most_accurate(const Trade& trade, TradeError error, Pass pass) {
 }
 
 std::string with_numbers(const TradeRow& row, TradeError error) {
-  return fmt::format("{} ({}, {} a step)", row.name, error_text(row.*error), quantity_text(row.step_p50_us, "us"));
+  return fmt::format("{} ({}, {} a step)", row.name, error_in_words(row.*error), quantity_text(row.step_p50_us, "us"));
 }
 
 /// What is to be said about a row's slowest steps; empty where they keep up too.

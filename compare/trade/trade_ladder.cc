@@ -5,11 +5,11 @@
 #include "compare/trade/trade.h"
 #include "fast/run/percentiles.h"
 #include "reference/solver.h"
+#include "scene/base/stopwatch.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -19,11 +19,8 @@
 namespace touchstone::compare {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using scene::Scene;
 using SolveLevels = std::function<reference::Result(const Scene&, const scene::Surface&, std::optional<int>)>;
-
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 class Ladder {
  public:
@@ -116,9 +113,9 @@ class Ladder {
     if (row.absent.empty()) {
       tell(row.name);
       try {
-        const Clock::time_point begin = Clock::now();
+        const scene::Stopwatch watch;
         model = entry.set_up(scene_);
-        row.setup_s = seconds_since(begin);
+        row.setup_s = watch.wall_s();
         row.size = model->size();
         row.memory_bytes = model->memory_bytes().value_or(row.memory_bytes);
         row.note = model->note();

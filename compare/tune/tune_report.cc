@@ -15,7 +15,6 @@
 namespace touchstone::compare {
 namespace {
 
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 std::string measure_cell(const Measure& measure, const std::string& unit) {
   if (!measure.value) return number_cell("–");

@@ -80,7 +80,6 @@ void do_tick(const Tick& tick, std::int64_t begin_ns, std::int64_t lateness_ns, 
 
 /// The newest grid point.
 std::int64_t newest_grid_point(const LoopTime& time, std::int64_t since_start_ns) noexcept {
-  constexpr std::int64_t second_ns = 1'000'000'000;
   const std::int64_t seconds = since_start_ns / second_ns, rest_ns = since_start_ns % second_ns;
   std::int64_t index = seconds * time.rate_hz + rest_ns * time.rate_hz / second_ns;
   // Grid points are whole nanoseconds, rounded down.

@@ -11,10 +11,6 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-constexpr double quarter = 0.5 * std::numbers::pi;
-
-double cross(const Vec2& a, const Vec2& b) noexcept { return a.x() * b.y() - a.y() * b.x(); }
-
 std::string corner(const Profile& profile, std::size_t i) {
   const Vec2& p = profile.rz_m[i];
   return fmt::format("corner {} at (r, z) = ({:.6g}, {:.6g}) m", i, p.x(), p.y());

@@ -11,9 +11,7 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-constexpr double pi = std::numbers::pi, quarter = 0.5 * pi;
-
-double cross(const Vec2& a, const Vec2& b) noexcept { return a.x() * b.y() - a.y() * b.x(); }
+constexpr double pi = std::numbers::pi;
 
 /// Straight pieces in line with each other become one.
 Profile joined(const Profile& profile) {
