@@ -14,7 +14,7 @@
 namespace touchstone::compare {
 namespace {
 
-/// Both codes at the instants that CalculiX reached, as a table for people and as columns.
+/// Results of both codes at the instants that CalculiX reached, as a text table and as columns.
 struct SideBySide {
   std::string text;
   std::vector<scene::Column> columns;

@@ -18,7 +18,7 @@ void print(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) std::cout << line << '\n';
 }
 
-/// New data is looked at gate by gate, so it is made by name.
+/// New reference data and accepted values are to be reviewed gate by gate, so the gates must be named.
 void require_names(const GateOptions& options, const char* flag) {
   if (options.names.empty())
     throw scene::InputError(std::string(flag) + ": expected the gates' names, FILE or FILE.GATE");
@@ -28,7 +28,7 @@ void require_names(const GateOptions& options, const char* flag) {
 
 int gate(const GateOptions& options, const std::string& command) {
   for (const std::string& name : options.names) {
-    // A file in place of a name: what it is, when it is no gate file.
+    // If a file was given in place of a name, loading it reports what kind of file it is, unless it is a gate file.
     if (std::filesystem::is_regular_file(name)) (void)load_gate_file(name);
   }
   const GateFolder folder = load_gates(options.folder);

@@ -1,4 +1,4 @@
-// touchstone: one scene in, one result folder out.
+// touchstone: from a scene file to a result folder.
 #include "compare/app/export_verb.h"
 #include "compare/app/gate_verb.h"
 #include "compare/app/results_verb.h"
@@ -133,7 +133,7 @@ int run_program(int argc, char** argv) {
       "  touchstone new block.toml --body box 60x60x40mm --youngs-modulus 3MPa --poissons-ratio 0.45 \\\n"
       "    --tool sphere 10mm --depth 3mm\n"
       "  touchstone compare block.toml\n"
-      "touchstone VERB --help: its options and an example. Exit status: 0 done, 1 the answer is no, 2 bad input, 3 "
+      "touchstone COMMAND --help: its options and an example. Exit status: 0 done, 1 a check failed, 2 bad input, 3 "
       "not\n"
       "converged.");
   return program.run(argc, argv);
@@ -147,7 +147,7 @@ int main(int argc, char** argv) {
       std::cerr
           << "the memory does not suffice for the linear algebra's threads; expected more of it, or fewer threads "
              "with OPENBLAS_NUM_THREADS\n";
-      // They wait for memory without end, and an ordinary exit waits for them.
+      // OpenBLAS threads may wait for memory for ever, and an ordinary exit waits for these threads.
       std::_Exit(fast::not_converged);
     }
     return run_program(argc, argv);

@@ -13,7 +13,7 @@
 namespace touchstone::compare {
 namespace {
 
-/// A few of them: all the cases of an axis tend to share the fault.
+/// Prints only a few warnings: usually all cases of an axis have the same fault.
 void warn_of_no_contact(const StudyManifest& manifest) {
   constexpr std::size_t told_max = 3;
   std::vector<const ManifestCase*> without;

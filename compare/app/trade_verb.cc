@@ -17,7 +17,7 @@ int run(const fast::VerbOptions& options, const TradeOptions& trade_options, con
   return with_reference_exits([&] {
     scene::Manifest manifest = scene::make_manifest(scene, "touchstone trade");
     const scene::Stopwatch watch;
-    std::string references;  // how each refinement ended
+    std::string references;  // why the refinement of each reference ended
     const Trade found = trade(
         scene, trade_options,
         [&](const scene::Scene& contact, const scene::Surface& surface, std::optional<int> levels) {

@@ -16,7 +16,7 @@
 namespace touchstone::compare {
 namespace {
 
-/// Presses a key until the view says what was asked for.
+/// Presses a key until the view shows what was asked for.
 template <class Says>
 void press_until(ResultView& view, const std::string& key, const std::string& wanted, const char* option, Says says) {
   if (wanted.empty()) return;

@@ -42,14 +42,14 @@ class BulletModel final : public ContactModel {
         body.step(scene::pose_at(scene_.track, time_s).position_m);
       }
       instant.displacement_m = body.displacement_m(asked.surface.points_m);
-      if (!body.sound()) throw Unavailable("its body flew apart");
+      if (!body.sound()) throw Unavailable("the simulation became unstable");
     }
   }
 
   [[nodiscard]] int size() const override { return body_.surface_triangles(); }
   [[nodiscard]] std::string note() const override {
     return fmt::format(
-        "implicit steps of 1 ms with Poisson's ratio {}; it tells neither the force on the tool nor its "
+        "implicit steps of 1 ms with Poisson's ratio {}; it gives neither the force on the tool nor its "
         "memory",
         number_text(setting_.poissons_ratio));
   }
@@ -60,7 +60,7 @@ class BulletModel final : public ContactModel {
   bench::BulletPeer body_;
 };
 
-/// Why Bullet's block cannot stand for a scene's body; empty when it can.
+/// Why Bullet's block cannot represent a scene's body; empty if it can.
 std::string unlike_bullet(const scene::Scene& scene) {
   const scene::Body& body = scene.body;
   if (body.shape != scene::BodyShape::box || (body.size_m.array() != body.size_m.x()).any())

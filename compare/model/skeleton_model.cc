@@ -212,7 +212,7 @@ std::vector<ModelEntry> skeleton_meshes(const ModelRequest& request) {
   const std::vector<int> sizes = request.quick ? std::vector{400, 1000} : std::vector{1000, 3952, 16000, 100000};
   const bool tuned = !request.parameters.empty();
   for (const int triangles : sizes) {
-    if (triangles == request.scene.fast.triangles) continue;  // is there already
+    if (triangles == request.scene.fast.triangles) continue;  // already in the list
     const Change change = [triangles, tuned, file = tuned ? request.parameters.front() : ""](Scene scene) {
       if (tuned) scene = with_parameters(std::move(scene), file);
       scene.fast.triangles = triangles;

@@ -14,7 +14,7 @@
 namespace touchstone::compare {
 namespace {
 
-/// Unscaled, as on the time axes.
+/// In seconds without a prefix, as on the time axes.
 std::string seconds_text(double time_s) { return fmt::format("{}{}s", number_text(time_s), no_break); }
 
 std::string head_section(const scene::Scene& scene, const fast::Run& run) {

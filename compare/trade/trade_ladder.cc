@@ -1,4 +1,4 @@
-// Every model of the trade: set up, judged and timed.
+// Computes the rows of a trade: every model set up, judged and timed.
 #include "compare/format/text.h"
 #include "compare/model/judge.h"
 #include "compare/trade/step_times.h"
@@ -38,7 +38,7 @@ class Ladder {
       trade_.contacts = load_tuning_study(options.held_out, reference::unsupported).held_out;
       trade_.held_out = true;
     }
-    // Bad files are refused before any work.
+    // Faulty files are reported before any solve.
     for (const auto& file : options.parameters) (void)with_parameters(scene, file);
   }
 
@@ -53,7 +53,7 @@ class Ladder {
                          }};
     for (const TuningContact& contact : trade_.contacts) request.contacts.push_back(contact.scene);
     for (const ModelEntry& entry : list_models(request, models)) add(entry);
-    tell("steps of every model by turns");
+    tell("steps of all models in turn");
     measure_by_turns(timed_, poses_, options_.quick ? 6 : 64);
     for (Timed& one : timed_) {
       TradeRow& row = trade_.rows[one.row];
@@ -70,8 +70,8 @@ class Ladder {
     if (say_) say_(line);
   }
 
-  /// The reference's answer on a surface of so many triangles, from the meshes that the contact's own surface asks for:
-  /// on finer ones the shape is known less well, and a row more is not worth hours of another mesh.
+  /// The reference's result on a surface of so many triangles, on the meshes chosen for the contact's own surface.
+  /// Finer surfaces would ask for finer meshes, which take hours and are not worth a row.
   const TuningData& data_of(std::size_t contact, int triangles) {
     const int own = trade_.contacts[contact].scene.fast.triangles;
     std::optional<int> levels;
@@ -87,7 +87,7 @@ class Ladder {
     return *found->second;
   }
 
-  /// Meshes that every contact's reference has.
+  /// Number of meshes that every contact's reference has.
   int reference_levels() {
     int levels = std::numeric_limits<int>::max();
     for (std::size_t c = 0; c < trade_.contacts.size(); ++c) {
@@ -97,7 +97,7 @@ class Ladder {
     return levels;
   }
 
-  /// The answer that all are judged by where that has so many levels.
+  /// The result that the models are judged by, if it has so many levels.
   reference::Result reference_on(const Scene& scene, const scene::Surface& surface, int levels) {
     for (const auto& [key, data] : data_) {
       const bool same = reference::content_key(data->contact.scene) == reference::content_key(scene);
@@ -135,7 +135,7 @@ class Ladder {
     }
   }
 
-  /// The row's errors: the worst of the contacts. Each contact has a model of its own scene.
+  /// Errors of the row: the largest over the contacts. The model is set up anew for each contact's scene.
   void judge(const ModelEntry& entry, ContactModel& of_scene, TradeRow& row) {
     std::vector<std::string> troubles;
     KnownSteps known;
@@ -168,9 +168,11 @@ class Ladder {
     }
     if (entry.yardstick && !row.force_nrmse.uncertainty) {
       row.force_nrmse = row.shape_rel_l2 = {};
-      row.note = "the yardstick, which does not know its own uncertainty with fewer than three meshes; " + row.note;
+      row.note =
+          "the reference that the others are judged by; its uncertainty is unknown with fewer than three meshes; " +
+          row.note;
     } else if (entry.yardstick) {
-      row.note = "the yardstick: its error is its uncertainty; " + row.note;
+      row.note = "the reference that the others are judged by: its error is its uncertainty; " + row.note;
     }
   }
 

@@ -46,7 +46,7 @@ int run_program(int argc, char** argv) {
   live::add_live_verb(program, options, live_options);
   bench::add_bench_verb(program, bench_options);
   fast::add_completion_verb(program, shell);
-  program.footer("touchstone-fast VERB --help: options and an example");
+  program.footer("touchstone-fast COMMAND --help: options and an example");
   return program.run(argc, argv);
 }
 

@@ -12,7 +12,7 @@
 namespace touchstone::bench {
 namespace {
 
-/// Of the last minute, as an entry of the manifest.
+/// Load average of the last minute, for the manifest.
 std::string load_average() {
   double load = 0.0;
   if (getloadavg(&load, 1) != 1) return "unknown";

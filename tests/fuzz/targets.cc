@@ -91,7 +91,7 @@ const std::string& require_readable(const std::string& message) {
     finding("a message of " + std::to_string(message.size()) + " bytes");
   for (std::string_view rest = message; !rest.empty();) {
     const std::size_t length = scene::utf8_length(rest);
-    if (length == 0) finding("a message that is no UTF-8");
+    if (length == 0) finding("a message that is not UTF-8");
     if (rest[0] != '\n' && scene::is_control(rest, length)) finding("a control character in a message");
     rest.remove_prefix(length);
   }

@@ -34,7 +34,7 @@ std::unique_ptr<const Shape> body_shape(const Body& body) {
     case BodyShape::ellipsoid:
       return solid_shape(body, Vec3(0.0, 0.0, body.semi_axes_m.z()));
     case BodyShape::revolution:
-      // Not through the centre: the bottom is at zero exactly.
+      // Not through the centre, so that the bottom is exactly at zero.
       return std::make_unique<Revolution>(body.profile, Vec3(0.0, 0.0, -body.profile.rz_m.front().y()));
   }
   return nullptr;

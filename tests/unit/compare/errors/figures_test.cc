@@ -92,9 +92,9 @@ TEST(Figures, SayWhyThereIsNoSlipOnset) {
   testing::Sides sides = testing::pressed(5, 200);
   EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").text, "undefined: the scene has no friction");
   sides.scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
-  EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").text, "undefined: neither side ever slides");
+  EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").text, "undefined: neither side ever slips");
   sides.result.instants[4].regions[0].sliding = true;
-  EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").text, "undefined: the fast model never slides");
+  EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").text, "undefined: the fast model never slips");
   sides.run.instants[4].regions[0].sliding = true;
   EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").number, 0.0);
 }

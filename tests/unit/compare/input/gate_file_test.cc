@@ -53,7 +53,7 @@ TEST(GateFile, ASecondCodeNeedsNoCommittedData) {
   const std::string both = "title = \"t\"\nrun = \"second_code\"\nscene = \"a.toml\"\n";
   EXPECT_EQ(parse_gate_file(both + gate, "gates/a.toml").run, GateRun::second_code);
   EXPECT_THAT(refusal(both + "model = \"compliance-1\"\n" + gate), HasSubstr("model is for run = \"fast\" only"));
-  EXPECT_THAT(refusal(both + "reference = \"reference/a\"\n" + gate), HasSubstr("reference is never looked at"));
+  EXPECT_THAT(refusal(both + "reference = \"reference/a\"\n" + gate), HasSubstr("reference is not used"));
 }
 
 TEST(GateFile, EveryFaultIsToldAtOnceWithItsLine) {

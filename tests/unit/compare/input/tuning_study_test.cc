@@ -73,10 +73,10 @@ TEST_F(TuningStudyTest, TellsEveryFaultWithItsPlaceAndWhatWasExpected) {
   EXPECT_THAT(
       refusal(head + training + held_out + "[[parameter]]\nkey = \"fast.C_n\"\nbounds = [0.0, 0.1]\nscale = \"log\"\n"),
       HasSubstr("expected bounds above 0"));
-  EXPECT_THAT(refusal(head + training + held_out + stiffness + stiffness), HasSubstr("is the same constant already"));
+  EXPECT_THAT(refusal(head + training + held_out + stiffness + stiffness), HasSubstr("stands for the same constant"));
   EXPECT_THAT(refusal(head + training + held_out + stiffness +
                       "[[parameter]]\nkey = \"contact.omega0_squared_per_s2\"\nbounds = [1.0, 2.0]\n"),
-              HasSubstr("is the same constant already"));
+              HasSubstr("stands for the same constant"));
   EXPECT_THAT(refusal(head + training + held_out + stiffness +
                       "[[parameter]]\nkey = \"contact.friction.K\"\nbounds = [0.1, 2.0]\n"),
               HasSubstr("parameter.key = \"contact.friction.K\" only applies with [contact.friction] given; expected a "

@@ -94,7 +94,7 @@ TEST(LiveReport, TheForceIsDrawnOverTimeWithItsLimit) {
   result.ledger.model_force_max_n = 9.0;
   page = html(result);
   EXPECT_THAT(page, HasSubstr(">of the model</text>"));
-  EXPECT_THAT(page, HasSubstr("In 1\u00a0tick the limits changed the model's force before it was sent."));
+  EXPECT_THAT(page, HasSubstr("In 1\u00a0tick a safety limit changed the model's force before it was sent."));
   EXPECT_THAT(page, HasSubstr("the force sent is not the model's, whose largest is 9\u00a0N"));
 }
 
@@ -127,7 +127,7 @@ TEST(LiveReport, CountsMissedTicksAndDrawsWhen) {
   result.ledger.ticks = 2001;
   result.ledger.lateness.add(7'200'000);
   const std::string page = html(result);
-  EXPECT_THAT(page, HasSubstr("10 of 2011 ticks were missed: the loop came to them more than a period late"));
+  EXPECT_THAT(page, HasSubstr("10 of 2011 ticks were missed: the loop reached them more than a period late"));
   EXPECT_THAT(page, HasSubstr("<b>10</b><span>0.497\u00a0% of those due</span>"));
   EXPECT_THAT(page, HasSubstr("<title>Missed ticks over time</title>"));
   EXPECT_THAT(page, HasSubstr("ticks missed: 7</title>"));
@@ -152,7 +152,7 @@ TEST(LiveReport, SaysFaultsInWords) {
   EXPECT_THAT(page, HasSubstr("The model reported: contact law saturated at its peak."));
   EXPECT_THAT(page, HasSubstr("In 12\u00a0ticks the device gave no usable pose"));
   EXPECT_THAT(page, HasSubstr("live.csv lacks 5\u00a0ticks"));
-  EXPECT_THAT(page, HasSubstr("ended by a signal (Ctrl-C)"));
+  EXPECT_THAT(page, HasSubstr("ended early by a signal (Ctrl-C)"));
   EXPECT_THAT(page, HasSubstr("(Operation not permitted): &lt;ask&gt;"));
   EXPECT_THAT(page, HasSubstr("3 of 2000\u00a0answers differ from the log's, the first on line 43 of the log"));
 }

@@ -94,7 +94,7 @@ TEST_P(Readers, OfAComparison) {
   EXPECT_EQ(columns.at("fast_force_n")[3], sides_.run.instants[3].force_n().norm());
   expect_known(columns.at("reference_force_uncertainty_n")[3]);
   expect_known(columns.at("reference_shape_uncertainty_rel_l2")[3]);
-  EXPECT_TRUE(std::isnan(columns.at("error_force_rel")[0])) << "apart: nothing to relate the error to";
+  EXPECT_TRUE(std::isnan(columns.at("error_force_rel")[0])) << "no contact: no reference value for the error";
   const auto surfaces = read_series(folder_.path() / "surface.pvd");
   ASSERT_EQ(surfaces.size(), 4u);
   vtkPolyData* last = surfaces.rbegin()->second;

@@ -140,9 +140,8 @@ TEST(Report, CaptionOfTheForceSaysWhyTheErrorAskedForWasNotReached) {
   testing::Sides sides = testing::pressed(5, 600);
   sides.result.refinement.error_asked = 0.001;
   sides.result.refinement.why_ended = "there is no mesh 4: it would take 3 h";
-  EXPECT_TRUE(
-      has(caption_of(report_of(sides), "Force over depth"),
-          "An uncertainty of 0.1\u00a0% was asked for and not reached: there is no mesh 4: it would take 3 h."));
+  EXPECT_TRUE(has(caption_of(report_of(sides), "Force over depth"),
+                  "The requested uncertainty of 0.1\u00a0% was not reached: there is no mesh 4: it would take 3 h."));
   sides.result.refinement.error_asked = 0.5;
   EXPECT_FALSE(has(report_of(sides), "not reached"));
 }
@@ -233,7 +232,7 @@ TEST(Report, OfATrackWithoutContactIsStillWhole) {
   EXPECT_TRUE(testing::is_well_formed(html));
   EXPECT_FALSE(testing::shows_not_a_number(markup_of(html)));
   EXPECT_TRUE(has(html, "never touches the body"));
-  EXPECT_TRUE(has(html, "Figures that have no meaning in this scene are left out"));
+  EXPECT_TRUE(has(html, "Figures that are undefined in this scene are left out"));
 }
 
 TEST(Page, LeavesOutAPartWithoutContent) {

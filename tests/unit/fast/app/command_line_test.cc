@@ -310,7 +310,7 @@ TEST_F(NewVerb, RefusesInOneLineAndWritesNothing) {
   refused(block + "--tool capsule 10mm", "expected radius and length of the straight part, such as 6x20mm");
   refused(block + "--tool mesh none.stl --unit mm", "tool.file: cannot read none.stl: there is no such file");
   refused(block + "--tool mesh none.stl", "--unit is missing: expected the unit of the mesh file's coordinates");
-  refused(block + "--tool sphere 10mm --at 50x0mm", "moved straight down the tool never meets the body");
+  refused(block + "--tool sphere 10mm --at 50x0mm", "moved straight down the tool never touches the body");
   refused("--body box 60x60x40mm --youngs-modulus 3 --poissons-ratio 0.4 --tool sphere 10mm --depth 2mm",
           "--youngs-modulus 3: expected a number with its unit");
   refused("--body box 60x60x4mm --youngs-modulus 3MPa --poissons-ratio 0.4 --tool sphere 10mm --depth 3mm",
@@ -324,7 +324,7 @@ TEST_F(NewVerb, RefusesInOneLineAndWritesNothing) {
   std::ofstream(dir_ / "there.toml") << "mine";
   const Answer answer = make(program, "there.toml " + block + "--tool sphere 10mm");
   EXPECT_EQ(answer.exit_code, 2);
-  EXPECT_THAT(answer.output, HasSubstr("there.toml: there is such a file already"));
+  EXPECT_THAT(answer.output, HasSubstr("there.toml: the file exists already"));
   EXPECT_EQ(text("there.toml"), "mine");
 }
 
@@ -334,7 +334,7 @@ TEST(Help, WithoutArgumentsIsTheOverview) {
     EXPECT_EQ(alone.exit_code, 0);
     EXPECT_EQ(alone.output, run(program + " --help").output);
     EXPECT_THAT(alone.output, HasSubstr("\n  new "));
-    EXPECT_THAT(alone.output, HasSubstr("VERB --help"));
+    EXPECT_THAT(alone.output, HasSubstr("COMMAND --help"));
   }
 }
 
@@ -372,20 +372,20 @@ TEST(Misspelt, VerbsAndOptionsGetTheNearestName) {
       EXPECT_EQ(answer.exit_code, 2) << arguments;
       EXPECT_EQ(answer.output, name + message + "\n");
     };
-    refused("paln " + scene, ": unknown verb \"paln\"; did you mean \"plan\"?");
+    refused("paln " + scene, ": unknown command \"paln\"; did you mean \"plan\"?");
     refused("plan " + scene + " --quite", " plan: unknown option --quite; did you mean \"--quiet\"?");
     refused("plan --quite", " plan: unknown option --quite; did you mean \"--quiet\"?");
     refused("fast " + scene + " --uot=x", " fast: unknown option --uot; did you mean \"--out\"?");
     refused("fast " + scene + " --zzzzzzzz", " fast: unknown option --zzzzzzzz; see " + name + " fast --help");
-    refused(scene, ": expected a verb before " + scene + ", such as: " + name + " plan " + scene);
-    EXPECT_THAT(run(program + " zzzzzz").output, HasSubstr("unknown verb \"zzzzzz\"; expected one of new, plan, "));
+    refused(scene, ": expected a command before " + scene + ", such as: " + name + " plan " + scene);
+    EXPECT_THAT(run(program + " zzzzzz").output, HasSubstr("unknown command \"zzzzzz\"; expected one of new, plan, "));
   }
   if (full_program().empty()) return;
   const Answer far = run(full_program() + " view out --set");
   EXPECT_EQ(far.output, "touchstone view: unknown option --set; see touchstone view --help\n") << "--help is not meant";
   const Answer nested = run(full_program() + " study expnd x.toml");
   EXPECT_EQ(nested.exit_code, 2);
-  EXPECT_EQ(nested.output, "touchstone study: unknown verb \"expnd\"; did you mean \"expand\"?\n");
+  EXPECT_EQ(nested.output, "touchstone study: unknown command \"expnd\"; did you mean \"expand\"?\n");
 }
 
 TEST(Misspelt, AFileThatIsNotThereGetsTheNearestInItsFolder) {
@@ -416,18 +416,18 @@ TEST(WrongFile, IsCalledWhatItIsWithTheVerbThatTakesIt) {
     EXPECT_THAT(answer.output, HasSubstr(message));
     EXPECT_EQ(std::count(answer.output.begin(), answer.output.end(), '\n'), 1) << answer.output;
   };
-  const std::string for_scene = "the verb for it is: touchstone compare " + scene;
+  const std::string for_scene = "the command for it is: touchstone compare " + scene;
   refused("tune " + scene, "this is a scene, expected a tuning study; " + for_scene);
   refused("study expand " + scene, "this is a scene, expected a study of many cases; " + for_scene);
   refused("gate " + scene, "this is a scene");
   refused("tune " + sweep,
-          "this is a study of many cases, expected a tuning study; the verb for it is: touchstone "
+          "this is a study of many cases, expected a tuning study; the command for it is: touchstone "
           "study expand " +
               sweep);
   refused("study expand " + tuning, "this is a tuning study");
   refused("compare " + sweep, "this is a study of many cases, expected a scene");
-  refused("compare " + tuning, "expected a scene; the verb for it is: touchstone tune " + tuning);
-  refused("compare " + gates, "this is a gate file, expected a scene; the verb for it is: touchstone gate --gates " +
+  refused("compare " + tuning, "expected a scene; the command for it is: touchstone tune " + tuning);
+  refused("compare " + gates, "this is a gate file, expected a scene; the command for it is: touchstone gate --gates " +
                                   source + "/tests/gates");
 }
 

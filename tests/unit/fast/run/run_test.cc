@@ -216,7 +216,8 @@ TEST(ConvexMeshTool, TakesTheStepOfItsShape) {
   for (const scene::PlanLine& line : plan(scene)) {
     if (line.part == "several regions") {
       EXPECT_FALSE(line.modelled);
-      EXPECT_NE(line.reason.find("the tool's mesh has no dent deeper than 0.035 mm"), std::string::npos) << line.reason;
+      EXPECT_NE(line.reason.find("the tool's mesh has no concavity deeper than 0.035 mm"), std::string::npos)
+          << line.reason;
     }
   }
 }
@@ -264,7 +265,7 @@ TEST(Plan, SaysWhatIsModelledAndWhatIsNot) {
   EXPECT_EQ(line(compass, "several regions").reason.find("FALL"), std::string::npos);
   scene::Scene coarse = test::shipped_scene("compass-two-pins", scene::Formulation::corrected);
   coarse.fast.tool_samples = 500;
-  EXPECT_NE(line(plan(coarse), "several regions").reason.find("ONE CONTACT MAY FALL INTO SEVERAL"), std::string::npos);
+  EXPECT_NE(line(plan(coarse), "several regions").reason.find("ONE CONTACT MAY SPLIT INTO SEVERAL"), std::string::npos);
 }
 
 }  // namespace

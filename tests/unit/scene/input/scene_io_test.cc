@@ -336,7 +336,7 @@ TEST_F(IncludeTest, TellsAFaultInTheFileItStandsIn) {
   write("[fast\n");
   EXPECT_THAT(refusal(), HasSubstr(included + ":1"));
   write("include = \"other.toml\"\n");
-  EXPECT_THAT(refusal(), HasSubstr("scene.toml:1:11: include: " + included + " includes a file itself"));
+  EXPECT_THAT(refusal(), HasSubstr("scene.toml:1:11: include: " + included + " includes another file"));
   std::filesystem::remove(dir_ / "parameters.toml");
   EXPECT_THAT(refusal(), HasSubstr("scene.toml:1:11: include: cannot read " + included));
 }

@@ -254,7 +254,7 @@ TEST_F(MeshFile, RefusesATubeThatMeetsItselfInsideOut) {
       mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
     }
   }
-  EXPECT_THAT(refusal(mesh), HasSubstr("only one side"));
+  EXPECT_THAT(refusal(mesh), HasSubstr("not orientable"));
 }
 
 TEST_F(MeshFile, RefusesBrokenFilesWithThePlace) {

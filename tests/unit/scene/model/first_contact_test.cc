@@ -214,13 +214,14 @@ TEST(TrackByDepth, BothNeitherAndNowhereAreRefusedAtTheirPlace) {
   EXPECT_THAT(refusal(head + track(full + "\ndirection = [0, 0, 0]\ndepth_m = 0.0", full)),
               HasSubstr("direction: is zero; expected a non-zero length"));
   EXPECT_THAT(refusal(head + track(flat + "\ndirection = [1, 0, -1]\ndepth_m = 0.0", full)),
-              HasSubstr("track[0].position_m: a slanting direction needs a point of its line"));
-  EXPECT_EQ(refusal(by_depth, {"track[1].position_m=[0.05, 0.0]"}),
-            "a.toml:20:11: track[1].depth_m: moved straight down the tool never meets the body; expected x and y over "
-            "it");
+              HasSubstr("track[0].position_m: a direction that is not vertical needs a point of its line"));
+  EXPECT_EQ(
+      refusal(by_depth, {"track[1].position_m=[0.05, 0.0]"}),
+      "a.toml:20:11: track[1].depth_m: moved straight down the tool never touches the body; expected x and y over "
+      "it");
   EXPECT_THAT(refusal(head + track(full, full + "\ndepth_m = 0.001\ndirection = [0, 0, 1]\n"),
                       {"track[1].position_m=[0.05, 0.0, 0.0]"}),
-              HasSubstr("the tool never meets the body along this direction"));
+              HasSubstr("the tool never touches the body along this direction"));
   EXPECT_THAT(refusal(by_depth, {"track[0].depth_m=0.001"}), HasSubstr("the tool starts 1 mm inside the body"));
   EXPECT_THAT(refusal(by_depth, {"track[0].depth_m=deep"}), HasSubstr("expected a number in"));
 }
@@ -254,7 +255,7 @@ TEST_F(DepthFileTest, ATableMayHaveDepthsInPlaceOfHeights) {
   EXPECT_EQ(track_[1].pose.position_m, Vec3(0.01, 0, 0.067));
   EXPECT_NEAR(track_[2].pose.position_m.z(), 0.065, 1e-11);
   EXPECT_THAT(read_csv("time_s,depth_m,x_m,y_m\n0,-0.0005,0,0\n1,0.003,0.05,0\n"),
-              HasSubstr("t.csv:3:1: track[1].depth_m: moved straight down the tool never meets the body"));
+              HasSubstr("t.csv:3:1: track[1].depth_m: moved straight down the tool never touches the body"));
   EXPECT_THAT(read_csv("time_s,x_m,y_m,z_m,depth_m\n"), HasSubstr("the header has both z_m and depth_m"));
 }
 
