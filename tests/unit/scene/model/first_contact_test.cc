@@ -217,8 +217,8 @@ TEST(TrackByDepth, BothNeitherAndNowhereAreRefusedAtTheirPlace) {
               HasSubstr("track[0].position_m: a direction that is not vertical needs a point of its line"));
   EXPECT_EQ(
       refusal(by_depth, {"track[1].position_m=[0.05, 0.0]"}),
-      "a.toml:20:11: track[1].depth_m: moved straight down the tool never touches the body; expected x and y over "
-      "it");
+      "a.toml:20:11: track[1].depth_m: moved straight down the tool never touches the body; expected x and y above "
+      "the body");
   EXPECT_THAT(refusal(head + track(full, full + "\ndepth_m = 0.001\ndirection = [0, 0, 1]\n"),
                       {"track[1].position_m=[0.05, 0.0, 0.0]"}),
               HasSubstr("the tool never touches the body along this direction"));
