@@ -1,5 +1,4 @@
-// Every key of the table of keys with a second valid value, on scenes in which it applies: for tests of what a key
-// changes.
+// Every key of the table with a second valid value, on scenes in which it applies: for tests of what a key changes.
 #pragma once
 
 #include "scene/input/fields.h"
@@ -13,7 +12,7 @@
 
 namespace touchstone::test {
 
-/// Two scenes that differ in one key's value alone; a choice of shape or law brings its own keys with it.
+/// Two scenes that differ in one key's value alone; a choice of shape or law implies its own keys.
 struct KeyChange {
   std::string key;  ///< as in the scene reference: "body.inclusion[].center_m"
   scene::Side side;
@@ -21,7 +20,7 @@ struct KeyChange {
   scene::Scene after;
 };
 
-/// A text to change, for keys whose second value cannot be derived from the first.
+/// A change of the text, for keys whose second value cannot be derived from the first.
 struct TextChange {
   std::string key, from, to;
 };
@@ -91,7 +90,7 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-/// Scenes in which, together, every key applies.
+/// Scenes that together use every key.
 inline std::vector<std::string> scenes_of_all_keys() {
   const std::size_t inclusions = first_scene.find("[[body.inclusion]]"), tool = first_scene.find("[tool]");
   const std::string plain = replaced(first_scene, first_scene.substr(inclusions, tool - inclusions), "");
@@ -183,7 +182,7 @@ inline std::vector<KeyChange> every_key_changed() {
         changes.push_back({key, field.side, before, scene::parse_scene(replaced(text, one.from, one.to), file)});
       }
       if (by_text || !scene::applies(field, object) || key == "body.support") return;
-      // An absent value has none to derive from; another of the scenes has one.
+      // An absent value cannot be changed; another of the scenes has one.
       if (scene::value_text(field, object).empty() || scene::value_text(field, object) == "[]") return;
       const std::string value = scene::value_text(field, with_another_value(field, object));
       changes.push_back(

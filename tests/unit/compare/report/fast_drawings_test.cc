@@ -46,7 +46,7 @@ scene::RegionRecord region(int id, double depth_m, const Vec3& force_n, bool sli
   return out;
 }
 
-/// The ball pressed on the cube, one instant per letter: '.' apart, 's' stuck, 'S' sliding.
+/// The ball pressed on the cube, one instant per letter: '.' no contact, 's' sticking, 'S' slipping.
 testing::Sides with_friction(const std::string& letters) {
   testing::Sides sides = testing::pressed(static_cast<int>(letters.size()), 200);
   sides.scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
@@ -60,7 +60,7 @@ testing::Sides with_friction(const std::string& letters) {
   return sides;
 }
 
-/// The same with as many regions as the digits say.
+/// The same with the number of regions given by the digits.
 testing::Sides with_regions(const std::string& digits) {
   testing::Sides sides = testing::pressed(static_cast<int>(digits.size()), 200);
   for (std::size_t t = 0; t < digits.size(); ++t) {
@@ -117,7 +117,7 @@ TEST(FastDrawings, SpansSayOfEveryInstantWhetherItSlides) {
   ASSERT_EQ(spans.size(), 5u);
   for (std::size_t i = 1; i < 4; ++i) EXPECT_DOUBLE_EQ(spans[i - 1].to, spans[i].from);
   EXPECT_DOUBLE_EQ(spans.back().to, sides.run.instants.back().time_s);
-  // Grey print tells them apart.
+  // They differ in a grey print.
   EXPECT_GT(spans[1].shade, 2.0 * spans[0].shade);
 }
 
@@ -157,7 +157,7 @@ TEST(FastDrawings, FollowThePathAlongTheAxisTheToolTravels) {
   EXPECT_NE(svg_of(force_drawings(sides.scene, sides.run), "path").find(">y of the tool [mm]</text>"),
             std::string::npos);
   EXPECT_THAT(instants_shown(sides.run), ElementsAre(4u, 2u, 0u));
-  // On the way down it is no travel.
+  // While the depth grows this is no lateral motion.
   for (std::size_t t = 0; t < 4; ++t) sides.run.instants[t].depth_m = 0.0017;
   EXPECT_EQ(svg_of(force_drawings(sides.scene, sides.run), "path"), "");
   EXPECT_THAT(instants_shown(sides.run), ElementsAre(4u));
@@ -183,7 +183,7 @@ TEST(FastDrawings, HaveACurvePerRegion) {
 
 TEST(FastDrawings, ShowEachStageOfSeveralRegions) {
   testing::Sides sides = with_regions("0112222100");
-  // The two are even at the fifth instant, although the record is deeper later.
+  // The two are equal at the fifth instant, although the depth is larger later.
   sides.run.instants[4].regions[0].depth_m = sides.run.instants[4].regions[1].depth_m = 0.0012;
   EXPECT_THAT(instants_shown(sides.run), ElementsAre(2u, 4u, 7u));
   EXPECT_EQ(count(svg_of(shape_drawings(sides.scene, sides.run), "section"), "<g transform=\"translate("), 3u + 3u * 3u)
@@ -245,7 +245,7 @@ TEST(FastDrawings, DrawTheDentAsDeepAsItIs) {
   testing::Sides sides = testing::pressed(3, 600);
   Eigen::Matrix3Xd& displacement_m = sides.run.instants[2].displacement_m;
   displacement_m.setZero();
-  // A trough to one side; the bottom moves too, but is not the upper side.
+  // A trough on one side; the bottom moves too, but is not the upper side.
   for (Eigen::Index i = 0; i < displacement_m.cols(); ++i) {
     if (sides.run.surface.points_m(0, i) < -0.001) displacement_m(2, i) = -0.003;
   }

@@ -26,7 +26,7 @@ std::string content_of(const std::filesystem::path& path) {
   return out.str();
 }
 
-/// Files the folder holds of this ending, without it.
+/// Names of the folder's files with this extension, without it.
 std::set<std::string> files(const std::filesystem::path& folder, const std::string& ending) {
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -59,7 +59,7 @@ TEST_P(FastReportOfAShippedScene, IsWholeAndHasWhatTheSceneHas) {
   EXPECT_TRUE(has(html, GetParam().formulation == scene::Formulation::published ? "published formulation"
                                                                                 : "corrected formulation"));
   for (const scene::Figure& figure : fast::figures(run)) EXPECT_TRUE(has(html, figure.key)) << figure.key;
-  // No figure goes without its meaning.
+  // No figure is without its meaning.
   EXPECT_FALSE(has(html, "<td><br/>"));
 
   std::set<std::string> expected = {"force", "depth", "area", "section", "contact", "dent", "view"};

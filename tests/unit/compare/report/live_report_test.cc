@@ -1,4 +1,4 @@
-// The page of a live run: numbers first, faults in words, a histogram per duration.
+// The page of a live run: numbers first, a sentence for every fault, a histogram per duration.
 #include "compare/report/live_report.h"
 
 #include "support/synthetic.h"
@@ -27,8 +27,8 @@ scene::Scene ball() {
   return scene;
 }
 
-/// 2000 ticks at 1 kHz, a force that rises to 3 N at 1 s and falls again; a lateness of 40 us, but 0.9 ms once. The
-/// ledger knows a percentile to 1 %, a maximum exactly.
+/// 2000 ticks at 1 kHz, a force that rises to 3 N at 1 s and falls again; a lateness of 40 us, once 0.9 ms. The ledger
+/// has percentiles to 1 % and exact maxima.
 live::LiveResult two_seconds() {
   live::LiveResult result;
   result.rate_hz = 1000;
@@ -84,7 +84,7 @@ TEST(LiveReport, TheForceIsDrawnOverTimeWithItsLimit) {
   EXPECT_THAT(page, HasSubstr("<title>sent to the device | time [s]: 1.002; force [N]: 3</title>"));
   EXPECT_THAT(page, HasSubstr(">limit</text>"));
   EXPECT_THAT(page, Not(HasSubstr(">of the model</text>")));
-  // Where the limits cut it off, the model's stands beside it.
+  // Where a limit applied, the model's force is drawn, too.
   live::TickRecord record;
   record.sequence = record.tick.index = 2000;
   record.model.force_n.z() = 9.0;

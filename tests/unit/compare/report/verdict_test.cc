@@ -66,7 +66,7 @@ TEST(Verdict, SaysHowWrongTheForceIsAndWhy) {
   EXPECT_TRUE(says(text, "The reference took 5.32 min for 23 instants on 3 meshes")) << text;
 }
 
-/// Both sides with the fast model's force off by a constant factor.
+/// Both sides with the fast model's force multiplied by a factor.
 testing::Sides with_force_times(double factor) {
   testing::Sides sides = testing::pressed(5, 200);
   for (std::size_t t = 0; t < 5; ++t) {

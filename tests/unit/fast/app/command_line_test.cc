@@ -1,4 +1,4 @@
-// What a user sees of every verb that writes results: exit codes, one clear message, nothing half-written.
+// Every command that writes results, as a user sees it: exit codes, one clear message, no partial files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -59,7 +59,7 @@ class Verb : public testing::TestWithParam<std::string> {
   }
   void TearDown() override { std::filesystem::remove_all(dir_); }
 
-  /// The shipped scene with one text replaced, in a file of its own.
+  /// The shipped scene with one text replaced, in a new file.
   std::string edited(const std::string& from, const std::string& to) {
     std::ifstream in(scene);
     std::stringstream text;
@@ -220,7 +220,7 @@ TEST(FastVerb, AFullDiskIsOneMessageAndTheNextRunGoesOn) {
     const std::filesystem::path out = std::filesystem::path(testing::TempDir()) / "fast-verb-full";
     std::filesystem::remove_all(out);
     const std::string command = verb + " " + scene + " --quiet --out " + out.string();
-    // Files of more than 4 KiB do not fit.
+    // Files of more than 4 KiB cannot be written.
     const Answer full = run("trap '' XFSZ; ulimit -f 8; " + command);
     EXPECT_EQ(full.exit_code, 2) << full.output;
     EXPECT_THAT(full.output, HasSubstr("cannot write: File too large [" + out.string()));
@@ -235,7 +235,7 @@ TEST(FastVerb, AFullDiskIsOneMessageAndTheNextRunGoesOn) {
   }
 }
 
-/// The executable that solves references, or nothing in a build without.
+/// The executable that solves references, or nothing in a build without it.
 std::string full_program() {
   for (const std::string& verb : verbs()) {
     if (verb.ends_with(" compare")) return verb.substr(0, verb.rfind(' '));
@@ -338,7 +338,7 @@ TEST(Help, WithoutArgumentsIsTheOverview) {
   }
 }
 
-/// The verbs and the verbs below them, as the help lists them.
+/// All commands and subcommands, as the help lists them.
 std::vector<std::string> all_verbs(const std::string& program) {
   std::vector<std::string> list;
   std::istringstream in(run(program).output);
@@ -398,7 +398,7 @@ TEST(Misspelt, AFileThatIsNotThereGetsTheNearestInItsFolder) {
                 HasSubstr("; there is no folder " + folder + "sceens"));
     EXPECT_THAT(run(program + " plan " + folder + "scenes/quite-another.toml").output,
                 HasSubstr("expected a TOML file of at most 4 MiB\n"));
-    // Another ending.
+    // Another extension.
     EXPECT_THAT(run(program + " plan " + folder + "scenes/hertz-sphere.tml").output,
                 HasSubstr("; did you mean \"" + folder + "scenes/hertz-sphere.toml\"?"));
   }
@@ -431,7 +431,7 @@ TEST(WrongFile, IsCalledWhatItIsWithTheVerbThatTakesIt) {
                                   source + "/tests/gates");
 }
 
-/// What bash would offer for the last of the words, with the program's script.
+/// The words that bash offers in place of the last word, with the program's script.
 std::set<std::string> offered(const std::string& program, const std::vector<std::string>& words,
                               const std::string& folder = "/") {
   const std::string name = std::filesystem::path(program).filename();
@@ -580,7 +580,7 @@ TEST(StudyVerb, TwoWorkersOverTheSameIndicesLeaveOneTable) {
   std::filesystem::remove_all(dir);
 }
 
-/// The program of a verb, with its path.
+/// The program that has a command, with its path.
 std::string program_of(const std::string& ending) {
   for (const std::string& verb : verbs()) {
     if (verb.ends_with(ending)) return verb.substr(0, verb.rfind(' '));

@@ -1,4 +1,4 @@
-// What ends a program: every failure is one message and an exit code.
+// Ways in which a program ends: every failure is one message and an exit code.
 #include "fast/command/command_line.h"
 #include "fast/command/stop_signals.h"
 #include "scene/base/error.h"
@@ -88,7 +88,7 @@ TEST(StopSignals, AreARequestWhileItLives) {
     };
     EXPECT_EXIT(twice(), testing::KilledBySignal(signal), "");
   }
-  // Started by nohup.
+  // As when started by nohup.
   std::signal(SIGHUP, SIG_IGN);
   const StopSignals signals(StopSignals::Again::nothing);
   std::raise(SIGHUP);

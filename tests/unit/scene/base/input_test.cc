@@ -1,4 +1,4 @@
-// What comes in: files that are no files, texts that would escape, faults by the thousand.
+// Input: files that are no regular files, texts with control characters, thousands of faults.
 #include "scene/base/input.h"
 
 #include "scene/base/error.h"
@@ -40,7 +40,7 @@ std::string row(const std::string& time_s, const std::string& rest = "position_m
 }
 const std::string good = body + ball + law + row("0.0") + row("1.0");
 
-/// What a scene is refused with, in at most two seconds.
+/// The message with which a scene is refused, in at most two seconds.
 std::string refusal(const std::string& text, const std::filesystem::path& file = "a.toml",
                     const std::vector<std::string>& overrides = {}) {
   const std::clock_t begin = std::clock();  // of the processor: the machine may be busy
@@ -82,7 +82,7 @@ TEST_F(InputFile, IsRefusedUnlessOrdinary) {
   const std::string expected = "; expected a TOML file of at most 4 MiB";
   EXPECT_EQ(fault(folder_), "it is a folder" + expected);
   EXPECT_EQ(fault(""), "there is no such file" + expected);
-  // A pipe that nobody writes to: waiting for it would hang.
+  // A pipe without a writer: waiting for it would hang.
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   EXPECT_EQ(fault(folder_ / "pipe"), "it is a pipe" + expected);
   EXPECT_EQ(fault("/dev/zero"), "it is a device" + expected);

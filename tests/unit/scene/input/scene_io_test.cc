@@ -70,7 +70,7 @@ TEST(SceneFile, LengthsWithoutAValueFollowTheBodysSize) {
   EXPECT_EQ(cube.r_R_m, 0.015);
   EXPECT_EQ(cube.C_r_m, 0.002);
   EXPECT_EQ(cube.s_c_m2, 0.001);
-  // A body of eight times the volume is twice the size.
+  // A body of eight times the volume is twice as large.
   const std::vector<std::string> slab = {"body.size_m=[0.12, 0.12, 0.12]", "track[0].position_m=[0, 0, 0.1305]",
                                          "track[1].position_m=[0, 0, 0.125]"};
   const Scene larger = parse_scene(good, "a.toml", slab);
@@ -79,7 +79,7 @@ TEST(SceneFile, LengthsWithoutAValueFollowTheBodysSize) {
   EXPECT_EQ(larger.fast.C_r_m, 0.004);
   EXPECT_EQ(larger.fast.s_c_m2, 0.004);
   EXPECT_EQ(scene_hash(parse_scene(resolved_toml(larger), "a.toml")), scene_hash(larger));
-  // What is given stays, and the others follow the body all the same.
+  // Given values stay, and the others still follow the body.
   std::vector<std::string> given = slab;
   given.push_back("contact.r_th_m=0.005");
   EXPECT_EQ(parse_scene(good, "a.toml", given).contact.r_th_m, 0.005);
@@ -153,7 +153,7 @@ TEST(SceneFile, AFormerNameIsRefusedWithItsNewName) {
   EXPECT_EQ(message_for("[tool]", "[fast]\nr_th_m = 0.004\n[tool]"), "a.toml:8:1: " + message);
   EXPECT_EQ(message_for("[tool]", "[fast]\nC_n = 0.1\nr_th_m = \"wide\"\n[tool]"), "a.toml:9:1: " + message);
   EXPECT_EQ(message_for("[tool]", "[tool]", {"fast.r_th_m=0.004"}), "--set fast.r_th_m=0.004: " + message);
-  // Every new name is a key, and no former one.
+  // Every new name is a key, and no earlier one.
   EXPECT_EQ(message_for("[tool]", "[tool]", {"contact.r_th_m=0.004"}), "no error");
   EXPECT_EQ(former_name_message("contact.r_th_m"), "");
 }
@@ -251,7 +251,7 @@ TEST(Fields, EveryDefaultIsInItsOwnRange) {
   for (const auto& field : scene_fields()) {
     EXPECT_TRUE(keys.insert(field.key).second) << field.key;
     EXPECT_FALSE(field.doc.empty()) << field.key;
-    // A unit is part of the key's name, so that a file cannot be misread. The unit of K hangs on beta.
+    // A unit is part of the key's name, so that a file cannot be misread. The unit of K depends on beta.
     if (field.key == "contact.friction.K") continue;
     EXPECT_TRUE(field.unit.empty() || field.key.find('_') != std::string_view::npos) << field.key;
   }
@@ -276,7 +276,7 @@ TEST(Fields, WhatMayBeTunedIsAConstantOrAChoiceOfTheFastModel) {
   }
   EXPECT_EQ(tunable_field("contact.r_th_m"), nullptr);
   EXPECT_EQ(tunable_field(""), nullptr);
-  // Taking these over makes a stored reference stale; reports/tuning.md and every file with them say so.
+  // Using these values makes a stored reference stale; reports/tuning.md and every file with them say so.
   EXPECT_THAT(shared, testing::ElementsAre("contact.friction.K", "contact.friction.beta", "contact.friction.mu_D"));
 }
 
@@ -320,7 +320,7 @@ TEST_F(IncludeTest, GivesWhatTheSceneDoesNotSay) {
   const Scene alone = parse_scene(good, "a.toml");
   ASSERT_NE(alone.fast.s_c_m2, 0.5);
   EXPECT_EQ(read().fast.s_c_m2, 0.5);
-  // The scene's own value wins, and --set over both.
+  // The scene's own value has precedence, and --set over both.
   EXPECT_EQ(read().contact.k1_n_per_m, alone.contact.k1_n_per_m);
   EXPECT_EQ(
       parse_scene("include = \"parameters.toml\"\n" + good, dir_ / "scene.toml", {"fast.s_c_m2=0.25"}).fast.s_c_m2,
@@ -342,7 +342,7 @@ TEST_F(IncludeTest, TellsAFaultInTheFileItStandsIn) {
 }
 
 TEST(ShippedScenes, GiveTheLengthsThatHaveNoFixedDefault) {
-  // So no default can move what was published of them, nor the keys of their stored references.
+  // So no default can change published figures, nor the keys of stored references.
   const std::string folder = source_folder();
   for (const char* place : {"/meshes/scenes", "/tests/gates/scenes"}) {
     for (const auto& entry : std::filesystem::directory_iterator(folder + place)) {

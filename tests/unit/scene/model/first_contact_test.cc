@@ -1,4 +1,4 @@
-// Where a tool first meets the body along a line, and what a track that gives depths comes to.
+// First contact of a tool with the body along a line, and the poses of a track that gives depths.
 #include "scene/model/first_contact.h"
 
 #include "scene/input/scene_io.h"
@@ -62,9 +62,9 @@ Pose at(const Vec3& position_m, const Eigen::Quaterniond& turned = Eigen::Quater
 TEST(FirstContact, OfABallIsExactOnAFaceAnEdgeAndFromTheSide) {
   const Tool ball = tool_of(ToolShape::sphere, 0.01);
   EXPECT_NEAR(first_contact_m(cube, ball, at(Vec3(0.01, 0.02, 0.1)), down).value(), 0.03, 1e-15);
-  // The length of the direction means nothing; past first contact the way is negative.
+  // The length of the direction has no effect; beyond first contact the distance is negative.
   EXPECT_NEAR(first_contact_m(cube, ball, at(Vec3(0, 0, 0.065)), 7.0 * down).value(), -0.005, 1e-15);
-  // Its centre 6 mm beyond the edge, it rests on the edge 8 mm above the top.
+  // With its centre 6 mm beyond the edge, the ball rests on the edge 8 mm above the top.
   EXPECT_NEAR(first_contact_m(cube, ball, at(Vec3(0.036, 0, 0.1)), down).value(), 0.1 - 0.068, 1e-12);
   EXPECT_NEAR(first_contact_m(cube, ball, at(Vec3(-0.5, 0, 0.03)), Vec3::UnitX()).value(), 0.46, 1e-15);
   const Vec3 slant(1.0, 0.0, -1.0);
@@ -74,16 +74,16 @@ TEST(FirstContact, OfABallIsExactOnAFaceAnEdgeAndFromTheSide) {
 }
 
 TEST(FirstContact, OfAMeshNeedNotBeAtACorner) {
-  // A plate of two triangles a side comes down on a slim body: the middle of a triangle meets it first.
+  // A plate of two triangles per side is lowered onto a slim body: the middle of a triangle touches first.
   const Box plate(Vec3::Zero(), Vec3(0.2, 0.2, 0.002));
   const Box slim(Vec3(0, 0, 0.02), Vec3(0.01, 0.01, 0.04));
   const Tool tool = mesh_tool({{&plate, 12}});
   EXPECT_NEAR(first_contact_m(slim, tool, at(Vec3(0.03, 0.01, 0.5)), down).value(), 0.459, 1e-11);
   const Eigen::Quaterniond tilted(Eigen::AngleAxisd(0.2, Vec3::UnitY()));
-  // Tilted, the plate meets a corner of the body: its lower face z = -t / cos - x tan in the plate's middle plane.
+  // Tilted, the plate touches a corner of the body: its lower face z = -t / cos - x tan in the plate's middle plane.
   const double touch_z_m = 0.04 + 0.001 / std::cos(0.2) + 0.005 * std::tan(0.2);
   EXPECT_NEAR(first_contact_m(slim, tool, at(Vec3(0, 0, 0.5), tilted), down).value(), 0.5 - touch_z_m, 1e-10);
-  // Of two balls the lower one touches, though its middle stands beside the body.
+  // Of two balls the lower one touches, although its centre is beside the body.
   const Sphere high(Vec3(0, 0, 0.03), 0.005), low(Vec3(0.02, 0, 0), 0.005);
   const Tool pair = mesh_tool({{&high, 3200}, {&low, 3200}});
   EXPECT_NEAR(first_contact_m(slim, pair, at(Vec3(-0.02, 0, 0.5)), down).value(), 0.455, 1e-9);
@@ -166,7 +166,7 @@ TEST(TrackByDepth, IsTheSameSceneAsTheHeightsItComesTo) {
   const Scene by_height =
       parse_scene(head + track("position_m = [0.0, 0.0, 0.0705]", "position_m = [0.0, 0.0, 0.065]"), "a.toml");
   EXPECT_EQ(scene_hash(parse_scene(by_depth, "a.toml")), scene_hash(by_height));
-  // The lighter tool starts as far above and goes as deep.
+  // The smaller tool starts as far above and moves as deep.
   const Scene small = parse_scene(by_depth, "a.toml", {"tool.radius_m=0.004", "track[1].depth_m=0.002"});
   EXPECT_EQ(small.track[0].pose.position_m.z(), 0.0645);
   EXPECT_EQ(small.track[1].pose.position_m.z(), 0.062);
@@ -263,7 +263,7 @@ TEST(NoContact, SaysTheLeastGapAndWhen) {
   EXPECT_EQ(no_contact_warning(parse_scene(by_depth, "a.toml")), "");
   EXPECT_EQ(no_contact_warning(parse_scene(by_depth, "a.toml", {"track[1].depth_m=-0.0001"})),
             "the tool never touches the body on this track; the least gap is 0.1 mm, at 1 s, so every force is zero");
-  // It passes over the middle of a ball, nearest half way.
+  // It moves over the middle of a ball, closest half way.
   const std::string over =
       "[body]\nshape = \"sphere\"\nradius_m = 0.03\nsupport_height_m = 0.005\n[body.material]\n"
       "youngs_modulus_pa = 3.0e6\npoissons_ratio = 0.5\n" +
@@ -271,7 +271,7 @@ TEST(NoContact, SaysTheLeastGapAndWhen) {
   const Scene passes =
       parse_scene(over + track("position_m = [-0.05, 0.0, 0.072]", "position_m = [0.05, 0.0, 0.072]"), "a.toml");
   EXPECT_THAT(no_contact_warning(passes), HasSubstr("the least gap is 2 mm, at 0.5 s"));
-  // Between two recorded instants it touches.
+  // Between two recorded instants it is in contact.
   const Scene brief = parse_scene(over + track("position_m = [-0.05, 0.0, 0.069]", "position_m = [0.05, 0.0, 0.069]"),
                                   "a.toml", {"compare.instants=4"});
   EXPECT_THAT(no_contact_warning(brief),

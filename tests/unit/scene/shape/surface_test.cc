@@ -58,7 +58,7 @@ TEST(Tessellate, IsClosedAndTurnedOutward) {
 }
 
 TEST(Tessellate, VolumeAndAreaConvergeWithSecondOrder) {
-  // Vertices on a smooth surface: the chord error, and so area and volume, fall with h^2.
+  // Vertices on a smooth surface: the chord error, and so that of area and volume, decreases with h^2.
   std::vector<double> area_error, volume_error;
   for (int triangles : {8 * 64, 8 * 256, 8 * 1024}) {
     const Surface s = tessellate(sphere, triangles);
@@ -81,7 +81,7 @@ class EveryTessellation : public testing::TestWithParam<test::NamedShape> {};
 INSTANTIATE_TEST_SUITE_P(Shapes, EveryTessellation, testing::ValuesIn(test::every_shape()),
                          [](const auto& shape) { return shape.param.name; });
 
-/// Vertices at exactly the same place are one: borders of patches must coincide to the bit.
+/// Merges vertices at exactly the same place: borders of patches must coincide bitwise.
 std::vector<int> welded(const Surface& s, int& count) {
   std::map<std::array<double, 3>, int> first;
   std::vector<int> vertex;
@@ -103,7 +103,7 @@ TEST_P(EveryTessellation, IsOneClosedSurfaceWithoutCracksOrHandles) {
       for (std::size_t k = 0; k < 3; ++k) {
         const int a = vertex[static_cast<std::size_t>(t[k])], b = vertex[static_cast<std::size_t>(t[(k + 1) % 3])];
         EXPECT_NE(a, b);
-        // Every edge once in either direction.
+        // Every edge occurs once in each direction.
         EXPECT_EQ(++uses[std::make_pair(a, b)], 1);
       }
     }
@@ -139,7 +139,7 @@ TEST_P(EveryTessellation, VerticesLieOnTheirPatchWithItsNormal) {
       const Vec3 p = s.points_m.col(i), n = s.normals.col(i);
       EXPECT_NEAR(shape.signed_distance_m(p), 0.0, 1e-16);
       EXPECT_NEAR(n.norm(), 1.0, 1e-15);
-      // Straight out along the patch's own normal the surface falls away: the vertex stays the closest point.
+      // Outwards along the patch's own normal the vertex remains the closest point.
       EXPECT_NEAR(shape.signed_distance_m(p + 1e-3 * n), 1e-3, 1e-15);
     }
   }
@@ -172,13 +172,13 @@ TEST_P(EveryTessellation, AreaAndVolumeConvergeToTheShapes) {
   for (const auto& error : {area_error, volume_error}) {
     EXPECT_GT(error[2], 0.0);
     EXPECT_LT(error[0], 2e-2);
-    // Fourfold triangles, a quarter of the error; ring counts are whole numbers, so over both steps.
+    // Four times the triangles, a quarter of the error; ring counts are whole numbers, so over both steps.
     EXPECT_NEAR(0.5 * std::log2(error[0] / error[2]), 2.0, 0.2);
   }
 }
 
 TEST_P(EveryTessellation, IsFourfoldSymmetric) {
-  // A quarter turn about the shape's axis carries vertices onto vertices, where the shape has that symmetry.
+  // A quarter turn about the shape's axis maps vertices to vertices, if the shape has that symmetry.
   const auto* shape = dynamic_cast<const Revolution*>(GetParam().shape.get());
   if (!shape) return;
   const Surface s = tessellate(*shape, 1000);
@@ -201,7 +201,7 @@ TEST(SurfaceOf, DrawsAnyTool) {
   const Surface flat = tool_surface(tool, 8);
   EXPECT_EQ(flat.triangle_count(), ball.triangle_count());
   EXPECT_NEAR(signed_volume_m3(flat), signed_volume_m3(ball), 1e-18);
-  // The mass centre of the ball stands at the origin.
+  // The mass centre of the ball is at the origin.
   EXPECT_LT(flat.points_m.rowwise().mean().norm(), 1e-15);
   for (const auto& [a, b, c] : flat.triangles) {
     const Vec3 pa = flat.points_m.col(a);
