@@ -97,7 +97,7 @@ int gate(const GateOptions& options, const std::string& command) {
 
 void add_gate_verb(fast::Command& program, GateOptions& options) {
   fast::Command verb = program.add("gate", "accuracy gates; exit 1 when one is red");
-  verb.option("NAME", options.names, "gates to hold, FILE or FILE.GATE (default all)");
+  verb.option("NAME", options.names, "gates to check, FILE or FILE.GATE (default all)");
   verb.option("--gates", options.folder, "folder of the gate files").shows_default();
   verb.option("--out", options.out, "result folder").shows_default();
   verb.option("--junit", options.junit, "also write JUnit's XML to this file");
@@ -106,11 +106,11 @@ void add_gate_verb(fast::Command& program, GateOptions& options) {
   verb.prints("--keys", gate_reference_markdown, "print every key of a gate file as Markdown tables");
   verb.flag("--quiet", options.quiet, "no progress, only results and errors");
   const fast::Option prove =
-      verb.flag("--prove", options.prove, "apply every gate's own change too; exit 1 unless it turns the gate red");
+      verb.flag("--prove", options.prove, "also apply every gate's own change; exit 1 unless it turns the gate red");
   const fast::Option regenerate =
-      verb.flag("--regenerate", options.regenerate, "solve the reference data of the gates named, and write it");
+      verb.flag("--regenerate", options.regenerate, "solve the reference data of the named gates, and write it");
   const fast::Option accept =
-      verb.flag("--accept", options.accept, "write the values of the drift gates named as the accepted ones");
+      verb.flag("--accept", options.accept, "write the values of the named drift gates as accepted");
   regenerate.excludes(prove).excludes(accept);
   accept.excludes(prove);
   verb.option("--store", options.reference.store, "for --regenerate: content-addressed reference results")

@@ -82,8 +82,8 @@ std::string conclusion(const std::vector<ProblemRecord>& records) {
 }
 
 constexpr const char* legend =
-    "error: value over target - 1, or absolute where the target is 0. mesh +-: what the finest mesh may be off by, "
-    "from the last three, each of half the cell size of the one before. order: of their differences; absent where they "
+    "error: value over target - 1, or absolute where the target is 0. mesh +-: the uncertainty of the finest mesh, "
+    "from the last three, whose cell sizes halve. order: of their differences; absent where they "
     "change sign, as a contact force's do when the contact's edge moves by whole nodes.";
 
 /// Makes "nu = 0.3, force" a part of a key: "nu_0.3_force".
@@ -225,7 +225,7 @@ void add_verify_verb(fast::Command& program, VerifyOptions& options) {
   fast::Command verb =
       program.add("verify", "the reference against closed forms and published benchmarks; exit 1 on a miss");
   verb.option("NAME", options.names, "problems to run (default all)");
-  verb.flag("--quick", options.quick, "about a minute: one mesh fewer, and the dearest cases left out");
+  verb.flag("--quick", options.quick, "about a minute: one mesh fewer, without the most expensive cases");
   verb.flag("--list", options.list, "names and sources of the problems, nothing is run");
   verb.option("--out", options.out, "result folder").shows_default();
   verb.flag("--quiet", options.quiet, "no progress, only results and errors");

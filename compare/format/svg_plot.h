@@ -1,4 +1,4 @@
-// Line plots as SVG text, for a page that must open anywhere: no library, no display, no script.
+// Line plots as SVG text, for a page without any library, display or script.
 // Text and axes take the page's text colour; every marker shows its numbers when pointed at.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace touchstone::compare {
 
-/// Who a curve belongs to; fixes colour and dash so that a side looks the same in every figure and in grey print. The
+/// What a curve shows; fixes colour and dash so that a side looks the same in every figure and in grey print. The
 /// last three distinguish curves of one solver.
 enum class Look { reference, fast, plain, outline, inclusion, first, second, third };
 
@@ -49,7 +49,7 @@ struct Span {
   double shade = 0.1;  ///< 0 to 1, of the text's colour
 };
 
-/// A name beside a point, where there is room for it.
+/// A name beside a point, at a free place.
 struct PointName {
   std::string name;
   double x = 0.0, y = 0.0;

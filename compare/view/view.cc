@@ -514,7 +514,7 @@ bool ResultView::can_write(const std::filesystem::path& file) { return format_of
 
 void ResultView::write_picture(const std::filesystem::path& file) {
   const std::optional<PictureFormat> format = format_of(file);
-  if (!format) throw scene::InputError({{file.string(), 0, 0, "unknown ending; expected .png, .jpg or .jpeg"}});
+  if (!format) throw scene::InputError({{file.string(), 0, 0, "unknown extension; expected .png, .jpg or .jpeg"}});
   parts_->window->SetOffScreenRendering(1);
   parts_->window->Render();
   vtkNew<vtkWindowToImageFilter> image;

@@ -448,7 +448,7 @@ class Viewer {
   /** Five numbers along the colour bar, and what they are. */
   barText(colour) {
     const full = this.fullScale[colour] * millimetres;
-    const more = this.clipped[colour] ? '; the last colour also stands for more' : '';
+    const more = this.clipped[colour] ? '; larger values have the last colour' : '';
     return {
       name: `${this.data.meanings[colour]} [mm]${more}`,
       numbers: [0, 1, 2, 3, 4].map((i) => String(Number(((full * i) / 4).toPrecision(3)))),

@@ -49,7 +49,7 @@ Command add_verb(Command& program, const std::string& name, const std::string& w
 
 namespace {
 
-constexpr const char* no_memory = "the memory does not suffice; expected more of it, or a smaller scene";
+constexpr const char* no_memory = "not enough memory; expected more memory, or a smaller scene";
 
 /// The text in one line; the messages of libraries may have several.
 std::string in_one_line(const std::string& text) {

@@ -40,7 +40,7 @@ TEST(Picture, AndItsScaleSurviveAFastModelGoneWild) {
   testing::Sides sides = testing::pressed(3, 600);
   sides.run.instants[2].displacement_m *= 0.5;
   const std::string before = half_cuts(sides, 2);
-  EXPECT_EQ(before.find("last colour also stands for more"), std::string::npos);
+  EXPECT_EQ(before.find("larger values have the last colour"), std::string::npos);
   sides.run.instants[2].displacement_m *= 50.0;
   // Non-finite positions on the cut and off it.
   Eigen::Index on_cut = 0;
@@ -50,7 +50,7 @@ TEST(Picture, AndItsScaleSurviveAFastModelGoneWild) {
   const std::string svg = half_cuts(sides, 2);
   EXPECT_TRUE(testing::is_well_formed(svg));
   EXPECT_FALSE(testing::shows_not_a_number(svg));
-  EXPECT_NE(svg.find("last colour also stands for more"), std::string::npos);
+  EXPECT_NE(svg.find("larger values have the last colour"), std::string::npos);
   // The reference's panel is unchanged: its own displacement determines the scale.
   const std::size_t panel = svg.find("<g stroke-width"), end = svg.find("</g>", panel);
   EXPECT_EQ(svg.substr(panel, end - panel), before.substr(panel, end - panel));

@@ -220,7 +220,7 @@ TEST_F(ViewTest, RefusesAPictureOfAnotherEndingBeforeAnyWork) {
     const Ended refused =
         run(std::string(TOUCHSTONE_BINARY) + " view /no/such/result --screenshot " + (folder_.path() / name).string());
     EXPECT_EQ(refused.code, 2);
-    EXPECT_THAT(refused.text, HasSubstr(std::string(name) + ": unknown ending; expected .png, .jpg or .jpeg"));
+    EXPECT_THAT(refused.text, HasSubstr(std::string(name) + ": unknown extension; expected .png, .jpg or .jpeg"));
   }
 }
 
