@@ -219,7 +219,7 @@ class Reader : TomlReader {
       if (!complete) {
         const toml::node* node = document_.get("law");
         add(node != nullptr ? *node : document_, std::string("law: the scenes have no linear constant for \"") +
-                                                     (law == ContactLaw::duffing ? "duffing" : "area_aware") +
+                                                     std::string(name_of(law).word) +
                                                      "\"; expected a [[parameter]] with it");
       }
     }

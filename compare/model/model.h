@@ -19,7 +19,7 @@ namespace touchstone::compare {
 /// Models of a family have one colour in the plots.
 enum class ModelFamily {
   paper,       ///< the paper's skeleton with its own law
-  area_aware,  ///< the same skeleton with the area-aware law
+  area_aware,  ///< the same skeleton with another law
   compliance,  ///< precomputed linear compliance with a contact solve
   peer,        ///< another simulator's deformable body
   reference,   ///< the reference's levels

@@ -129,8 +129,8 @@ scene::Plan plan(const scene::Scene& scene) {
     leaves_out("several regions", one_region_text(scene.tool));
   }
   models("contact force",
-         std::string(scene.contact.law == scene::ContactLaw::duffing ? "Duffing law" : "area-aware law") +
-             " along the direction of deformation, masses " + printed + ", torque about the tool's mass centre",
+         std::string(scene::name_of(scene.contact.law).title) + " law along the direction of deformation, masses " +
+             printed + ", torque about the tool's mass centre",
          measured.cost({Stage::force}));
   if (model.friction) {
     models("friction",

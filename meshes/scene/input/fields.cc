@@ -53,6 +53,12 @@ std::vector<Field<T>> solid_fields(const std::array<std::string_view, 6>& keys, 
 /// Three digits are accurate enough for a default and easier to read.
 double three_digits(double value) { return rounded(value, 3); }
 
+std::vector<std::string_view> law_words() {
+  std::vector<std::string_view> words;
+  for (const LawName& law : contact_law_names) words.push_back(law.word);
+  return words;
+}
+
 Solid& solid_of(Scene& scene) { return scene.body; }
 Solid& solid_of(Inclusion& inclusion) { return inclusion; }
 
@@ -108,7 +114,7 @@ std::vector<Field<Scene>> make_scene_fields() {
       {"tool.mass_center_m", "m", between(-10.0, 10.0), absent, both, +[](S& s) -> std::optional<Vec3>& { return s.tool.mass_center_m; }, always,
            "Mass centre, from the shape's centre or in the mesh's own axes; a track gives its poses. Absent: that of a uniform solid."},
 
-      {"contact.law", "", any, "\"duffing\"", fast, choice({"duffing", "area_aware"}, +[](S& s) -> ContactLaw& { return s.contact.law; }), always,
+      {"contact.law", "", any, "\"duffing\"", fast, choice(law_words(), +[](S& s) -> ContactLaw& { return s.contact.law; }), always,
            "Contact law of the fast model.", model},
       {"contact.k1_n_per_m", "N/m", between(0.0, 1e12), required, fast, +[](S& s) -> double& { return s.contact.k1_n_per_m; }, duffing,
            "Linear constant k1 = m w0^2 of F = k1 D + k3 D^3.", Tunable{.stage = TuningStage::force, .per_mass = PerMass{"contact.omega0_squared_per_s2", "1/s^2", 1.0}}},

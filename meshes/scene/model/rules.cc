@@ -74,8 +74,9 @@ void check_start(const Scene& scene, const Shape& body, std::vector<Violation>& 
 /// @param deepest_m  called only if needed
 void check_contact_law(const Scene& scene, const std::function<double()>& deepest_m, std::vector<Violation>& found) {
   const Contact& c = scene.contact;
-  const double k1 = c.law == ContactLaw::area_aware ? c.k1_per_radius_n_per_m2 : c.k1_n_per_m;
-  if (k1 == 0.0 && c.k3_n_per_m3 <= 0.0) {
+  const bool no_linear_term = (c.law == ContactLaw::duffing && c.k1_n_per_m == 0.0) ||
+                              (c.law == ContactLaw::area_aware && c.k1_per_radius_n_per_m2 == 0.0);
+  if (no_linear_term && c.k3_n_per_m3 <= 0.0) {
     found.push_back({"contact.k3_n_per_m3", "a law with k1 = 0 needs k3 > 0, or there is no force"});
   } else if (c.k3_n_per_m3 < 0.0 && c.law == ContactLaw::duffing) {
     // Errata E1: beyond D* = sqrt(k1 / (3 |k3|)) the softening law's force falls.
