@@ -42,15 +42,18 @@ TEST_P(EveryShape, PatchesOfOneFaceMeetSmoothly) {
     const int face = shape.face_of(patch), before = shape.face_of(patch - 1);
     EXPECT_TRUE(face == before || face == before + 1);
     if (face != before) continue;
-    // Some of their borders coincide.
+    // Some border coincides with that of an earlier patch of the face.
     double nearest = 2.0;
-    for (double u : {0.0, 1.0}) {
-      for (double v : {0.0, 1.0}) {
-        const SurfacePoint p = shape.at(patch, u, v);
-        for (double s : {0.0, 1.0}) {
-          for (double t : {0.0, 1.0}) {
-            const SurfacePoint q = shape.at(patch - 1, s, t);
-            if ((p.point_m - q.point_m).norm() < 1e-12) nearest = std::min(nearest, (p.normal - q.normal).norm());
+    for (int other = 0; other < patch; ++other) {
+      if (shape.face_of(other) != face) continue;
+      for (double u : {0.0, 1.0}) {
+        for (double v : {0.0, 1.0}) {
+          const SurfacePoint p = shape.at(patch, u, v);
+          for (double s : {0.0, 1.0}) {
+            for (double t : {0.0, 1.0}) {
+              const SurfacePoint q = shape.at(other, s, t);
+              if ((p.point_m - q.point_m).norm() < 1e-12) nearest = std::min(nearest, (p.normal - q.normal).norm());
+            }
           }
         }
       }
