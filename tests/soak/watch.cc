@@ -148,7 +148,7 @@ void Watch::check_reported(StepStatus status) {
       if (model_.skeleton.held[k] || !(D_m > 1e-12)) continue;
       ends_cut = ends_cut || unlimited_m(region.ends.beam[k], region.ends.force_n[k]) > D_m * (1.0 + 1e-3);
     }
-    check(Property::reported, region.points.count <= model_.max_points(), "more points than there is room for");
+    check(Property::reported, region.points.count <= model_.max_points(), "more points than the capacity");
   }
   check(Property::reported, state_.region_count <= model_.max_regions, "more regions than max_regions");
   check(Property::reported, !too_deep || has(status, StepStatus::depth_limited),

@@ -53,6 +53,12 @@ profile_rz_m = [[0.0, -0.004], [0.005, 0.0], [0.0, 0.004]]
 profile_arc_radius_m = [0.02, 0.03]
 center_m = [-0.012, 0.002, 0.04]
 material = { youngs_modulus_pa = 1.0e6, poissons_ratio = 0.4 }
+[[body.inclusion]]
+shape = "cylinder"
+radius_m = 0.003
+length_m = 0.006
+center_m = [0.0, -0.015, 0.03]
+material = { youngs_modulus_pa = 1.0e6, poissons_ratio = 0.4 }
 [tool]
 shape = "sphere"
 radius_m = 0.01
@@ -109,10 +115,11 @@ inline std::vector<std::string> scenes_of_all_keys() {
   capsule = replaced(capsule, ball, "shape = \"capsule\"\nradius_m = 0.004\nlength_m = 0.01\n");
   std::string block = replaced(plain, box, "shape = \"sphere\"\nradius_m = 0.03\nsupport_height_m = 0.005\n");
   block = replaced(block, ball, "shape = \"box\"\nsize_m = [0.01, 0.011, 0.012]\n");
+  const std::string cylinder = replaced(plain, box, "shape = \"cylinder\"\nradius_m = 0.03\nlength_m = 0.06\n");
   std::string mesh = replaced(plain, ball, "shape = \"mesh\"\nfile = \"compass.obj\"\nunit = \"mm\"\n");
   mesh = replaced(mesh, "[0.0, 0.0, 0.074]", "[0.0, 0.0, 2.0]");
   mesh = replaced(mesh, last, "position_m = [0.0, 0.0, 0.0]\n");
-  return {first_scene, round, capsule, block, mesh};
+  return {first_scene, round, capsule, block, cylinder, mesh};
 }
 
 inline const std::vector<TextChange>& text_changes() {

@@ -25,22 +25,43 @@ Choice<T> choice(std::vector<std::string_view> names, Enum& (*member)(T&)) {
 // One key per row is easier to read.
 // clang-format off
 
-/// The keys of a convex solid's dimensions, each valid for its shape only.
-/// @param keys  shape and the five dimensions, with the prefix of their table
+/// The words of BodyShape, then the named profiles, which are bodies of revolution.
 template <class T, Solid& (*solid)(T&)>
-std::vector<Field<T>> solid_fields(const std::array<std::string_view, 6>& keys, const std::array<std::string_view, 4>& conditions) {
+Choice<T> solid_choice() {
+  static constexpr int shapes = 4;
+  Choice<T> out{{"box", "sphere", "ellipsoid", "revolution"},
+                [](const T& t) {
+                  const Solid& s = solid(const_cast<T&>(t));
+                  const auto found = std::ranges::find(named_profiles(), s.named, &NamedProfile::name);
+                  return s.named.empty() ? static_cast<int>(s.shape) : shapes + static_cast<int>(found - named_profiles().begin());
+                },
+                [](T& t, int value) {
+                  solid(t).shape = value < shapes ? static_cast<BodyShape>(value) : BodyShape::revolution;
+                  solid(t).named = value < shapes ? std::string_view() : named_profiles()[static_cast<std::size_t>(value - shapes)].name;
+                }};
+  for (const NamedProfile& profile : named_profiles()) out.names.push_back(profile.name);
+  return out;
+}
+
+/// The keys of a convex solid's dimensions, each valid for its shapes only.
+/// @param keys  shape and the dimensions, with the prefix of their table
+template <class T, Solid& (*solid)(T&)>
+std::vector<Field<T>> solid_fields(const std::array<std::string_view, 7>& keys, const std::array<std::string_view, 5>& conditions) {
   const std::string_view shape = keys[0];
   const Condition<T> box{shape, conditions[0], [](const T& t) { return solid(const_cast<T&>(t)).shape == BodyShape::box; }},
-      sphere{shape, conditions[1], [](const T& t) { return solid(const_cast<T&>(t)).shape == BodyShape::sphere; }},
+      ball{shape, conditions[1], [](const T& t) { const Solid& s = solid(const_cast<T&>(t)); return s.shape == BodyShape::sphere || s.named == "cylinder"; }},
       ellipsoid{shape, conditions[2], [](const T& t) { return solid(const_cast<T&>(t)).shape == BodyShape::ellipsoid; }},
-      revolution{shape, conditions[3], [](const T& t) { return solid(const_cast<T&>(t)).shape == BodyShape::revolution; }};
+      revolution{shape, conditions[3], [](const T& t) { const Solid& s = solid(const_cast<T&>(t)); return s.shape == BodyShape::revolution && s.named.empty(); }},
+      cylinder{shape, conditions[4], [](const T& t) { return solid(const_cast<T&>(t)).named == "cylinder"; }};
   return {
-      {shape, "", Range{}, {}, Side::both, choice<BodyShape, T>({"box", "sphere", "ellipsoid", "revolution"}, +[](T& t) -> BodyShape& { return solid(t).shape; }), {},
+      {shape, "", Range{}, {}, Side::both, solid_choice<T, solid>(), {},
            "Shape of the elastic solid, convex; a body's lowest point is on z = 0, its centre on the z axis."},
       {keys[1], "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> Vec3& { return solid(t).size_m; }, box,
            "Edge lengths of the box along x, y, z."},
-      {keys[2], "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> double& { return solid(t).radius_m; }, sphere,
-           "Radius of the sphere."},
+      {keys[2], "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> double& { return solid(t).radius_m; }, ball,
+           "Radius of the sphere or cylinder."},
+      {keys[6], "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> double& { return solid(t).length_m; }, cylinder,
+           "Length of the cylinder along z, from end to end."},
       {keys[3], "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> Vec3& { return solid(t).semi_axes_m; }, ellipsoid,
            "Semi-axes of the ellipsoid along x, y, z."},
       {keys[4], "m", between(-10.0, 10.0), {}, Side::both, +[](T& t) -> std::vector<Eigen::Vector2d>& { return solid(t).profile.rz_m; }, revolution,
@@ -183,8 +204,8 @@ std::vector<Field<Scene>> make_scene_fields() {
            "Evenly spaced track instants at which both sides are recorded."},
   };
   const auto body = solid_fields<S, solid_of>(
-      {"body.shape", "body.size_m", "body.radius_m", "body.semi_axes_m", "body.profile_rz_m", "body.profile_arc_radius_m"},
-      {"body.shape = \"box\"", "body.shape = \"sphere\"", "body.shape = \"ellipsoid\"", "body.shape = \"revolution\""});
+      {"body.shape", "body.size_m", "body.radius_m", "body.semi_axes_m", "body.profile_rz_m", "body.profile_arc_radius_m", "body.length_m"},
+      {"body.shape = \"box\"", "body.shape = \"sphere\" or \"cylinder\"", "body.shape = \"ellipsoid\"", "body.shape = \"revolution\"", "body.shape = \"cylinder\""});
   fields.insert(fields.begin() + 1, body.begin(), body.end());
   return fields;
 }
@@ -192,8 +213,8 @@ std::vector<Field<Scene>> make_scene_fields() {
 std::vector<Field<Inclusion>> make_inclusion_fields() {
   using I = Inclusion;
   std::vector<Field<I>> fields = solid_fields<I, solid_of>(
-      {"shape", "size_m", "radius_m", "semi_axes_m", "profile_rz_m", "profile_arc_radius_m"},
-      {"shape = \"box\"", "shape = \"sphere\"", "shape = \"ellipsoid\"", "shape = \"revolution\""});
+      {"shape", "size_m", "radius_m", "semi_axes_m", "profile_rz_m", "profile_arc_radius_m", "length_m"},
+      {"shape = \"box\"", "shape = \"sphere\" or \"cylinder\"", "shape = \"ellipsoid\"", "shape = \"revolution\"", "shape = \"cylinder\""});
   fields.push_back({"center_m", "m", between(-10.0, 10.0), {}, Side::both, +[](I& i) -> Vec3& { return i.center_m; }, {},
        "Centre of the inclusion's bounding box in the body at rest."});
   fields.push_back({"material.youngs_modulus_pa", "Pa", above(0.0, 1e13), {}, Side::both, +[](I& i) -> double& { return i.material.youngs_modulus_pa; }, {},

@@ -62,7 +62,11 @@ class Reader {
     read_mesh(scene);
     const std::vector<TrackRow> rows = read_track();
     check_rows(rows);
-    if (faults_.empty()) report(broken_shapes(scene));
+    if (faults_.empty()) {
+      complete(scene.body);
+      for (Inclusion& inclusion : scene.body.inclusions) complete(inclusion);
+      report(broken_shapes(scene));
+    }
     if (faults_.empty()) fill_in_defaults(scene);
     if (faults_.empty()) place_tool(rows, scene);
     if (faults_.empty()) report(broken_rules(scene));

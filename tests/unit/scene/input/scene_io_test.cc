@@ -51,6 +51,23 @@ std::string message_for(const std::string& from, const std::string& to, const st
   return "no error";
 }
 
+TEST(SceneFile, ANamedShapeIsABodyOfRevolution) {
+  const std::string box = "shape = \"box\"\nsize_m = [0.06, 0.06, 0.06]";
+  std::string text = good;
+  text.replace(text.find(box), box.size(), "shape = \"cylinder\"\nradius_m = 0.03\nlength_m = 0.06");
+  const Scene s = parse_scene(text, "a.toml");
+  EXPECT_EQ(s.body.shape, BodyShape::revolution);
+  EXPECT_TRUE(s.body.flat_bottom());
+  const std::unique_ptr<const Shape> body = body_shape(s.body);
+  EXPECT_NEAR(body->volume_m3(), 3.141592653589793 * 0.03 * 0.03 * 0.06, 1e-15);
+  EXPECT_NEAR(body->bounds().lower_m.z(), 0.0, 1e-15);
+  const std::string resolved = resolved_toml(s);
+  EXPECT_THAT(resolved, AllOf(HasSubstr("shape = \"cylinder\""), HasSubstr("length_m = 0.06")));
+  EXPECT_EQ(scene_hash(parse_scene(resolved, "a.toml")), scene_hash(s));
+  EXPECT_THAT(message_for("shape = \"box\"", "shape = \"cylinder\"\nradius_m = 0.03"),
+              AllOf(HasSubstr("body.length_m: missing"), HasSubstr("body.size_m: only applies with")));
+}
+
 TEST(SceneFile, ReadsValuesAndFillsDefaults) {
   const Scene s = parse_scene(good, "dir/a.toml");
   EXPECT_EQ(s.name, "a");
