@@ -51,7 +51,7 @@ void compare_friction(const scene::Answer& answer, const std::vector<scene::Refe
     keep_larger(peak_n, e.friction_reference_n);
     if (t + 1 == count) break;
     const Vec3 step_m = step_to_next_m(reference, t);
-    errors.instants[t + 1].way_m = e.way_m + step_m.norm();
+    errors.instants[t + 1].path_m = e.path_m + step_m.norm();
     work_fast_j -= 0.5 * (fast_n + answer.instants[t + 1].friction_n()).dot(step_m);
     work_reference_j -= 0.5 * (reference_n + reference[t + 1].friction_n()).dot(step_m);
     work_band_j += 0.5 * (e.force_uncertainty_n + reference[t + 1].force_uncertainty_n) * step_m.norm();
@@ -66,12 +66,12 @@ void compare_friction(const scene::Answer& answer, const std::vector<scene::Refe
 
   const std::optional<std::size_t> fast_at = slip_onset(answer.instants, errors);
   const std::optional<std::size_t> reference_at = slip_onset(reference, errors);
-  if (fast_at) errors.slip_onset_fast_m = errors.instants[*fast_at].way_m;
-  if (reference_at) errors.slip_onset_reference_m = errors.instants[*reference_at].way_m;
+  if (fast_at) errors.slip_onset_fast_m = errors.instants[*fast_at].path_m;
+  if (reference_at) errors.slip_onset_reference_m = errors.instants[*reference_at].path_m;
   if (!fast_at || !reference_at) return;
   // Slip may have begun at any time since the previous instant.
   const auto since_before_m = [&](std::size_t t) {
-    return t == 0 ? 0.0 : errors.instants[t].way_m - errors.instants[t - 1].way_m;
+    return t == 0 ? 0.0 : errors.instants[t].path_m - errors.instants[t - 1].path_m;
   };
   errors.slip_onset_error_m = {*errors.slip_onset_fast_m - *errors.slip_onset_reference_m,
                                std::max(since_before_m(*fast_at), since_before_m(*reference_at))};

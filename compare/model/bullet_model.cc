@@ -81,7 +81,7 @@ std::vector<ModelEntry> bullet_models(const ModelRequest& request) {
     if (why.empty()) why = unlike_bullet(contact);
   }
   if (!why.empty()) {
-    return {{.name = name, .key = "bullet", .family = ModelFamily::peer, .absent = "not this scene: " + why}};
+    return {{.name = name, .key = "bullet", .family = ModelFamily::simulator, .absent = "not this scene: " + why}};
   }
   std::vector<ModelEntry> models;
   for (const int cells : request.quick ? std::vector{4} : std::vector{6, 9}) {
@@ -90,7 +90,7 @@ std::vector<ModelEntry> bullet_models(const ModelRequest& request) {
         {.name = fmt::format("{}, {} triangles", name, triangles),
          .key = fmt::format("bullet-{}", triangles),
          .label = "Bullet " + thousands_text(triangles),
-         .family = ModelFamily::peer,
+         .family = ModelFamily::simulator,
          .set_up = [cells](const scene::Scene& scene) { return std::make_unique<BulletModel>(scene, cells); },
          .gives_force = false});
   }
@@ -100,7 +100,7 @@ std::vector<ModelEntry> bullet_models(const ModelRequest& request) {
 std::vector<ModelEntry> bullet_models(const ModelRequest&) {
   return {{.name = "Bullet's deformable body",
            .key = "bullet",
-           .family = ModelFamily::peer,
+           .family = ModelFamily::simulator,
            .absent = "built without Bullet"}};
 }
 #endif

@@ -21,7 +21,7 @@ enum class ModelFamily {
   paper,       ///< the paper's skeleton with its own law
   area_aware,  ///< the same skeleton with another law
   compliance,  ///< precomputed linear compliance with a contact solve
-  peer,        ///< another simulator's deformable body
+  simulator,   ///< another simulator's deformable body
   reference,   ///< the reference's levels
   other,
 };
@@ -102,7 +102,7 @@ struct ModelEntry {
   std::function<std::unique_ptr<ModelReplay>(const scene::Scene&)> replay{};
   bool gives_force = true;
   bool own = false;                ///< the model that a comparison's page is about
-  bool yardstick = false;          ///< the reference's finest level, by which all are judged
+  bool finest_reference = false;   ///< the reference's finest level, by which all are judged
   std::optional<int> triangles{};  ///< of the surface it is judged on; absent: the scene's
   std::string absent{};            ///< why the model is not available; then set_up is not called
 };

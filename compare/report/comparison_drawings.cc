@@ -111,7 +111,7 @@ Drawing logarithmic(Plot plot, const Errors& errors) {
 /// Friction of both sides over the slip path.
 Drawing friction_drawing(const Errors& errors) {
   const Abscissa path{"path", "path of the tool along the surface [mm]",
-                      series(errors, [](const InstantErrors& e) { return 1e3 * e.way_m; })};
+                      series(errors, [](const InstantErrors& e) { return 1e3 * e.path_m; })};
   Plot plot = plot_over(path, "Friction over the path", "friction on the tool [N]");
   plot.curves.push_back({"reference", Look::reference, path.values,
                          series(errors, [](const InstantErrors& e) { return e.friction_reference_n; })});

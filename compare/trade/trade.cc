@@ -1,4 +1,4 @@
-// Domination of rows and the sentences about them; trade_ladder.cc computes the rows.
+// Domination of rows and the sentences about them; trade_rows.cc computes the rows.
 #include "compare/trade/trade.h"
 
 #include "compare/format/text.h"

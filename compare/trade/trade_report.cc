@@ -35,7 +35,7 @@ struct FamilyStyle {
 };
 constexpr FamilyStyle families[] = {
     {ModelFamily::paper, "the paper's model", "#e4600a"},      {ModelFamily::area_aware, "area-aware law", "#a03070"},
-    {ModelFamily::compliance, "linear compliance", "#2e8b57"}, {ModelFamily::peer, "Bullet", "#6a51a3"},
+    {ModelFamily::compliance, "linear compliance", "#2e8b57"}, {ModelFamily::simulator, "Bullet", "#6a51a3"},
     {ModelFamily::reference, "reference", "#1f77b4"},          {ModelFamily::other, "other models", "#555555"}};
 
 std::string number(double value, std::string_view unit) {

@@ -307,7 +307,7 @@ TEST(Errors, FrictionIsRelativeToItsOwnPeakWithTheForcesBand) {
   EXPECT_NEAR(*e.force_friction_nrmse.value, std::sqrt(9.0 / 5.0) / 4.0, 1e-14);
   EXPECT_NEAR(*e.force_friction_nrmse.uncertainty, std::sqrt(0.25 / 5.0) / 4.0, 1e-14);
   EXPECT_EQ(e.instants[2].friction_fast_n, 1.0);
-  EXPECT_NEAR(e.instants[4].way_m, 16e-3, 1e-15);
+  EXPECT_NEAR(e.instants[4].path_m, 16e-3, 1e-15);
 }
 
 TEST(Errors, FrictionFiguresNeedFriction) {
@@ -352,7 +352,7 @@ TEST(Errors, FrictionWorksWhereTheToolsSurfaceMoves) {
     sides.result.instants[t].region_middles_m = {Vec3(0.0, 0.0, 0.05)};
     set_friction(sides.result.instants[t], -2.0, true);
   }
-  EXPECT_NEAR(errors_of(sides).instants[4].way_m, 4 * 2 * 0.01 * std::sin(0.05), 1e-12);
+  EXPECT_NEAR(errors_of(sides).instants[4].path_m, 4 * 2 * 0.01 * std::sin(0.05), 1e-12);
 }
 
 TEST(Errors, SlipBeginsAtAWayKnownToTheInstants) {

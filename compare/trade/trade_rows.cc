@@ -25,10 +25,10 @@ using SolveLevels = std::function<reference::Result(const Scene&, const scene::S
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-class Ladder {
+class RowMaker {
  public:
-  Ladder(const Scene& scene, const TradeOptions& options, const SolveLevels& solve,
-         const std::function<void(const std::string&)>& say)
+  RowMaker(const Scene& scene, const TradeOptions& options, const SolveLevels& solve,
+           const std::function<void(const std::string&)>& say)
       : scene_(scene), options_(options), solve_(solve), say_(say), poses_(scene) {
     trade_.title = scene.title.empty() ? scene.name : scene.title;
     trade_.tick_us = 1e6 / scene.fast.rate_hz;
@@ -42,7 +42,7 @@ class Ladder {
     for (const auto& file : options.parameters) (void)with_parameters(scene, file);
   }
 
-  Trade climb(const std::vector<ModelList>& models) {
+  Trade rows_of(const std::vector<ModelList>& models) {
     ModelRequest request{scene_,
                          {},
                          options_.parameters,
@@ -166,12 +166,12 @@ class Ladder {
       row.steps = known.count;
       row.setup_s = std::numeric_limits<double>::quiet_NaN();
     }
-    if (entry.yardstick && !row.force_nrmse.uncertainty) {
+    if (entry.finest_reference && !row.force_nrmse.uncertainty) {
       row.force_nrmse = row.shape_rel_l2 = {};
       row.note =
           "the reference that the others are judged by; its uncertainty is unknown with fewer than three meshes; " +
           row.note;
-    } else if (entry.yardstick) {
+    } else if (entry.finest_reference) {
       row.note = "the reference that the others are judged by: its error is its uncertainty; " + row.note;
     }
   }
@@ -190,7 +190,7 @@ class Ladder {
 
 Trade trade(const Scene& scene, const TradeOptions& options, const SolveLevels& solve,
             const std::function<void(const std::string&)>& say, const std::vector<ModelList>& models) {
-  return Ladder(scene, options, solve, say).climb(models);
+  return RowMaker(scene, options, solve, say).rows_of(models);
 }
 
 }  // namespace touchstone::compare
