@@ -99,7 +99,7 @@ LinearResponse linear_response(const scene::Scene& scene, const Eigen::Matrix3Xd
   if (std::vector<scene::Fault> faults = unsupported(scene); !faults.empty()) {
     throw scene::InputError(std::move(faults));
   }
-  if (scene.contact.friction) throw scene::InputError("a linear response knows no friction");
+  if (scene.contact.friction) throw scene::InputError("a linear response has no friction");
   ModelChoice choice = choose_model(scene);
   if (choice.dim == 2) return condense<2>(scene, choice, rest_points_m, options, progress);
   if (options.whole_body) choice.mirror_x = choice.mirror_y = false;

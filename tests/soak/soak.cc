@@ -113,7 +113,7 @@ void look_at_gain(Run& run, const scene::Scene& scene, PathKind kind, const soak
   if (gain_rel <= gain_tolerance) return;
   ++looked.faults;
   report(Property::energy,
-         fmt::format("a closed path gave energy: {:.3g} of the {:.3g} J it turned over", gain_rel, work.turned_over_j));
+         fmt::format("a closed path gained energy: {:.3g} of the {:.3g} J exchanged", gain_rel, work.turned_over_j));
 }
 
 void run_scene(Run& run, int index, const soak::ToolMeshes& meshes, fast::ProgressLine& progress) {

@@ -45,7 +45,7 @@ TEST(Hand, SettlesWhereItsSpringEqualsTheContact) {
     EXPECT_NEAR(end.published.force_n.z(), stiffness_n_per_m * (asked_m - low_m),
                 1e-3 * stiffness_n_per_m * (asked_m - low_m));
     EXPECT_GT(low_m, 1e-4);
-    EXPECT_LT(low_m, 0.0059) << "it gives way";
+    EXPECT_LT(low_m, 0.0059) << "it moves back";
     EXPECT_NEAR((end.pose.position_m - run.records[7990].pose.position_m).norm(), 0.0, 1e-9) << "at rest";
     EXPECT_LE(run.ledger.force_max_n, scene.live.force_max_n);
   }
