@@ -57,7 +57,7 @@ material = { youngs_modulus_pa = 1.0e6, poissons_ratio = 0.4 }
 shape = "cylinder"
 radius_m = 0.003
 length_m = 0.006
-center_m = [0.0, -0.015, 0.03]
+center_m = [-0.013, -0.015, 0.03]
 material = { youngs_modulus_pa = 1.0e6, poissons_ratio = 0.4 }
 [tool]
 shape = "sphere"
