@@ -1,4 +1,4 @@
-# Sourced by demo and check: a bare Debian 12 to a build. Every step is skipped when it is already done.
+# Sourced by demo and check: a bare Debian 12 to a build. Steps that are done are skipped.
 
 fail() {
   echo "$(basename "$0"): $*" >&2
@@ -22,13 +22,13 @@ require_machine() {
   [ "$free_mib" -ge 3000 ] || fail "needs about 3 GB of free disk here, and only $free_mib MiB are free."
 }
 
-# install_packages LIST... : what these files name, one package per line
+# install_packages LIST... : installs the packages in these files, one per line
 install_packages() {
   local missing=() name
   while read -r name; do
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
   done < <(cat "$@" | grep -v '^#')
-  command -v npm >/dev/null || missing+=(npm)  # Debian's is not added beside another one
+  command -v npm >/dev/null || missing+=(npm)  # only if there is no other npm
   [ ${#missing[@]} -gt 0 ] || return 0
   echo "== Adding Debian packages: ${missing[*]}"
   [ "$(id -u)" = 0 ] || fail "these packages are missing and only root can add them; run it as root, or: sudo apt-get install ${missing[*]}"

@@ -1,4 +1,4 @@
-// Numbers and words as the report prints them; a no-break space stands between number and unit.
+// Numbers and words as the report prints them, with a no-break space between number and unit.
 #pragma once
 
 #include <optional>

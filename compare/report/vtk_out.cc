@@ -18,7 +18,7 @@
 namespace touchstone::compare {
 namespace {
 
-/// Of an analytic tool's surface, to look round.
+/// Triangles of an analytic tool, enough to look round.
 constexpr int vtk_tool_triangles = 3000;
 
 void add_vectors(vtkPolyData* data, const char* name, const Eigen::Matrix3Xd& vectors) {
@@ -69,7 +69,7 @@ void write_series(const std::filesystem::path& folder, const std::string& name, 
   }
 }
 
-/// The body's rest surface with `add_arrays(instant, data)` for its point arrays.
+/// Writes the body's rest surface; `add_arrays(instant, data)` adds its point arrays.
 void write_body(const std::filesystem::path& folder, const scene::Surface& surface, const scene::Instants& instants,
                 const std::function<void(std::size_t, vtkPolyData*)>& add_arrays) {
   const vtkSmartPointer<vtkPolyData> rest = polydata_of(surface.points_m, surface.triangles);
