@@ -129,7 +129,7 @@ inline const std::vector<TextChange>& text_changes() {
       {"body.inclusion[].shape", "shape = \"sphere\"\nradius_m = 0.005\n",
        "shape = \"box\"\nsize_m = [0.005, 0.005, 0.005]\n"},
       {"tool.shape", "shape = \"sphere\"\nradius_m = 0.01\n",
-       "shape = \"capsule\"\nradius_m = 0.01\nlength_m = 0.01\n"},
+       "shape = \"capsule\"\nradius_m = 0.009\nlength_m = 0.002\n"},
       {"tool.file", "compass.obj", "mallet.stl"},
       {"contact.law", "k1_n_per_m = 4000.0\n", "law = \"area_aware\"\nk1_per_radius_n_per_m2 = 8.0e6\n"},
       {"body.profile_rz_m", "[0.0, 0.06]]", "[0.0, 0.061]]"},
