@@ -21,6 +21,7 @@ enum class ModelFamily {
   paper,       ///< the paper's skeleton with its own law
   area_aware,  ///< the same skeleton with the area-aware law
   compliance,  ///< precomputed linear compliance with a contact solve
+  response,    ///< a half space in closed form and the body's precomputed response
   peer,        ///< another simulator's deformable body
   reference,   ///< the reference's levels
   other,

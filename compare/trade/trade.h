@@ -60,9 +60,10 @@ struct Trade {
 };
 
 struct TradeOptions {
-  std::vector<std::filesystem::path> parameters{};  ///< files that tune left, each a row more
-  std::filesystem::path held_out{};                 ///< a tuning study; empty: judged on the scene
-  bool quick = false;                               ///< few steps, small sizes
+  std::vector<std::filesystem::path> parameters{};      ///< files that tune left, each a row more
+  std::filesystem::path held_out{};                     ///< a tuning study; empty: judged on the scene
+  bool quick = false;                                   ///< few steps, small sizes
+  std::filesystem::path store = "out/reference-store";  ///< as of ModelRequest
 };
 
 /// Builds, measures and judges every row.
