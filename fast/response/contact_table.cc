@@ -118,13 +118,13 @@ ContactTable::ContactTable(const scene::ToolTip& tip, const LocalShape& local, d
   const Rule rule;
   // Radii, closer where the contact is small.
   constexpr int radii = 4000;
-  constexpr double last_share = 0.999;  // of the tip's reach: there the slope is unbounded
+  constexpr double last_share = 0.999;  // of the ball or the fillet: at its end the slope is unbounded
   struct At {
     double a_m, D_m, sum_m2, moment_m4;  // int_0^a (D(a) - D) dt, int_0^a t^2 (D(a) - D) dt
   };
   std::vector<At> curve{{tip.flat_radius_m, 0.0, 0.0, 0.0}};
   double below_m2 = 0.0, below_m4 = 0.0;  // int D dt, int t^2 D dt
-  const double inner_m = tip.flat_radius_m, outer_m = last_share * tip.reach_m();
+  const double inner_m = tip.flat_radius_m, outer_m = inner_m + last_share * tip.radius_m;
   for (int k = 1; k <= radii; ++k) {
     const double share = static_cast<double>(k) / radii, a_m = inner_m + (outer_m - inner_m) * share * share;
     const double D_m = indentation_m(gap, a_m, rule);

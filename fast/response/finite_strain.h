@@ -10,8 +10,8 @@ struct FiniteStrain {
   [[nodiscard]] double factor(double x) const noexcept { return 1.0 - x * (c1 + c2 * x); }
 };
 
-/// The two numbers of a neo-Hookean material, by Poisson's ratio alone: fitted once to the reference, a ball of 10 mm
-/// pressed 6 mm into a block. reports/response.md has the fits and what they hold for.
+/// The two numbers of the reference's neo-Hookean material, by Poisson's ratio alone: fitted once to its answers for a
+/// ball of 10 mm pressed 6.5 mm into a block with nu = 0, 0.3 and 0.5, a parabola in between. See reports/response.md.
 [[nodiscard]] FiniteStrain finite_strain(double poissons_ratio) noexcept;
 
 }  // namespace touchstone::fast

@@ -110,7 +110,7 @@ void follow_tool(const ResponseModel& model, const ResponseContact& contact, std
     Vec3 across_m = from_axis_m - from_axis_m.dot(n) * n;
     const double below_m = -(at(model.rest_m, i) - p0).dot(n);  // of the rest point, under the tangent plane
     const double inward_m = contact.depth_m - model.tip.height_m(across_m.norm()) - below_m;
-    if (inward_m <= -u_m.dot(n)) continue;
+    if (r_m > a_m && inward_m <= -u_m.dot(n)) continue;
     const double inside = std::max(1.0 - r_m * r_m / (a_m * a_m), 0.0);
     const double radius_m = across_m.norm();
     Vec3 slid_m = Vec3::Zero();

@@ -36,7 +36,7 @@ TEST_F(ResponseStep, WithoutABodyItIsTheHalfSpace) {
   for (const double depth_m : {0.0005, 0.002, 0.005}) {
     EXPECT_EQ(response_step(model, test::pressed(depth_m), state), ResponseStatus::ok);
     const LocalContact law = model.tables.front().at(depth_m);
-    EXPECT_DOUBLE_EQ(state.contact.indentation_m, depth_m);
+    EXPECT_NEAR(state.contact.indentation_m, depth_m, 1e-15);
     EXPECT_NEAR(state.wrench.force_n.z(), law.force_n, 1e-12 * law.force_n);
     EXPECT_NEAR(state.wrench.force_n.head<2>().norm(), 0.0, 1e-9);
     EXPECT_NEAR(state.wrench.torque_nm.norm(), 0.0, 1e-12);
@@ -61,6 +61,7 @@ TEST_F(ResponseStep, IndentationAndTheBodyAreInSeries) {
 
 TEST_F(ResponseStep, ForceAndLateralForceHaveOnePotential) {
   for (const double radius_m : {0.010, 0.006}) {
+    for (scene::Waypoint& waypoint : scene_.track) waypoint.pose.position_m.z() += radius_m - scene_.tool.radius_m;
     scene_.tool.radius_m = radius_m;
     const ResponseModel model = this->model();
     ResponseState state(model);
@@ -86,6 +87,7 @@ TEST_F(ResponseStep, ForceAndLateralForceHaveOnePotential) {
 }
 
 TEST_F(ResponseStep, PointsUnderTheToolLieOnIt) {
+  surface_ = scene::tessellate(*scene::body_shape(scene_.body), 12000);
   const ResponseModel model = this->model();
   ResponseState state(model);
   const scene::Pose pose = test::pressed(0.004, 0.001);
@@ -97,11 +99,13 @@ TEST_F(ResponseStep, PointsUnderTheToolLieOnIt) {
       moved_m[axis] += state.displacement_m[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)];
     }
     const double out_m = (moved_m - pose.position_m).norm() - 0.010;
-    EXPECT_GT(out_m, -3e-4);
+    EXPECT_GT(out_m, -5e-4);
     on_tool += std::abs(out_m) < 1e-7 ? 1 : 0;
-    if (surface_.points_m(2, i) == 0.0) EXPECT_EQ(moved_m, surface_.points_m.col(i));
+    if (surface_.points_m(2, i) == 0.0) {
+      EXPECT_EQ(moved_m, surface_.points_m.col(i));
+    }
   }
-  EXPECT_GT(on_tool, 4);
+  EXPECT_GT(on_tool, 20);
 }
 
 TEST_F(ResponseStep, EqualPosesGiveEqualBits) {
@@ -169,7 +173,9 @@ TEST(GridWeights, AreExactForQuadraticsAndSmooth) {
       }
       EXPECT_NEAR(sum, value(x), 1e-12) << count << ' ' << x;
       const double slope = cubic - last;
-      if (k > 1) EXPECT_NEAR(slope, last_slope, 5e-4) << count << ' ' << x;
+      if (k > 1) {
+        EXPECT_NEAR(slope, last_slope, 5e-4) << count << ' ' << x;
+      }
       last = cubic;
       last_slope = slope;
     }

@@ -89,7 +89,7 @@ TEST_F(ResponseFile, IdentityIsEverythingThatCounts) {
   other = scene_.body;
   other.size_m.z() = 0.05;
   EXPECT_NE(response_identity(other, response_.grid, surface), identity);
-  EXPECT_NE(response_identity(scene_.body, response_.grid, tessellate(*body_shape(scene_.body), 500)), identity);
+  EXPECT_NE(response_identity(scene_.body, response_.grid, tessellate(*body_shape(scene_.body), 800)), identity);
   LoadGrid moved = response_.grid;
   moved.points_m(0, 0) += 1e-6;
   EXPECT_NE(response_identity(scene_.body, moved, surface), identity);
