@@ -1,4 +1,4 @@
-# Sourced by demo and check: a bare Debian 12 to a build. Every step is skipped when it is already done.
+# Sourced by demo and check: a bare Debian 12 to a build. Steps that are done are skipped.
 
 fail() {
   echo "$(basename "$0"): $*" >&2
@@ -22,13 +22,13 @@ require_machine() {
   [ "$free_mib" -ge 3000 ] || fail "needs about 3 GB of free disk here, and only $free_mib MiB are free."
 }
 
-# install_packages LIST... : what these files name, one package per line
+# install_packages LIST... : installs the packages in these files, one per line
 install_packages() {
   local missing=() name
   while read -r name; do
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
   done < <(cat "$@" | grep -v '^#')
-  command -v npm >/dev/null || missing+=(npm)  # Debian's is not added beside another one
+  command -v npm >/dev/null || missing+=(npm)  # only if there is no other npm
   [ ${#missing[@]} -gt 0 ] || return 0
   echo "== Adding Debian packages: ${missing[*]}"
   [ "$(id -u)" = 0 ] || fail "these packages are missing and only root can add them; run it as root, or: sudo apt-get install ${missing[*]}"
@@ -39,9 +39,10 @@ install_packages() {
     fail "apt-get could not add the packages (is the network up?); its messages are in $log."
 }
 
-# build PRESET [CMAKE_OPTION...] -- [TARGET...]
+# build PRESET [CMAKE_OPTION...] -- [TARGET...]; a folder that is there keeps its options
 build() {
   local preset=$1 folder=build/$1 options=()
+  [ -e "$folder/CMakeCache.txt" ] || options=(-DTOUCHSTONE_UNITY=ON)
   shift
   while [ $# -gt 0 ] && [ "$1" != -- ]; do options+=("$1"); shift; done
   shift

@@ -14,7 +14,7 @@
 namespace touchstone::reference {
 namespace {
 
-/// The contact nodes that the tool comes near to at some instant.
+/// Contact nodes that the tool comes close to at some instant.
 template <int dim>
 std::vector<int> touchable_nodes(const scene::Scene& scene, const ModelChoice& choice,
                                  const ContactProblem<dim>& problem, double margin_rel) {
@@ -60,7 +60,7 @@ LinearResponse condense(const scene::Scene& scene, const ModelChoice& choice, co
   out.force_on_tool.resize(3, n);
   out.compliance_m_per_n.resize(n, n);
   out.displacement_m_per_n.resize(3 * rest_points_m.cols(), n);
-  // As many columns at a time as keep the factor in use while it is in the cache.
+  // Columns solved at a time: enough to reuse the factor while it is in the cache.
   constexpr Eigen::Index block = 32;
   for (Eigen::Index first = 0; first < n; first += block) {
     const Eigen::Index count = std::min(block, n - first);
@@ -87,7 +87,7 @@ LinearResponse condense(const scene::Scene& scene, const ModelChoice& choice, co
     }
     if (progress) progress(static_cast<double>(first + count) / static_cast<double>(n));
   }
-  // Symmetric by Betti's theorem; now also in the last digits.
+  // Symmetric by Betti's theorem; this removes round-off.
   out.compliance_m_per_n = (0.5 * (out.compliance_m_per_n + out.compliance_m_per_n.transpose())).eval();
   return out;
 }
@@ -99,7 +99,7 @@ LinearResponse linear_response(const scene::Scene& scene, const Eigen::Matrix3Xd
   if (std::vector<scene::Fault> faults = unsupported(scene); !faults.empty()) {
     throw scene::InputError(std::move(faults));
   }
-  if (scene.contact.friction) throw scene::InputError("a linear response knows no friction");
+  if (scene.contact.friction) throw scene::InputError("a linear response has no friction");
   ModelChoice choice = choose_model(scene);
   if (choice.dim == 2) return condense<2>(scene, choice, rest_points_m, options, progress);
   if (options.whole_body) choice.mirror_x = choice.mirror_y = false;

@@ -29,11 +29,11 @@ struct LinearResponseOptions {
   int level = 0;            ///< of the reference's meshes, 0 the coarsest
   bool whole_body = true;   ///< without the mirror planes that the scene's track has but a hand need not keep to. A
                             ///< body of revolution stays one where the scene is axisymmetric
-  double margin_rel = 0.1;  ///< a node may be touched where the tool comes nearer to it at rest, at any instant, than
-                            ///< this fraction of the track's largest depth
+  double margin_rel = 0.1;  ///< a node may come into contact if the tool comes nearer to it at rest, at any instant,
+                            ///< than this fraction of the track's largest depth
 };
 
-/// Factorises once and solves once per node that may be touched.
+/// Factorises once and solves once per node that may come into contact.
 /// @param rest_points_m  of the rest surface at which displacement is wanted, 3 x m, world frame
 /// @param progress       called now and then with the fraction done; may be empty and may throw to stop
 /// @throws scene::InputError when solve() does not support the scene, it has friction, or the tool touches

@@ -23,13 +23,13 @@ namespace {
 
 using scene::Scene;
 
-/// "20352 unknowns, about 0.4 GiB and 2 min"
+/// For example "20352 unknowns, about 0.4 GiB and 2 min".
 std::string cost_text(double unknowns, const Cost& cost) {
   return std::to_string(std::lround(unknowns)) + " unknowns, about " + memory_text(cost.memory_bytes) + " and " +
          duration_text(cost.seconds);
 }
 
-/// What each level takes, and all of them with the sensitivities.
+/// Cost of each level, and of all levels with the sensitivities.
 template <int dim>
 void add_level_lines(const Scene& scene, const ModelChoice& choice, int levels, scene::Plan& plan) {
   const auto body = scene::body_shape(scene.body);
@@ -128,26 +128,27 @@ scene::Plan plan(const Scene& scene) {
   const double nu = scene.body.material.poissons_ratio;
   add("pressure unknowns", true,
       fmt::format("nu = {:g}; {}", nu,
-                  nu == 0.5 ? "incompressible, the pressure keeps the volume"
-                            : "the same mixed element serves every nu, so nothing locks"),
+                  nu == 0.5 ? "incompressible, enforced by the pressure"
+                            : "the same mixed element for every nu, without locking"),
       "eliminated cell by cell, none in the global matrix");
   if (scene.contact.friction) {
     add("friction", true,
-        "|t| <= m N at every node, m of its region: stuck m F_n = K F_n^beta, sliding m = mu_D, but no more than stuck",
+        "|t| <= m N at every node, m of its region: sticking m F_n = K F_n^beta, slipping m = mu_D, at most the static "
+        "limit",
         "every load step is an increment of the path");
   } else {
     add("friction", false, "the scene has none");
   }
   add("several contact regions", !scene.tool.convex(),
       scene.tool.convex() ? "a convex tool touches a convex body once"
-                          : "touching nodes nearer than contact.r_th_m, or of one cell face, are one region");
+                          : "contact nodes nearer than contact.r_th_m, or of one cell face, are one region");
   add_tool_line(scene, add);
   const std::size_t inclusions = scene.body.inclusions.size();
   if (inclusions == 0) {
     add("inclusions", false, "the body is of one material");
   } else {
     add("inclusions", true,
-        std::to_string(inclusions) + " of another material, each integration point has the one it lies in",
+        std::to_string(inclusions) + " of another material, each integration point has the material at its place",
         "small cells at their surfaces");
   }
   const int levels = scene.reference.levels.value_or(3);

@@ -1,4 +1,4 @@
-"""What the scripts that write measured tables into a page of reports/ share."""
+"""Common functions of the scripts that write measured tables into a page of reports/."""
 import argparse
 import json
 import pathlib
@@ -41,7 +41,7 @@ def arguments(text, kind, names, out, page, **folders):
 
 
 def read_summary(file):
-    """A summary.json as one table; a number that is null for a reason is the reason."""
+    """A summary.json as one table; for a number that is null the reason is given."""
     summary = json.loads(file.read_text())
     return summary | summary.pop("reasons", {})
 

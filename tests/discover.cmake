@@ -42,7 +42,7 @@ set_tests_properties([==[${title}]==] PROPERTIES LABELS [==[${labels}]==] TIMEOU
   set(entries ${count} PARENT_SCOPE)
 endfunction()
 
-# Ends a suite: what is left of it for the suite's own entry.
+# Ends a suite: its remaining cases are the suite's own entry.
 macro(end_suite)
   if(suite AND rest)
     if(apart_filters)

@@ -14,7 +14,7 @@
 namespace touchstone::compare {
 namespace {
 
-/// Both codes at the instants that CalculiX reached, as a table for people and as columns.
+/// Results of both codes at the instants that CalculiX reached, as a text table and as columns.
 struct SideBySide {
   std::string text;
   std::vector<scene::Column> columns;
@@ -111,10 +111,10 @@ fast::Command add_export_verb(fast::Command& program, fast::VerbOptions& options
       [&options, &export_options, &reference] { return export_deck(options, export_options, reference); });
   verb.option("--mesh", export_options.mesh, "of the reference's meshes, 1 the coarsest").range(1, 6).shows_default();
   verb.option("--contact-stiffness", export_options.contact_stiffness_pa_per_m,
-              "contact pressure over overclosure [Pa/m] (default: costs about a thousandth of the force)")
+              "contact pressure over overclosure [Pa/m] (default: changes the force by about a thousandth)")
       .positive();
   verb.option("--time-to-error", export_options.time_to_error,
-              "instead of one deck: solve this many meshes with both codes and print what a force error costs")
+              "instead of one deck: solve this many meshes with both codes and print CPU time over force error")
       .range(2, 4);
   verb.flag("--run", export_options.run, "run ccx on it, solve the reference, and print both side by side");
   return verb;

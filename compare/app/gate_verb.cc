@@ -18,7 +18,7 @@ void print(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) std::cout << line << '\n';
 }
 
-/// New data is looked at gate by gate, so it is made by name.
+/// New reference data and accepted values are to be reviewed gate by gate, so the gates must be named.
 void require_names(const GateOptions& options, const char* flag) {
   if (options.names.empty())
     throw scene::InputError(std::string(flag) + ": expected the gates' names, FILE or FILE.GATE");
@@ -28,7 +28,7 @@ void require_names(const GateOptions& options, const char* flag) {
 
 int gate(const GateOptions& options, const std::string& command) {
   for (const std::string& name : options.names) {
-    // A file in place of a name: what it is, when it is no gate file.
+    // If a file was given in place of a name, loading it reports what kind of file it is, unless it is a gate file.
     if (std::filesystem::is_regular_file(name)) (void)load_gate_file(name);
   }
   const GateFolder folder = load_gates(options.folder);
@@ -97,7 +97,7 @@ int gate(const GateOptions& options, const std::string& command) {
 
 void add_gate_verb(fast::Command& program, GateOptions& options) {
   fast::Command verb = program.add("gate", "accuracy gates; exit 1 when one is red");
-  verb.option("NAME", options.names, "gates to hold, FILE or FILE.GATE (default all)");
+  verb.option("NAME", options.names, "gates to check, FILE or FILE.GATE (default all)");
   verb.option("--gates", options.folder, "folder of the gate files").shows_default();
   verb.option("--out", options.out, "result folder").shows_default();
   verb.option("--junit", options.junit, "also write JUnit's XML to this file");
@@ -106,11 +106,11 @@ void add_gate_verb(fast::Command& program, GateOptions& options) {
   verb.prints("--keys", gate_reference_markdown, "print every key of a gate file as Markdown tables");
   verb.flag("--quiet", options.quiet, "no progress, only results and errors");
   const fast::Option prove =
-      verb.flag("--prove", options.prove, "apply every gate's own change too; exit 1 unless it turns the gate red");
+      verb.flag("--prove", options.prove, "also apply every gate's own change; exit 1 unless it turns the gate red");
   const fast::Option regenerate =
-      verb.flag("--regenerate", options.regenerate, "solve the reference data of the gates named, and write it");
+      verb.flag("--regenerate", options.regenerate, "solve the reference data of the named gates, and write it");
   const fast::Option accept =
-      verb.flag("--accept", options.accept, "write the values of the drift gates named as the accepted ones");
+      verb.flag("--accept", options.accept, "write the values of the named drift gates as accepted");
   regenerate.excludes(prove).excludes(accept);
   accept.excludes(prove);
   verb.option("--store", options.reference.store, "for --regenerate: content-addressed reference results")

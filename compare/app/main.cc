@@ -1,4 +1,4 @@
-// touchstone: one scene in, one result folder out.
+// touchstone: from a scene file to a result folder.
 #include "compare/app/export_verb.h"
 #include "compare/app/gate_verb.h"
 #include "compare/app/prepare_verb.h"
@@ -32,7 +32,7 @@ int run_program(int argc, char** argv) {
     reference::follow_first_rank();
     return fast::done;
   }
-  fast::Program program("How wrong a fast contact model is, against a finite-strain reference with error bars.",
+  fast::Program program("Errors of a fast contact model against a finite-strain reference with known uncertainty.",
                         "touchstone");
   program.prints("--scene-reference", scene::scene_reference_markdown,
                  "print every key of a scene file as a Markdown table");
@@ -61,39 +61,40 @@ int run_program(int argc, char** argv) {
         command.option("--level", reference.levels, "number of meshes, in place of an error").range(1, 9);
     command
         .option("--error", reference.error,
-                "refine until force and shape are known to this, relative (default: the scene's)")
+                "refine until the uncertainty of force and shape is at most this, relative (default: the scene's)")
         .range(1e-4, 0.5)
         .excludes(levels);
     command
         .option("--memory-gib", reference.memory_gib,
-                "no mesh that would take more, by estimate (default 80 % of the memory)")
+                "skip a mesh that is estimated to need more (default 80 % of the memory)")
         .range(0.1, 1e6);
     command
         .option("--minutes", reference.minutes,
-                "end a reference solve after this time, what is solved is kept (default 60; none with --level)")
+                "end a reference solve after this time, finished steps are kept (default 60; none with --level)")
         .range(0.01, 1e6);
   };
   const auto add_require_error = [&](fast::Command command) {
     command
-        .option("--require-error", reference.require_error,
-                "exit 3 unless force and shape are known to this, relative; results are written all the same")
+        .option(
+            "--require-error", reference.require_error,
+            "exit 3 unless the uncertainty of force and shape is at most this, relative; results are written anyway")
         .range(1e-4, 0.5);
   };
-  add("plan", "what each side will model for a scene, what it leaves out and why",
+  add("plan", "what each solver models of a scene, what it leaves out and why",
       "meshes/scenes/ball-on-cube-press.toml --set fast.formulation=published", compare::plan);
-  add_with_folder("fast", "the real-time pipeline over the scene's track in virtual time",
+  add_with_folder("fast", "the real-time model over the scene's track in virtual time",
                   "meshes/scenes/ball-on-cube-press.toml --out out/press", compare::run_fast);
   fast::Command solved =
-      add_with_folder("reference", "the offline solve; answers from the store, resumes where it was interrupted",
+      add_with_folder("reference", "the offline solve; uses stored results, resumes where it was interrupted",
                       "meshes/scenes/hertz-sphere.toml --error 0.005", compare::run_reference);
   add_reference(solved);
   add_require_error(solved);
   compare::CompareOptions compare_options;
   fast::Command compared = add_with_folder(
-      "compare", "both sides, then force and shape errors: tables, VTK, report",
+      "compare", "both solvers, then force and shape errors: tables, VTK, report",
       "meshes/scenes/ball-on-cube-press.toml --set tool.radius_m=0.008 --error 0.02",
       [&](const auto& given, const auto& asked) { return compare::run_compare(given, asked, compare_options); });
-  compared.option("--parameters", compare_options.parameters, "file that tune left, for the fast side alone");
+  compared.option("--parameters", compare_options.parameters, "file written by tune, for the fast model alone");
   compared
       .option("--model", compare_options.models,
               "another model for the table, by its key in a trade, such as compliance-1; may be repeated")
@@ -135,7 +136,7 @@ int run_program(int argc, char** argv) {
       "  touchstone new block.toml --body box 60x60x40mm --youngs-modulus 3MPa --poissons-ratio 0.45 \\\n"
       "    --tool sphere 10mm --depth 3mm\n"
       "  touchstone compare block.toml\n"
-      "touchstone VERB --help: its options and an example. Exit status: 0 done, 1 the answer is no, 2 bad input, 3 "
+      "touchstone COMMAND --help: its options and an example. Exit status: 0 done, 1 a check failed, 2 bad input, 3 "
       "not\n"
       "converged.");
   return program.run(argc, argv);
@@ -146,10 +147,9 @@ int run_program(int argc, char** argv) {
 int main(int argc, char** argv) {
   return fast::guarded([&] {
     if (!reference::blas_has_memory()) {
-      std::cerr
-          << "the memory does not suffice for the linear algebra's threads; expected more of it, or fewer threads "
-             "with OPENBLAS_NUM_THREADS\n";
-      // They wait for memory without end, and an ordinary exit waits for them.
+      std::cerr << "not enough memory for the threads of the linear algebra; expected more memory, or fewer threads "
+                   "with OPENBLAS_NUM_THREADS\n";
+      // OpenBLAS threads may wait for memory for ever, and an ordinary exit waits for these threads.
       std::_Exit(fast::not_converged);
     }
     return run_program(argc, argv);

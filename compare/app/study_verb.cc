@@ -13,7 +13,7 @@
 namespace touchstone::compare {
 namespace {
 
-/// A few of them: all the cases of an axis tend to share the fault.
+/// Prints only a few warnings: usually all cases of an axis have the same fault.
 void warn_of_no_contact(const StudyManifest& manifest) {
   constexpr std::size_t told_max = 3;
   std::vector<const ManifestCase*> without;
@@ -24,8 +24,7 @@ void warn_of_no_contact(const StudyManifest& manifest) {
     std::cerr << fmt::format("warning: case {} ({}): {}\n", without[i]->index, without[i]->name, without[i]->warning);
   }
   if (without.size() > told_max) {
-    std::cerr << fmt::format("warning: {} cases of {} are without contact like these\n", without.size(),
-                             manifest.cases.size());
+    std::cerr << fmt::format("warning: {} of {} cases are without contact\n", without.size(), manifest.cases.size());
   }
 }
 
@@ -41,8 +40,8 @@ int expand_verb(const StudyOptions& options) {
     return case_status(manifest, one).state == CaseState::done;
   });
   std::cout << fmt::format("{} cases in {}", count, (folder / "manifest.json").string());
-  if (count < study.cases.size()) std::cout << fmt::format(", {} alike left out", study.cases.size() - count);
-  if (done > 0) std::cout << fmt::format(", {} done already", done);
+  if (count < study.cases.size()) std::cout << fmt::format(", {} equal ones omitted", study.cases.size() - count);
+  if (done > 0) std::cout << fmt::format(", {} already done", done);
   const std::string run = program.string() + " study run " + folder.string() + " --store " + options.store.string();
   std::cout << fmt::format(
       "\n\nOne after the other, or this in several windows:\n  {0}\nGNU parallel, two at a time:\n  seq {1} | "
@@ -96,11 +95,11 @@ void add_study_verb(fast::Command& program, StudyOptions& options) {
   add_store(expand);
   expand.example("study expand meshes/studies/ball-on-cube-depth-and-place.toml --out out/depth-and-place");
 
-  fast::Command run = add("run", "run what is not done of a study; several processes may do so at a time", "DIR",
+  fast::Command run = add("run", "run the remaining cases of a study; several processes may run at a time", "DIR",
                           "the study's folder", run_verb);
   const fast::Option index =
       run.option("--index", options.index, "only this case, from 1").range(1, static_cast<int>(study_cases_max));
-  run.option("--step", options.step, "and every case this far behind it, for long studies in short arrays")
+  run.option("--step", options.step, "and every case in steps of this after it, for long studies in short arrays")
       .range(1, static_cast<int>(study_cases_max))
       .needs(index);
   add_store(run);
@@ -108,7 +107,7 @@ void add_study_verb(fast::Command& program, StudyOptions& options) {
   run.example("study run out/depth-and-place --index 3");
 
   fast::Command collect =
-      add("collect", "table and report over all cases; exit 1 when some are not done, and which and why", "DIR",
+      add("collect", "table and report over all cases; exit 1 if some are not done, with the reasons", "DIR",
           "the study's folder", collect_verb);
   collect.example("study collect out/depth-and-place");
 }

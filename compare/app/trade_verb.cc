@@ -17,7 +17,7 @@ int run(const fast::VerbOptions& options, const TradeOptions& trade_options, con
   return with_reference_exits([&] {
     scene::Manifest manifest = scene::make_manifest(scene, "touchstone trade");
     const scene::Stopwatch watch;
-    std::string references;  // how each refinement ended
+    std::string references;  // why the refinement of each reference ended
     TradeOptions with_store = trade_options;
     with_store.store = reference.store;
     const Trade found = trade(
@@ -45,12 +45,12 @@ int run(const fast::VerbOptions& options, const TradeOptions& trade_options, con
 
 fast::Command add_trade_verb(fast::Command& program, fast::VerbOptions& options, TradeOptions& trade,
                              ReferenceOptions& reference) {
-  fast::Command verb = fast::add_verb(program, "trade", "the speed/accuracy ladder: every model and level on one plot",
+  fast::Command verb = fast::add_verb(program, "trade", "step time and errors of every model and level, on one plot",
                                       "meshes/scenes/ball-on-cube-press.toml --quick --out out/trade", options,
                                       [&] { return run(options, trade, reference); });
-  verb.option("--parameters", trade.parameters, "file that tune left, its values a row more; may be repeated")
+  verb.option("--parameters", trade.parameters, "file written by tune, adds a row with its values; may be repeated")
       .one_value_each_time();
-  verb.option("--held-out", trade.held_out, "tuning study whose held-out contacts judge, the worst of them");
+  verb.option("--held-out", trade.held_out, "tuning study by whose held-out contacts the models are judged");
   verb.flag("--quick", trade.quick, "few steps and small sizes");
   return verb;
 }

@@ -7,9 +7,9 @@
 
 namespace touchstone::compare {
 
-/// Adds the verb to a command line. All four must outlive the parse.
-/// @param options    shared with the other verbs that take a scene; --out is the caller's to add
-/// @param reference  its options are the caller's to add
+/// Adds the command; its variables must outlive Program::run.
+/// @param options    shared with the other commands that take a scene; the caller adds --out
+/// @param reference  the caller adds its options
 fast::Command add_trade_verb(fast::Command& program, fast::VerbOptions& options, TradeOptions& trade,
                              ReferenceOptions& reference);
 

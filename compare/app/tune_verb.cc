@@ -70,7 +70,7 @@ int run(const TuneOptions& options, const ReferenceOptions& reference) {
 
 fast::Command add_tune_verb(fast::Command& program, TuneOptions& options, ReferenceOptions& reference) {
   fast::Command tune =
-      program.add("tune", "fit the fast model's free numbers on training contacts, judge them on held-out ones");
+      program.add("tune", "fit the fast model's free constants on training contacts, judge them on held-out ones");
   tune.option("STUDY", options.study, "tuning study (TOML)").required();
   tune.option("--out", options.out, "result folder (default out/<study>-tune)");
   tune.flag("--quiet", options.quiet, "no progress");

@@ -15,7 +15,7 @@ struct TuneOptions {
 };
 
 /// Adds the command; its variables must outlive Program::run.
-/// @param reference  its options are the caller's to add
+/// @param reference  the caller adds its options
 fast::Command add_tune_verb(fast::Command& program, TuneOptions& options, ReferenceOptions& reference);
 
 }  // namespace touchstone::compare

@@ -19,7 +19,7 @@ namespace {
 using verification::Check;
 using verification::Problem;
 
-/// The problems asked for, in their own order.
+/// The problems that were named, in the order of `all`.
 std::vector<const Problem*> chosen(const std::vector<Problem>& all, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (std::ranges::any_of(all, [&](const Problem& problem) { return problem.name == name; })) continue;
@@ -34,7 +34,7 @@ std::vector<const Problem*> chosen(const std::vector<Problem>& all, const std::v
   return list;
 }
 
-/// A share in percent, or as a power of ten where a percentage would be nothing but zeros.
+/// A ratio in percent, or as a power of ten if the percentage would show only zeros.
 std::string share_text(double share, bool sign) {
   if (std::isfinite(share) && share != 0.0 && std::abs(share) < 5e-6) {
     return sign ? fmt::format("{:+.0e}", share) : fmt::format("{:.0e}", share);
@@ -42,7 +42,7 @@ std::string share_text(double share, bool sign) {
   return sign ? fmt::format("{:+.3f} %", 100.0 * share) : fmt::format("{:.3g} %", 100.0 * share);
 }
 
-/// What both tables say of a check, the names of these columns, and how wide they are in the one of text.
+/// Cells of a check in both tables, the column headings, and the column widths of the text table.
 std::array<std::string, 8> cells_of(const Check& check) {
   return {check.what,
           fmt::format("{:.6g}", check.target),
@@ -82,11 +82,11 @@ std::string conclusion(const std::vector<ProblemRecord>& records) {
 }
 
 constexpr const char* legend =
-    "error: value over target - 1, or absolute where the target is 0. mesh +-: what the finest mesh may be off by, "
-    "from the last three, each of half the cell size of the one before. order: of their differences; absent where they "
+    "error: value over target - 1, or absolute where the target is 0. mesh +-: the uncertainty of the finest mesh, "
+    "from the last three, whose cell sizes halve. order: of their differences; absent where they "
     "change sign, as a contact force's do when the contact's edge moves by whole nodes.";
 
-/// "nu = 0.3, force" as a key's part: "nu_0.3_force".
+/// Makes "nu = 0.3, force" a part of a key: "nu_0.3_force".
 std::string key_of(const std::string& what) {
   std::string key;
   for (const char c : what) {
@@ -225,7 +225,7 @@ void add_verify_verb(fast::Command& program, VerifyOptions& options) {
   fast::Command verb =
       program.add("verify", "the reference against closed forms and published benchmarks; exit 1 on a miss");
   verb.option("NAME", options.names, "problems to run (default all)");
-  verb.flag("--quick", options.quick, "about a minute: one mesh fewer, and the dearest cases left out");
+  verb.flag("--quick", options.quick, "about a minute: one mesh fewer, without the most expensive cases");
   verb.flag("--list", options.list, "names and sources of the problems, nothing is run");
   verb.option("--out", options.out, "result folder").shows_default();
   verb.flag("--quiet", options.quiet, "no progress, only results and errors");

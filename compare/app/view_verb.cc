@@ -16,7 +16,7 @@
 namespace touchstone::compare {
 namespace {
 
-/// Presses a key until the view says what was asked for.
+/// Presses a key until the view shows what was asked for.
 template <class Says>
 void press_until(ResultView& view, const std::string& key, const std::string& wanted, const char* option, Says says) {
   if (wanted.empty()) return;
@@ -37,7 +37,7 @@ void press_until(ResultView& view, const std::string& key, const std::string& wa
 int view_result(const ViewOptions& options) {
   if (!options.screenshot.empty() && !ResultView::can_write(options.screenshot)) {
     throw scene::InputError("--screenshot " + options.screenshot.string() +
-                            ": unknown ending; expected .png, .jpg or .jpeg");
+                            ": unknown extension; expected .png, .jpg or .jpeg");
   }
   const ResultFolder result = read_result_folder(options.folder);
   std::optional<VirtualDisplay> display;
@@ -70,7 +70,7 @@ int view_result(const ViewOptions& options) {
 fast::Command add_view_verb(fast::Command& program, ViewOptions& options) {
   fast::Command verb = program.add("view", "a window on a result: body, tool, force curve, one instant at a time");
   verb.option("DIR", options.folder, "result folder of fast, reference or compare").required();
-  verb.option("--screenshot", options.screenshot, "write this PNG or JPEG file, by its ending, and open no window");
+  verb.option("--screenshot", options.screenshot, "write this PNG or JPEG file, by its extension, and open no window");
   verb.option("--instant", options.instant, "show this instant, from 1 (default: the deepest)").positive();
   verb.option("--side", options.side, "reference or fast model");
   verb.option("--colour", options.colour, "displacement, error or uncertainty");

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int no_such_program = 127;
 
-/// Total, or one node's displacement, as CalculiX names components.
+/// Total force, or one node's displacement, from CalculiX's components.
 scene::Vec3 in_world(const scene::Vec3& components, bool axisymmetric) {
   return axisymmetric ? scene::Vec3(components.x(), 0.0, components.y()) : components;
 }
@@ -39,7 +39,7 @@ std::vector<CalculixStep> read_calculix(const std::filesystem::path& dat, const 
       return line.find(what) != std::string::npos && line.find(std::string(" set ") + set + " ") != std::string::npos;
     };
     if (says("total force", reference::deck_tool_set)) {
-      // The first of a step's two answers.
+      // Of a step's two results the force comes first.
       total = &steps.emplace_back().force_n;
     } else if (!steps.empty() && says("displacements", reference::deck_surface_set)) {
       steps.back().displacement_m.resize(3, nodes);

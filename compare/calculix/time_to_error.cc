@@ -20,7 +20,7 @@ double largest_error(const std::vector<double>& force_n, const std::vector<doubl
   return largest_n / *std::max_element(exact_n.begin(), exact_n.end());
 }
 
-/// Wall and CPU time of every level of one solve, taken where the progress goes from one to the next.
+/// Wall and CPU time of every level of one solve, read when the progress reports the next level.
 class LevelWatch {
  public:
   explicit LevelWatch(int levels) : times_(levels) {}
@@ -76,7 +76,7 @@ TimeToError time_to_error(const scene::Scene& scene, int meshes, const std::file
 
   TimeToError times;
   const std::vector<double>& exact_n = result.levels.back().force_n;
-  double wall_s = 0.0, cpu_s = 0.0;  // a mesh starts from the coarser one's solution
+  double wall_s = 0.0, cpu_s = 0.0;  // each mesh starts from the coarser one's solution, so times add up
   for (int level = 0; level < meshes; ++level) {
     const double error = largest_error(result.levels[level].force_n, exact_n);
     wall_s += watch.of(level).wall_s;

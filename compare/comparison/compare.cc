@@ -31,7 +31,7 @@ std::vector<scene::Column> curve_columns(const fast::Run& run, const reference::
   add("error_force_n", [](const InstantErrors& e) { return e.force_error_n; });
   add("error_force_rel", [&](const InstantErrors& e) { return e.force_error_rel.value_or(none); });
   if (errors.friction) {
-    add("way_m", [](const InstantErrors& e) { return e.way_m; });
+    add("way_m", [](const InstantErrors& e) { return e.path_m; });
     add("fast_friction_n", [](const InstantErrors& e) { return e.friction_fast_n; });
     add("reference_friction_n", [](const InstantErrors& e) { return e.friction_reference_n; });
   }

@@ -17,7 +17,7 @@ namespace {
 constexpr double same_time_s = 1e-12;
 constexpr double same_place_m = 1e-9;
 
-/// Keeps the value of larger magnitude with its sign.
+/// Replaces `farthest` by `value` if that is larger in magnitude; the sign is kept.
 void keep_farther(double& farthest, double value) {
   if (std::isnan(value) || std::abs(value) > std::abs(farthest)) farthest = value;
 }
@@ -78,7 +78,7 @@ void compare_forces(const scene::Answer& answer, const std::vector<scene::Refere
   if (deep_instants > 0 && !deep_without_force) errors.force_rel_deep = deep.relative();
 }
 
-/// Of the rest surface: below the middle of every region, or nearest to the tool's centre where there is none.
+/// Points of the rest surface: below the centre of every region, or nearest to the tool's centre if there is no region.
 std::vector<scene::Vec3> contact_points_m(const scene::Shape& body,
                                           const std::vector<scene::ReferenceInstant>& reference, std::size_t t) {
   std::vector<scene::Vec3> points_m = reference[t].region_middles_m;
@@ -87,8 +87,8 @@ std::vector<scene::Vec3> contact_points_m(const scene::Shape& body,
   return points_m;
 }
 
-/// Faces of the body, which meet at edges, by patch; empty for a body of one smooth face or a surface with other
-/// patches than the body's.
+/// Face number of every patch; faces are separated by edges of the body. Empty if the body has one smooth face or the
+/// surface does not have the body's patches.
 std::vector<int> faces_of_patches(const scene::Shape& body, const scene::Surface& surface) {
   std::vector<int> face(static_cast<std::size_t>(body.patch_count()));
   if (surface.patch_begin.size() != face.size() + 1) return {};
@@ -96,7 +96,7 @@ std::vector<int> faces_of_patches(const scene::Shape& body, const scene::Surface
   return std::any_of(face.begin(), face.end(), [](int f) { return f > 0; }) ? face : std::vector<int>();
 }
 
-/// Rest points of the faces that are nowhere touched at any instant; empty where the body has one face only.
+/// Rest points of faces that are never in contact; empty if the body has one face only.
 std::vector<bool> on_side_faces(const scene::Shape& body, const scene::Surface& surface,
                                 const std::vector<scene::ReferenceInstant>& reference, const Errors& errors) {
   const std::vector<int> face = faces_of_patches(body, surface);

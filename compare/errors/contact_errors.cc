@@ -14,11 +14,11 @@ using scene::InstantRecord;
 using scene::RegionRecord;
 using scene::Vec3;
 
-/// Friction below this share of the peak force is what rounding leaves of none, as under a tool pressed straight in.
+/// Friction below this fraction of the peak force is round-off, as under a tool that is pressed straight in.
 constexpr double least_friction_share = 1e-6;
 
-/// How the tool's point at the middle of the reference's regions moves up to the next instant; the tool's centre where
-/// there is no region.
+/// Displacement of the tool's material point at the centre of the reference's regions up to the next instant; of the
+/// tool's centre if there is no region.
 Vec3 step_to_next_m(const std::vector<scene::ReferenceInstant>& reference, std::size_t t) {
   const scene::Pose &here = reference[t].tool, &next = reference[t + 1].tool;
   const std::vector<Vec3>& middles_m = reference[t].region_middles_m;
@@ -28,7 +28,7 @@ Vec3 step_to_next_m(const std::vector<scene::ReferenceInstant>& reference, std::
   return next.orientation * at_T_m + next.position_m - at_m;
 }
 
-/// Instant at which the side first slides, among those deep enough that a graze is no slip.
+/// First instant at which the contact slips, among those deep enough to exclude grazing contact.
 std::optional<std::size_t> slip_onset(const scene::Instants& records, const Errors& errors) {
   for (std::size_t t = 0; t < records.size(); ++t) {
     const auto slides = [](const RegionRecord& region) { return region.sliding; };
@@ -51,7 +51,7 @@ void compare_friction(const scene::Answer& answer, const std::vector<scene::Refe
     keep_larger(peak_n, e.friction_reference_n);
     if (t + 1 == count) break;
     const Vec3 step_m = step_to_next_m(reference, t);
-    errors.instants[t + 1].way_m = e.way_m + step_m.norm();
+    errors.instants[t + 1].path_m = e.path_m + step_m.norm();
     work_fast_j -= 0.5 * (fast_n + answer.instants[t + 1].friction_n()).dot(step_m);
     work_reference_j -= 0.5 * (reference_n + reference[t + 1].friction_n()).dot(step_m);
     work_band_j += 0.5 * (e.force_uncertainty_n + reference[t + 1].force_uncertainty_n) * step_m.norm();
@@ -66,12 +66,12 @@ void compare_friction(const scene::Answer& answer, const std::vector<scene::Refe
 
   const std::optional<std::size_t> fast_at = slip_onset(answer.instants, errors);
   const std::optional<std::size_t> reference_at = slip_onset(reference, errors);
-  if (fast_at) errors.slip_onset_fast_m = errors.instants[*fast_at].way_m;
-  if (reference_at) errors.slip_onset_reference_m = errors.instants[*reference_at].way_m;
+  if (fast_at) errors.slip_onset_fast_m = errors.instants[*fast_at].path_m;
+  if (reference_at) errors.slip_onset_reference_m = errors.instants[*reference_at].path_m;
   if (!fast_at || !reference_at) return;
-  // Either side may have begun to slide at any time since the instant before.
+  // Slip may have begun at any time since the previous instant.
   const auto since_before_m = [&](std::size_t t) {
-    return t == 0 ? 0.0 : errors.instants[t].way_m - errors.instants[t - 1].way_m;
+    return t == 0 ? 0.0 : errors.instants[t].path_m - errors.instants[t - 1].path_m;
   };
   errors.slip_onset_error_m = {*errors.slip_onset_fast_m - *errors.slip_onset_reference_m,
                                std::max(since_before_m(*fast_at), since_before_m(*reference_at))};
@@ -100,8 +100,8 @@ double from_load_line_m(const Vec3& point_m, const RegionRecord& region, const s
   return (region.torque_nm - (point_m - tool.position_m).cross(region.force_n)).norm() / force_n;
 }
 
-/// For every region of the reference the fast model's that acts there, or null: the pairs nearest to each other first,
-/// since either side numbers its regions for itself.
+/// For every region of the reference the corresponding region of the fast model, or null. The closest pairs are matched
+/// first, because each side has its own region numbers.
 std::vector<const RegionRecord*> partners(const InstantRecord& fast, const InstantRecord& reference,
                                           const std::vector<Vec3>& middles_m) {
   std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
@@ -134,7 +134,7 @@ void compare_regions(const scene::Answer& answer, const std::vector<scene::Refer
   std::map<int, Sums> of_id;
   for (std::size_t t = 0; t < errors.instants.size(); ++t) {
     const scene::ReferenceInstant& instant = reference[t];
-    // A tool that dips in between the nodes has a region without a middle, and no force.
+    // If the tool penetrates only between the nodes, the region has no centre and no force.
     const std::size_t regions = std::min(instant.regions.size(), instant.region_middles_m.size());
     const std::vector<const RegionRecord*> partner = partners(
         answer.instants[t], instant,

@@ -27,7 +27,7 @@ struct InstantErrors {
   double force_error_n = 0.0;             ///< |F_f - F_r|, of the vectors
   double friction_fast_n = 0.0;           ///< |T_f|, the part of F_f along the surface; zero without friction
   double friction_reference_n = 0.0;      ///< |T_r|
-  double way_m = 0.0;                     ///< slip path of the tool's point at the contact since the first instant
+  double path_m = 0.0;                    ///< slip path of the tool's point at the contact since the first instant
   std::optional<double> force_error_rel;  ///< |F_f - F_r| / |F_r|; absent where apart or |F_r| = 0
   Measure shape_rel_l2;                   ///< sqrt(sum A |u_f - u_r|^2 / sum A |u_r|^2); absent where apart or u_r = 0
   double shape_max_m = 0.0;               ///< largest |u_f - u_r|

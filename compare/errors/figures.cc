@@ -9,12 +9,12 @@
 namespace touchstone::compare {
 namespace {
 
-/// Of a single region's figures, before its number.
+/// Prefix of a single region's figures; the region's number follows.
 constexpr std::string_view region_prefix = "force.region";
 
 struct Meaning {
   std::string_view key, text;
-  bool count = false;  ///< a number of things; other figures without a unit are ratios
+  bool count = false;  ///< a count; other figures without a unit are ratios
   Worst worst = Worst::largest;
 };
 
@@ -28,10 +28,10 @@ constexpr Meaning meanings[] = {
     {"force.friction_work_rel",
      "Error of the work done against friction along the track, the area of the loop where it turns back."},
     {"force.slip_onset_error_m",
-     "Way of the tool at which the fast model begins to slide, less the reference's; known to the way between "
+     "Slip path at which the fast model begins to slip, minus the reference's; uncertain by the path between "
      "instants."},
-    {"force.slip_onset_fast_m", "That way, fast model.", false, Worst::none},
-    {"force.slip_onset_reference_m", "That way, reference.", false, Worst::none},
+    {"force.slip_onset_fast_m", "Slip path at that onset, fast model.", false, Worst::none},
+    {"force.slip_onset_reference_m", "Slip path at that onset, reference.", false, Worst::none},
     {"force.torque_nrmse",
      "Root mean square of the torque's error, relative to the reference's peak force times its distance from the mass "
      "centre."},
@@ -51,14 +51,14 @@ constexpr Meaning meanings[] = {
     {"shape.volume_change_rel",
      "Volume the fast model's body gains or loses; an incompressible body keeps its volume."},
     {"contact.penetration_rel",
-     "How far the fast model's surface is left inside the tool, relative to the depth; it should be pushed out."},
+     "Largest penetration of the tool that remains in the fast model's deformed surface, relative to the depth."},
     {"contact.area_iou",
-     "Area that is at or inside the tool on both sides, over that on either, summed over the track; 100 % is equal.",
+     "Contact area of both sides (intersection) over that of either (union), summed over the track; 100 % is equal.",
      false, Worst::smallest},
-    {"reference.force_uncertainty_rel", "Largest half width of the reference's force band, relative to its force."},
+    {"reference.force_uncertainty_rel", "Largest uncertainty of the reference's force, relative to its force."},
     {"reference.shape_uncertainty_rel",
      "The reference's own shape uncertainty, relative to its displacement, in the norm of shape.rel_l2."},
-    {"reference.residual_penetration_rel", "How far contact nodes still reach into the tool, relative to the depth."},
+    {"reference.residual_penetration_rel", "Residual penetration of the contact nodes, relative to the depth."},
     {"reference.penetration_between_nodes_rel", "The same between the nodes, where contact is not enforced."},
     {"reference.equilibrium_rel", "Contact force and support reaction should cancel: what is left, relative."},
     {"reference.volume_change_rel", "Volume change of the reference's body, on its own mesh."},
@@ -81,7 +81,7 @@ constexpr Meaning meanings[] = {
      "The same of the force with ten times the bulk modulus that only Newton's tangent sees."},
     {"reference.sensitivity.numerical_bulk_shape_rel", "The same of the shape."},
     {"reference.sensitivity.tool_grid_force_rel",
-     "The same of the force with the grid of the mesh tool's distance half as wide."},
+     "The same of the force with half the spacing of the mesh tool's distance grid."},
     {"reference.sensitivity.tool_grid_shape_rel", "The same of the shape."},
     {"reference.sensitivity.inclusion_cells_force_rel",
      "The same of the force with cells at the inclusions' surfaces half as large."},
@@ -108,7 +108,7 @@ constexpr Meaning meanings[] = {
     {"fast.status", "Warnings of the fast model over the whole track."},
 };
 
-/// Null for a key that is not ours.
+/// Null if the key is none of these figures.
 const Meaning* find_meaning(std::string_view given) {
   if (given.ends_with(uncertainty_suffix)) {
     given.remove_suffix(uncertainty_suffix.size());
@@ -150,24 +150,24 @@ class Collector {
     if (measure.uncertainty) return number(key + std::string(uncertainty_suffix), *measure.uncertainty, unit);
     absent(key + std::string(uncertainty_suffix), "unknown", unit);
   }
-  /// @param why  there is no number
+  /// @param why  reason for the missing number
   void absent(std::string key, std::string why, std::string unit = "") {
     figures_.push_back({std::move(key), NAN, std::move(why), std::move(unit)});
   }
   [[nodiscard]] scene::Figures take() { return std::move(figures_); }
 
  private:
-  std::string absent_;  ///< why a figure that needs contact has no number
+  std::string absent_;  ///< reason why a figure that needs contact is missing
   scene::Figures figures_;
 };
 
-/// Why there is no difference of slip onsets.
+/// Reason why there is no difference of slip onsets.
 std::string without_slip(const Errors& errors) {
-  if (errors.slip_onset_reference_m) return "undefined: the fast model never slides";
-  return errors.slip_onset_fast_m ? "undefined: the reference never slides" : "undefined: neither side ever slides";
+  if (errors.slip_onset_reference_m) return "undefined: the fast model never slips";
+  return errors.slip_onset_fast_m ? "undefined: the reference never slips" : "undefined: neither side ever slips";
 }
 
-/// Friction where the scene has it, torque, single regions where there are several.
+/// Friction if the scene has it, torque, and single regions if there are several.
 void add_contact_figures(const Errors& errors, Collector& out) {
   if (errors.friction) {
     out.measure("force.friction_nrmse", errors.force_friction_nrmse);
@@ -193,7 +193,7 @@ void add_contact_figures(const Errors& errors, Collector& out) {
 scene::Figures error_figures(const Errors& errors) {
   const bool contact = errors.force_peak_reference_n > 0.0;
   const std::string apart = "undefined: the reference is never in contact";
-  Collector out(contact ? "undefined: nothing to relate it to" : apart);
+  Collector out(contact ? "undefined: there is no reference value to divide by" : apart);
   out.measure("force.nrmse", errors.force_nrmse);
   out.measure("force.peak_rel", errors.force_peak_rel);
   out.measure("force.rel_above_10pct_depth", errors.force_rel_deep);

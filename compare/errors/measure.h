@@ -1,4 +1,4 @@
-// An error beside what of it may be the reference's own, and the sums and maxima that errors are made from.
+// An error with the reference's own uncertainty, and the sums and maxima that errors are made from.
 #pragma once
 
 #include <cmath>
@@ -6,9 +6,9 @@
 
 namespace touchstone::compare {
 
-/// An error, and how much of it may be the reference's own, in the same norm.
+/// An error and the reference's own uncertainty in the same norm.
 struct Measure {
-  std::optional<double> value;        ///< absent where the figure has no meaning, such as a ratio to no force
+  std::optional<double> value;        ///< absent if undefined, such as a ratio to zero force
   std::optional<double> uncertainty;  ///< absent where the reference does not give it
 
   /// False where the error is no larger than the reference's uncertainty: the two sides may then agree.
@@ -22,7 +22,7 @@ struct Measure {
   return std::isfinite(uncertainty) ? std::optional(uncertainty) : std::nullopt;
 }
 
-/// Keeps the larger; once NaN, stays NaN, so that no bad number is lost in a maximum.
+/// Keeps the larger; NaN is kept, so that a maximum does not hide it.
 inline void keep_larger(double& largest, double value) {
   if (std::isnan(value) || value > largest) largest = value;
 }
@@ -33,7 +33,7 @@ inline void keep_larger(std::optional<double>& largest, double value) {
   largest = kept;
 }
 
-/// Sums whose ratio's root is a relative L2 error.
+/// Accumulates sqrt(sum w e^2 / sum w s^2), a relative L2 error.
 struct SquareSums {
   double error = 0.0, uncertainty = 0.0, scale = 0.0;
 

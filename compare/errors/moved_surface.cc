@@ -13,7 +13,7 @@
 namespace touchstone::compare {
 namespace {
 
-/// Largest distance from a column of `from_m` to the triangles spanned by `to_m`.
+/// Largest distance from the points `from_m` (columns) to the triangles with corners `to_m`.
 double one_way_m(const scene::Surface& surface, const Eigen::Matrix3Xd& from_m, const Eigen::Matrix3Xd& to_m) {
   const vtkSmartPointer<vtkPolyData> target = polydata_of(to_m, surface.triangles);
   vtkNew<vtkStaticCellLocator> locator;
@@ -33,7 +33,7 @@ double one_way_m(const scene::Surface& surface, const Eigen::Matrix3Xd& from_m, 
   return std::sqrt(largest2);
 }
 
-/// Sum over the triangles at each vertex of their normals times twice their area.
+/// Sum of 2 A n over the triangles at each vertex, n the unit normal and A the area.
 Eigen::Matrix3Xd triangle_normals_m2(const scene::Surface& surface, const Eigen::Matrix3Xd& place_m) {
   Eigen::Matrix3Xd sum_m2 = Eigen::Matrix3Xd::Zero(3, place_m.cols());
   for (const auto& [a, b, c] : surface.triangles) {

@@ -8,7 +8,7 @@
 namespace touchstone::compare {
 
 /// Volume enclosed by the triangles after the move [m^3]: a sixth of the sum of a . (b x c), by the divergence
-/// theorem. The surface must be closed; vertices doubled at an edge must move alike.
+/// theorem. The surface must be closed; vertices doubled at an edge must move equally.
 [[nodiscard]] double enclosed_volume_m3(const scene::Surface& surface, const Eigen::Matrix3Xd& displacement_m);
 
 /// Largest distance from a vertex of one moved surface to the triangles of the other, in both directions [m]. Exact for

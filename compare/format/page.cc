@@ -10,7 +10,7 @@
 namespace touchstone::compare {
 namespace {
 
-// The pictures in space stay on light ground: their colour tables begin or end near black.
+// The three-dimensional views keep a light background: their colour maps begin or end near black.
 constexpr const char* style = R"(
 :root { color-scheme: light dark; --ink: #1c1e21; --dim: #5c636b; --page: #ffffff; --panel: #f4f5f7; --line: #d9dce0;
   --reference: #1f77b4; --fast: #d35400; --plain: #6a51a3; --inclusion: #a03070; --third: #2e8b57; --paper: #ffffff; }
@@ -84,8 +84,8 @@ summary { cursor: pointer; font-weight: 600; } summary h2 { display: inline; } d
 }
 )";
 
-/// Shows the titles of the markers nearest to the pointer, and of all others at the same x, at once and beside them.
-/// Without scripts the titles are what a browser shows.
+/// Shows beside the pointer the titles of the nearest markers and of all others at the same x. Without scripts the
+/// browser shows the titles.
 constexpr const char* values_script = R"(<script>//<![CDATA[
 for (const figure of document.querySelectorAll('figure')) {
   const points = [...figure.querySelectorAll('circle > title, rect > title')].map((title) => {
@@ -107,7 +107,7 @@ for (const figure of document.querySelectorAll('figure')) {
     let nearest = null, least = 40;
     for (const point of points) {
       const at = place(point), dx = Math.abs(at.x - event.clientX), dy = Math.abs(at.y - event.clientY);
-      // From the mark's edge; within it, or in two marks at once, the middle decides.
+      // Distance from the marker's edge. Inside a marker, or in two at once, the distance from the centre decides.
       const away = Math.hypot(Math.max(0, dx - at.half_x), Math.max(0, dy - at.half_y)) + 1e-3 * Math.hypot(dx, dy);
       if (away < least) [nearest, least] = [{ ...point, at }, away];
     }
@@ -128,7 +128,7 @@ for (const figure of document.querySelectorAll('figure')) {
 //]]></script>
 )";
 
-/// For links within the page.
+/// Makes a title an anchor for links within the page.
 std::string slug(const std::string& title) {
   std::string out;
   for (const char c : title) {
@@ -183,7 +183,7 @@ std::string in_order(const std::vector<Section>& sections) {
   std::string out;
   for (const Section& one : sections) {
     if (one.body.empty()) continue;
-    // The link of a folded part leads to what is folded, so that a browser opens it.
+    // The link leads to the content of a folded section, so that a browser opens it.
     out += one.folded
                ? fmt::format("<section>\n<details>\n<summary>{}</summary>\n<div id=\"{}\">\n{}</div>\n</details>\n",
                              tag("h2", one.title), slug(one.title), one.body)
@@ -237,7 +237,7 @@ std::string page(const std::string& title, const std::string& body) {
   std::string out =
       "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
-  // The browser holds the page to what it promises.
+  // The browser enforces that the page loads nothing from elsewhere.
   out +=
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
       "script-src "

@@ -1,5 +1,5 @@
 // What every page of results is made of: one self-contained XHTML file that may fetch nothing but pictures
-// that stand beside it. Plots show their values where a pointer or a finger is.
+// in its folder. Plots show the values at the pointer.
 #pragma once
 
 #include "scene/model/plan.h"

@@ -15,17 +15,17 @@ namespace {
 constexpr int margin_left_min = 64, margin_right = 16, margin_top = 40, margin_bottom = 46;
 constexpr double tick_gap = 7.0, y_title_px = 20.0;
 
-/// No font to ask: what a letter of a 12 px sans serif needs on average.
+/// Mean width of a letter in a 12 px sans-serif font; no font is loaded to measure it.
 constexpr double letter_px = 6.6;
 
-/// Characters of a UTF-8 text; the bytes that continue one take no place.
+/// Width of a UTF-8 text; continuation bytes are not counted.
 double text_width_px(std::string_view text) {
   return letter_px *
          static_cast<double>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 constexpr int legend_row = 18;
 
-/// Values to pixels along one axis.
+/// Maps values to pixels along one axis.
 class Axis {
  public:
   Axis(double low, double high, bool log, double from_px, double to_px)
@@ -34,7 +34,7 @@ class Axis {
   [[nodiscard]] bool can_show(double value) const { return std::isfinite(value) && (!log_ || value > 0.0); }
   [[nodiscard]] double px(double value) const {
     const double share = log_ ? std::log(value / low_) / std::log(high_ / low_) : (value - low_) / (high_ - low_);
-    // Far outside is as good as just outside, and keeps the numbers short.
+    // Values far outside the axis are clamped, which keeps the coordinates short.
     return from_px_ + std::clamp(share, -2.0, 3.0) * (to_px_ - from_px_);
   }
   [[nodiscard]] double low() const { return low_; }
@@ -69,7 +69,7 @@ class Axis {
   double from_px_, to_px_;
 };
 
-/// Smallest and largest of what an axis must show.
+/// Smallest and largest value that an axis must show.
 struct Extent {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -80,7 +80,7 @@ struct Extent {
   }
   [[nodiscard]] bool empty() const { return low > high; }
 
-  /// Widened to show whole: to zero where that is near, by a little elsewhere.
+  /// The range with margins: extended to zero if that is near, else by a little.
   [[nodiscard]] std::pair<double, double> padded(bool log) const {
     if (log) return low == high ? std::pair(low / 2.0, high * 2.0) : std::pair(low / 1.25, high * 1.25);
     double from = low, to = high;
@@ -183,7 +183,7 @@ std::string bar_areas(const Bars& bars, const Plot& plot, const Axis& x, const A
   for (std::size_t i = 0; i < bars.heights.size(); ++i) {
     if (!(bars.heights[i] > 0.0)) continue;
     const double left_px = x.px(bars.edges[i]), right_px = x.px(bars.edges[i + 1]), top_px = y.px(bars.heights[i]);
-    // A hair of ground between two of them, where there is room for it.
+    // A gap of one pixel between two bars if they are wide enough.
     const double width_px = right_px - left_px > 4.0 ? right_px - left_px - 1.0 : right_px - left_px;
     out += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"><title>{}</title></rect>\n",
@@ -210,7 +210,7 @@ std::string curve_line(const Curve& curve, const Axis& x, const Axis& y) {
   return fmt::format("<path d=\"{}\" {} {} stroke-linejoin=\"round\"/>\n", path, fill, stroke(curve));
 }
 
-/// Bars about the points whose half height is known.
+/// Error bars of the points whose uncertainty is known.
 std::string error_bars(const Curve& curve, const Axis& x, const Axis& y) {
   std::string out;
   for (std::size_t i = 0; i < curve.y_half.size(); ++i) {
@@ -227,7 +227,7 @@ std::string error_bars(const Curve& curve, const Axis& x, const Axis& y) {
   return out;
 }
 
-/// Of a point whose bar is not known.
+/// Marker of a point whose uncertainty is unknown.
 std::string hollow_marker(const Curve& curve, double x_px, double y_px, const std::string& title_element) {
   return fmt::format(
       "<circle class=\"unknown\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"none\" pointer-events=\"all\" "
@@ -235,7 +235,7 @@ std::string hollow_marker(const Curve& curve, double x_px, double y_px, const st
       x_px, y_px, colour_of(curve), title_element);
 }
 
-/// Round for the reference and square for the fast model, so that grey print tells them apart.
+/// Round for the reference and square for the fast model, so that they differ in a grey print.
 std::string marker(const Curve& curve, double x_px, double y_px, const std::string& title_element) {
   const double half_px = curve.points_only ? 1.8 : 3.0;
   if (curve.look == Look::fast) {
@@ -275,7 +275,7 @@ std::string curve_markers(const Curve& curve, const Plot& plot, const Axis& x, c
 
 bool can_show(double value, bool log) { return std::isfinite(value) && (!log || value > 0.0); }
 
-/// Something unknown everywhere is not drawn and has no name in the legend.
+/// A curve without any value is not drawn and has no entry in the legend.
 bool any_point(const Plot& plot, const std::vector<double>& x, const std::vector<double>& y) {
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (can_show(x[i], plot.x_log) && can_show(y[i], plot.y_log)) return true;
@@ -284,7 +284,7 @@ bool any_point(const Plot& plot, const std::vector<double>& x, const std::vector
 }
 
 struct LegendEntry {
-  std::string name, swatch;  ///< swatch: SVG drawn 26 wide about (0, 0)
+  std::string name, swatch;  ///< swatch: SVG, 26 px wide, centred at (0, 0)
   double width_px = 0.0;
 };
 
@@ -314,7 +314,7 @@ std::vector<LegendEntry> legend_entries(const Plot& plot) {
   return entries;
 }
 
-/// Names above the axes, as many to a row as fit.
+/// Legend above the axes, with as many entries per row as fit.
 struct Legend {
   std::string svg;
   int rows = 0;
@@ -336,8 +336,8 @@ Legend legend(const Plot& plot, double left_px, double right_px, double top_px) 
   return out;
 }
 
-/// Each name at the first of some places about its point where it covers no point, line or other name; a thin line
-/// leads to those further off.
+/// Places each name at the first candidate position around its point where it covers no point, line or other name. A
+/// thin line connects names that are further away.
 std::string point_names(const Plot& plot, const Axis& x, const Axis& y) {
   struct Box {
     double left, top, right, bottom;
@@ -402,7 +402,7 @@ std::string point_names(const Plot& plot, const Axis& x, const Axis& y) {
   return out;
 }
 
-/// Widens the axis that has room so that a unit is as long on both.
+/// Widens one of the ranges so that both axes have the same scale.
 void give_same_scale(std::pair<double, double>& x, std::pair<double, double>& y, double width_px, double height_px) {
   const double per_px = std::max((x.second - x.first) / width_px, (y.second - y.first) / height_px);
   const auto widen = [per_px](std::pair<double, double>& range, double px) {
@@ -413,13 +413,13 @@ void give_same_scale(std::pair<double, double>& x, std::pair<double, double>& y,
   widen(y, height_px);
 }
 
-/// Both axes where they are drawn, and the legend above them.
+/// Both axes with their pixel ranges, and the legend above them.
 struct Frame {
   Axis x, y;
   Legend names;
 };
 
-/// Nothing without a point to draw.
+/// Nothing if the plot has no point.
 std::optional<Frame> frame_of(const Plot& plot, int width_px, int height_px) {
   Extent x_extent, y_extent;
   const auto include = [&](const std::vector<double>& x, const std::vector<double>& y) {
@@ -433,7 +433,7 @@ std::optional<Frame> frame_of(const Plot& plot, int width_px, int height_px) {
     include(curve.x, curve.y);
     std::vector<double> ends(curve.y_half.size());
     for (const double sign : {1.0, -1.0}) {
-      // As for a band, the lower end may come close to zero.
+      // As for a band, the lower end does not count on a logarithmic axis.
       if (sign < 0.0 && plot.y_log) continue;
       for (std::size_t i = 0; i < ends.size(); ++i) ends[i] = curve.y[i] + sign * curve.y_half[i];
       if (!ends.empty()) include(curve.x, ends);
@@ -441,7 +441,7 @@ std::optional<Frame> frame_of(const Plot& plot, int width_px, int height_px) {
   }
   for (const Band& band : plot.bands) {
     include(band.x, band.high);
-    // The lower edge of a band may come close to zero: on a logarithmic axis it would take over the range.
+    // The lower edge of a band may come close to zero and would dominate a logarithmic axis.
     if (!plot.y_log) include(band.x, band.low);
   }
   for (const Bars& bars : plot.bars) {
@@ -452,7 +452,7 @@ std::optional<Frame> frame_of(const Plot& plot, int width_px, int height_px) {
   }
   if (x_extent.empty() || y_extent.empty()) return std::nullopt;
   const double right_px = width_px - margin_right, bottom_px = height_px - margin_bottom;
-  // The tick labels fix the left margin, the margin how many rows the legend takes and the rows which ticks there are.
+  // The tick labels determine the left margin, the margin the rows of the legend, and the rows the ticks: iterate.
   double left_px = margin_left_min;
   for (int round = 0;; ++round) {
     std::pair<double, double> x_range = plot.x_range.value_or(x_extent.padded(plot.x_log));
@@ -511,7 +511,7 @@ std::pair<double, double> x_axis_px(const Plot& plot, int width_px, int height_p
 BandSeen band_seen(const Plot& plot, const Band& band, int width_px, int height_px) {
   const std::optional<Frame> frame = frame_of(plot, width_px, height_px);
   if (!frame || !any_point(plot, band.x, band.high)) return BandSeen::nowhere;
-  constexpr double line_px = 4.0;  // with its rim, or nobody sees it
+  constexpr double line_px = 4.0;  // the outline makes the line wide enough to see
   for (std::size_t i = 0; i < band.x.size(); ++i) {
     if (!frame->x.can_show(band.x[i]) || !frame->y.can_show(band.high[i]) || !std::isfinite(band.low[i])) continue;
     const double low = frame->y.log() ? std::max(band.low[i], frame->y.low()) : band.low[i];
@@ -545,7 +545,7 @@ std::string to_svg(const Plot& plot, int width_px, int height_px) {
 
   out += axes(plot, x, y);
   out += names.svg;
-  // A nested viewport cuts what lies outside the axes; a marker on the edge stays whole.
+  // A nested viewport clips what lies outside the axes; a marker on the edge is drawn whole.
   const double edge = 4.0;
   out += fmt::format(
       "<svg x=\"{0:.1f}\" y=\"{1:.1f}\" width=\"{2:.1f}\" height=\"{3:.1f}\" viewBox=\"{0:.1f} {1:.1f} {2:.1f} "

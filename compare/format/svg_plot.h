@@ -1,7 +1,9 @@
-// Line plots as SVG text, for a page that must open anywhere: no library, no display, no script.
+// Line plots as SVG text, for a page without any library, display or script.
 // Text and axes take the page's text colour; every marker shows its numbers when pointed at.
 #pragma once
 
+#include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,7 +11,13 @@
 
 namespace touchstone::compare {
 
-/// Who a curve belongs to; fixes colour and dash so that a side looks the same in every figure and in grey print. The
+/// A point that is not there.
+inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+
+/// Colours that the colour-blind can distinguish, on white and on black (Okabe and Ito, without yellow and black).
+inline constexpr std::array palette = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"};
+
+/// What a curve shows; fixes colour and dash so that a side looks the same in every figure and in grey print. The
 /// last three distinguish curves of one solver.
 enum class Look { reference, fast, plain, outline, inclusion, first, second, third };
 
@@ -49,7 +57,7 @@ struct Span {
   double shade = 0.1;  ///< 0 to 1, of the text's colour
 };
 
-/// A name beside a point, where there is room for it.
+/// A name beside a point, at a free place.
 struct PointName {
   std::string name;
   double x = 0.0, y = 0.0;

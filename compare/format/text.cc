@@ -13,16 +13,16 @@ namespace {
 
 const std::string minus = "−";
 
-/// A quantity in SI units smaller than this is what rounding leaves of zero.
+/// A quantity in SI units smaller than this is round-off and shown as zero.
 constexpr double rounding = 1e-15;
 
 struct Scale {
-  double factor;  ///< of the scaled unit in the given one
+  double factor;  ///< scaled unit over the given one
   std::string_view name;
-  double from = 1.0;  ///< smallest value shown in it
+  double from = 1.0;  ///< smallest value shown in this unit
 };
 
-// From the largest; the first in which the value is at least `from` is taken, else the last.
+// From the largest unit to the smallest: the first whose scaled value is at least `from`, else the last.
 constexpr Scale lengths[] = {{1e-3, "mm", 0.1}, {1e-6, "µm"}, {1e-9, "nm"}};
 constexpr Scale areas[] = {{1e-4, "cm²"}, {1e-6, "mm²"}};
 constexpr Scale times[] = {{3600.0, "h"}, {60.0, "min"}, {1.0, "s"}, {1e-3, "ms"}, {1e-6, "µs"}};
@@ -38,7 +38,7 @@ std::span<const Scale> scales(std::string_view unit) {
   return {};
 }
 
-/// Digits in groups of three, thin spaces between, from five digits on.
+/// Digits in groups of three with thin spaces, for five digits or more.
 std::string grouped(std::string digits) {
   const std::size_t sign = digits.starts_with("-") ? 1 : 0;
   const std::size_t whole = std::min(digits.find('.'), digits.size());
@@ -66,7 +66,7 @@ std::string number_text(double value, int digits) {
     return fmt::format("{}{:.{}g} × 10{}", value < 0.0 ? minus : "", std::abs(value) * std::pow(10.0, -exponent),
                        digits, power);
   }
-  // A count is printed whole, a measured value with four digits at most.
+  // A count is printed in full, a measured value with four digits at most.
   if (const int most = std::max(4, digits); exponent >= most && value != std::round(value)) {
     const double unit = std::pow(10.0, exponent + 1 - most);
     value = unit * std::round(value / unit);
@@ -83,6 +83,8 @@ std::string number_text(double value, int digits) {
 std::string thousands_text(int count) {
   return count < 1000 ? std::to_string(count) : fmt::format("{:.0f}k", 1e-3 * count);
 }
+
+std::string seconds_text(double time_s) { return fmt::format("{}{}s", number_text(time_s), no_break); }
 
 std::string percent_text(double ratio) {
   if (!std::isfinite(ratio)) return "not finite";
@@ -114,7 +116,7 @@ std::string quantity_text(const std::optional<double>& value, std::string_view u
 }
 
 std::string wrapped(std::string_view text, std::size_t width) {
-  // Bytes that continue a UTF-8 character take no place.
+  // Continuation bytes of UTF-8 are not counted.
   const auto places = [](std::string_view word) {
     return static_cast<std::size_t>(std::count_if(word.begin(), word.end(), [](char c) { return (c & 0xC0) != 0x80; }));
   };
@@ -167,7 +169,7 @@ std::string escape_xml(std::string_view text) {
         out += "&quot;";
         break;
       default:
-        // Control characters are not allowed in XML at all.
+        // XML does not allow control characters at all.
         if (static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t') out += c;
     }
   }

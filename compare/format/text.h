@@ -1,4 +1,4 @@
-// Numbers and words as the report prints them; a no-break space stands between number and unit.
+// Numbers and words as the report prints them, with a no-break space between number and unit.
 #pragma once
 
 #include <optional>
@@ -30,6 +30,9 @@ inline constexpr double least_ratio = 1e-6;
 /// The same, or a word for an absent value.
 [[nodiscard]] std::string quantity_text(const std::optional<double>& value, std::string_view unit,
                                         std::string_view absent);
+
+/// "0.5 s", whatever its size.
+[[nodiscard]] std::string seconds_text(double time_s);
 
 /// Broken into lines of at most `width` characters at spaces.
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t width = 100);

@@ -61,7 +61,7 @@ bool is_asked(const GateFile& file, const GateNames& names) {
   return std::ranges::any_of(file.gates, [&](const Gate& g) { return is_asked(file.name, g.name, names); });
 }
 
-/// The figures, or why there are none.
+/// The figures of a run, or the reason why there are none.
 struct Answer {
   scene::Figures figures;
   std::string failure;
@@ -92,7 +92,7 @@ GateRecord judged(const GateFolder& folder, const GateFile& file, const Gate& ga
   return judge(file.name, gate, answer.figures, accepted_of(folder, file.name + "." + gate.name), scene_hash);
 }
 
-/// A gate on a figure that its run does not have, or against reference data that is not there, is a fault of its file.
+/// A gate on a figure that its run does not have, or against missing reference data, is a fault of the gate file.
 void require_answerable(const GateFile& file, const GateNames& names, const Answer& answer) {
   std::vector<scene::Fault> faults;
   for (const Gate& gate : file.gates) {
@@ -129,7 +129,7 @@ bool is_drift(const GateFolder& folder, const std::string& name) {
   return false;
 }
 
-/// What is wrong with the scenes of a file, its own and the changed ones, told with the gate they are of.
+/// Faults of the scenes of a file, its own and the changed ones, each reported with its gate.
 std::vector<scene::Fault> scene_faults(const GateFile& file, const std::vector<ModelList>& models) {
   std::vector<scene::Fault> faults;
   const auto check = [&](const std::vector<std::string>& change, const std::string& whose) {

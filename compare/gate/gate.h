@@ -1,4 +1,4 @@
-// Accuracy gates: limits on figures of shipped scenes, held against committed reference data, closed forms and the
+// Accuracy gates: limits on figures of shipped scenes, checked against committed reference data, closed forms and the
 // last accepted values.
 //
 //   GATES/<file>.toml              the gates of one scene, see scene/gate_file.h

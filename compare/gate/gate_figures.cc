@@ -24,7 +24,7 @@ namespace {
 
 using std::filesystem::path;
 
-/// A folder for solves that must not find the answers of earlier ones.
+/// A temporary folder for solves that must not use stored results.
 class WorkFolder {
  public:
   WorkFolder() : path_(std::filesystem::temp_directory_path() / ("touchstone-gate-" + std::to_string(::getpid()))) {
@@ -42,7 +42,7 @@ class WorkFolder {
   path path_;
 };
 
-/// Is the top of the body a plane? Then a small enough contact sees a half space.
+/// Whether the top of the body is plane; then a small enough contact behaves as on a half space.
 bool flat_top(const scene::Body& body) {
   if (body.shape == scene::BodyShape::box) return true;
   if (body.shape != scene::BodyShape::revolution || !body.profile.arc_radius_m.empty()) return false;
@@ -50,7 +50,7 @@ bool flat_top(const scene::Body& body) {
   return rz_m.size() >= 2 && rz_m[rz_m.size() - 2].y() == rz_m.back().y();
 }
 
-/// Of a ball on a half space in small strain [N]; nothing for other scenes.
+/// Force of a ball on a half space in small strain [N]; nothing for other scenes.
 std::optional<double> half_space_force_n(const scene::Scene& scene, double depth_m) {
   if (scene.tool.shape != scene::ToolShape::sphere || !flat_top(scene.body) || !scene.body.inclusions.empty() ||
       scene.reference.kinematics != scene::Kinematics::small) {
@@ -76,7 +76,7 @@ scene::Figures model_figures(const GateFile& file, const scene::Scene& own, cons
   const std::unique_ptr<ContactModel> model = entry.set_up(changed);
   scene::Answer answer = unanswered(changed);
   model->answer(answer);
-  // The fast model's is a figure.
+  // A fault of the fast model's own steps is a figure, not an error.
   if (!entry.own && !model->trouble().empty()) throw Unavailable(model->trouble());
   if (stored) return make_figures(errors_of(entry, changed, answer, stored->instants), *stored, model->figures());
   scene::Figures figures = model->figures();
@@ -84,7 +84,7 @@ scene::Figures model_figures(const GateFile& file, const scene::Scene& own, cons
   return figures;
 }
 
-/// Distance of a fresh answer from the stored one.
+/// Distance of the new solution from the stored one.
 void add_resolved(const reference::Result& result, const reference::Result& stored,
                   const std::vector<double>& vertex_area_m2, scene::Figures& figures) {
   if (result.instants.size() != stored.instants.size()) throw std::logic_error("another number of instants");

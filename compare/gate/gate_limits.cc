@@ -14,7 +14,7 @@
 namespace touchstone::compare {
 namespace {
 
-/// What git prints in a folder, or nothing when it fails.
+/// Output of git in a folder, or nothing if git fails.
 std::optional<std::string> git(const std::filesystem::path& folder, std::vector<std::string> arguments) {
   std::vector<std::string> words{"git", "-C", folder.string()};
   for (std::string& argument : arguments) words.push_back(std::move(argument));
@@ -56,7 +56,7 @@ std::string date_text(std::chrono::year_month_day day) {
                      static_cast<unsigned>(day.day()));
 }
 
-/// Why a gate holds less than it did; empty when it does not.
+/// In which respect a gate became weaker; empty if it did not.
 std::string loosened(const GateFile& base_file, const Gate& base, const GateFile& file, const Gate& gate) {
   const auto changed = [](const char* what, const std::string& before, const std::string& now) {
     return fmt::format("{} \"{}\" instead of \"{}\"", what, now, before);

@@ -23,7 +23,7 @@ constexpr const char* style = R"(<style>
 </style>
 )";
 
-/// A number in the gate's unit; four digits, so that it can be told from its limit.
+/// A number in the gate's unit, with four digits so that it differs visibly from its limit.
 std::string in_unit(double value, const std::string& unit) {
   if (!std::isfinite(value)) return "no number";
   if (unit.empty()) {
@@ -40,7 +40,7 @@ std::string margin_text(const GateRecord& record) {
                          : fmt::format("{:.3g} times the limit", held / limit);
 }
 
-/// What the limit holds, over the limit: full is the limit, which is marked; a bar that passes it is cut off at 5/4.
+/// Bar of the checked value over the limit. The limit is marked; a longer bar is cut off at 5/4 of it.
 std::string bar(const GateRecord& record) {
   constexpr double limit_px = 240.0, whole_px = 300.0;
   const double held = record.held();
@@ -63,7 +63,7 @@ std::string bar(const GateRecord& record) {
          fmt::format("<rect x=\"{:.1f}\" y=\"0\" width=\"2\" height=\"14\" class=\"mark\"/></svg>", limit_px - 1.0);
 }
 
-/// What stands before the limit, in numbers.
+/// The checked value as a sentence.
 std::string held_text(const GateRecord& record) {
   const std::string& unit = record.gate.unit;
   if (!record.value) return "no number";

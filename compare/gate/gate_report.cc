@@ -32,7 +32,7 @@ std::string table(const std::array<const char*, columns>& head,
   return text;
 }
 
-/// Of the number alone; a gate that is red for another reason has its own.
+/// Why the number exceeds the limit; a gate that is red for another reason has a text of its own.
 std::string beyond_text(const GateRecord& record) {
   const std::string limit =
       fmt::format("{:.4g}{}{}", record.gate.limit, record.gate.unit.empty() ? "" : " ", record.gate.unit);

@@ -46,8 +46,8 @@ std::string region_column(std::size_t place, const std::string& quantity) {
 
 std::string middle_column(std::size_t place) { return "middle" + std::to_string(place) + "_"; }
 
-/// Everything but track and shape, so that every record comes back as it was: scene::record_columns says nothing of
-/// the order of the regions. Here they are numbered by their place in the record.
+/// All figures of the instants except track and shape. Unlike scene::record_columns, this keeps the order of the
+/// regions: they are numbered by their place in the record.
 std::vector<scene::Column> answer_columns(const reference::Result& result) {
   std::size_t most = 0;
   for (const scene::InstantRecord& record : result.instants) most = std::max(most, record.regions.size());
@@ -76,7 +76,7 @@ std::vector<scene::Column> answer_columns(const reference::Result& result) {
       add_of("friction_" + name + "_n", [axis](const Region& r) { return r.friction_n[axis]; });
     }
   }
-  // A region that only grazes has no middle.
+  // A region in grazing contact has no centre.
   std::size_t middles = 0;
   for (const auto& instant : result.instants) middles = std::max(middles, instant.region_middles_m.size());
   add("middles", [&](std::size_t t) { return static_cast<double>(result.instants[t].region_middles_m.size()); });
@@ -99,7 +99,7 @@ std::vector<scene::Column> answer_columns(const reference::Result& result) {
   return columns;
 }
 
-/// The file that scene::write_csv left.
+/// Reads a file that scene::write_csv wrote.
 class Table {
  public:
   Table(std::string_view text, const path& file) {
@@ -109,7 +109,7 @@ class Table {
       throw UnusableReference(error.what());
     }
   }
-  /// NaN where it is not known.
+  /// The uncertainty; NaN if it is not known.
   [[nodiscard]] double band_at(const std::string& name, std::size_t row) const {
     const auto found = columns_.find(name);
     if (found == columns_.end() || row >= found->second.size() || std::isinf(found->second[row])) {
@@ -143,7 +143,7 @@ class Table {
   std::map<std::string, std::vector<double>> columns_;
 };
 
-/// The bytes of numbers with all first bytes before all second ones and so on: like bytes lie together and compress.
+/// All first bytes of the numbers, then all second bytes and so on: similar bytes next to each other compress better.
 std::string shuffled(const std::vector<float>& numbers) {
   const auto* bytes = reinterpret_cast<const char*>(numbers.data());
   std::string out(numbers.size() * sizeof(float), '\0');
@@ -261,7 +261,7 @@ std::optional<double> number(const Json& json) {
   return json.is_number() ? std::optional(json.get<double>()) : std::nullopt;
 }
 
-/// A file of the folder whose checksum is the one kept.
+/// Reads a file of the folder and compares its checksum with the stored one.
 std::string checked(const path& file, const std::string& checksum) {
   const std::optional<std::string> text = scene::read_file(file);
   if (!text) throw UnusableReference("missing: " + file.string());
@@ -344,7 +344,7 @@ reference::Result stored_reference(const path& folder, const scene::Scene& scene
   const path curve = folder / curve_name;
   take_curve(Table(checked(curve, curve_checksum), curve), scene::instants_s(scene).size(), result);
   take_surface(checked(folder / surface_name, surface_checksum), surface.points_m.cols(), result);
-  // Written as null, as where there is nothing to be uncertain about; the bands tell which.
+  // Written as null, both if unknown and if not applicable; the instants' uncertainties tell which.
   const auto& all = result.instants;
   if (std::any_of(all.begin(), all.end(), [](const auto& one) { return std::isnan(one.force_uncertainty_n); })) {
     result.force_uncertainty_rel = reference::force_uncertainty_rel(all);

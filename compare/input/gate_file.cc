@@ -10,7 +10,7 @@
 
 namespace touchstone::compare {
 
-using namespace scene;  // the reader of TOML and its words
+using namespace scene;  // the TOML reader and its types
 namespace {
 
 std::vector<std::string> names_of(const std::vector<GateKey>& keys, const char* rows = nullptr) {
@@ -51,7 +51,7 @@ class Reader : TomlReader {
     if (document_.contains("reference")) {
       out.reference = (file_.parent_path() / given_text(document_, "reference")).lexically_normal();
       if (out.run == GateRun::second_code) {
-        add(document_, "reference is never looked at with run = \"second_code\"; expected none");
+        add(document_, "reference is not used with run = \"second_code\"; expected none");
       }
     }
     std::set<std::string> names;
@@ -93,7 +93,7 @@ class Reader : TomlReader {
   }
 
  private:
-  /// One that must be there. @param may_be_empty  a unit may
+  /// A text that is required. @param may_be_empty  as for a unit
   std::string given_text(const toml::table& table, const std::string& key, const std::string& row = "",
                          bool may_be_empty = false) {
     const toml::node* node = table.get(key);
@@ -103,7 +103,7 @@ class Reader : TomlReader {
     return "";
   }
 
-  /// A list of texts as for --set.
+  /// A list of texts KEY=VALUE, as for --set.
   std::vector<std::string> given_settings(const toml::table& table, const std::string& key,
                                           const std::string& row = "") {
     std::vector<std::string> list;
@@ -142,8 +142,9 @@ const std::vector<GateKey>& gate_file_keys() {
   static const std::vector<GateKey> keys = {
       {"title", "a text", "", "What the gates hold, for lists and reports."},
       {"run", "\"fast\" or \"reference\" or \"second_code\"", "",
-       "What is computed anew. \"fast\": the fast model, held against the reference data named by `reference`; "
-       "\"reference\": the reference solve, from nothing; \"second_code\": CalculiX and the reference on the same "
+       "What is computed anew. \"fast\": the fast model, compared with the reference data named by `reference`; "
+       "\"reference\": a new solve of the reference, without the store; \"second_code\": CalculiX and the reference on "
+       "the same "
        "deck."},
       {"model", "a text", "the fast model",
        "With `run = \"fast\"`: another model in its place, by its key in `summary.json` of `touchstone trade`, such as "
@@ -179,7 +180,7 @@ const std::vector<GateKey>& gate_keys() {
 const std::vector<GateKey>& waiver_keys() {
   static const std::vector<GateKey> keys = {
       {"gate", "a text", "", "The gate, as FILE.NAME."},
-      {"name", "a text", "", "Who answers for it."},
+      {"name", "a text", "", "Who is responsible for it."},
       {"reason", "a text", "", "Why the limit may be wider."},
       {"until", "a date, 2026-12-31", "", "The last day on which it holds; from the next day on the gate is red."},
       {"removed", "true or false", "`false`", "The waiver is for a gate that was taken away."},

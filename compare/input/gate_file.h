@@ -29,7 +29,7 @@ namespace touchstone::compare {
 /// A key as the gate reference explains it; the reader refuses all others.
 struct GateKey {
   std::string key;            ///< within its table
-  std::string value;          ///< what may stand there
+  std::string value;          ///< the allowed values
   std::string default_value;  ///< empty: it must be given
   std::string meaning;
 };
@@ -55,7 +55,7 @@ struct Gate {
   std::string unit;
   std::string reason;
   std::vector<std::string> red;  ///< never empty
-  scene::Fault place;            ///< where its limit stands; its message is empty
+  scene::Fault place;            ///< the place of its limit; its message is empty
 };
 
 struct GateFile {

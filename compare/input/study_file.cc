@@ -12,22 +12,22 @@
 
 namespace touchstone::compare {
 
-using namespace scene;  // the reader of TOML and its words
+using namespace scene;  // the TOML reader and its types
 namespace {
 
-/// The value as people write it in a table.
+/// The value as it is shown in a table.
 std::string label_text(const toml::node& node) {
   return node.is_string() ? node.value_or(std::string()) : value_text(node);
 }
 
-/// An axis: at each of its places a label and the settings there.
+/// An axis: labels and settings of each of its values.
 struct Axis {
   std::string name;
   std::vector<std::string> labels;
   std::vector<std::vector<Setting>> settings;
 };
 
-class Reader : TomlReader {
+class StudyReader : TomlReader {
  public:
   using TomlReader::TomlReader;
 
@@ -68,7 +68,7 @@ class Reader : TomlReader {
       return axis;
     }
     if (zip != nullptr && (!name || key)) {
-      add(*zip, "axis.zip: expected axis.name, for what its keys say together, and no axis.key");
+      add(*zip, "axis.zip: expected axis.name, a name for its keys together, and no axis.key");
       return axis;
     }
     if (zip == nullptr && !key) {
@@ -86,7 +86,7 @@ class Reader : TomlReader {
     return axis;
   }
 
-  /// Lays a list of values along the axis. @param where  its key in the study file
+  /// Adds a list of values of a key to the axis. @param where  its key in the study file
   void along(Axis& axis, const std::string& key, const toml::node& node, const std::string& where) {
     const toml::array* array = node.as_array();
     if (array == nullptr || array->empty()) {
@@ -138,7 +138,7 @@ class Reader : TomlReader {
     const bool whole = table->get("from")->is_integer() && table->get("to")->is_integer() && !log &&
                        static_cast<std::int64_t>(*to - *from) % (count - 1) == 0;
     for (std::int64_t i = 0; i < count; ++i) {
-      // The ends exactly as they are written.
+      // The ends of the range are exactly the given numbers.
       const double share = static_cast<double>(i) / static_cast<double>(count - 1);
       const double value = i == 0           ? *from
                            : i == count - 1 ? *to
@@ -183,7 +183,7 @@ class Reader : TomlReader {
     }
   }
 
-  /// Every value of every axis with every one of the others.
+  /// All combinations of the axes' values.
   void cross(const std::vector<Axis>& axes, const std::vector<Setting>& always, Study& study) {
     if (axes.empty()) return;
     std::set<std::string> names;
@@ -232,7 +232,7 @@ class Reader : TomlReader {
   }
 };
 
-/// A fault of a case, told where the study gives the value.
+/// A fault of a case, reported at the place in the study that gives the value.
 Fault in_study(const Fault& fault, const StudyCase& one) {
   for (const Setting& setting : one.settings) {
     if (fault.file != "--set " + setting.key + "=" + setting.value) continue;
@@ -248,7 +248,7 @@ Fault in_study(const Fault& fault, const StudyCase& one) {
 Study load_study(const std::filesystem::path& file) {
   const toml::table document = read_document(file, "the study");
   require_kind(document, file, FileKind::sweep);
-  return Reader(document, file).read();
+  return StudyReader(document, file).read();
 }
 
 std::optional<std::string> value_in(std::string_view text, const std::filesystem::path& file, const std::string& key) {

@@ -11,10 +11,10 @@
 
 namespace touchstone::compare {
 
-using namespace scene;  // the reader of TOML and its words
+using namespace scene;  // the TOML reader and its types
 namespace {
 
-/// What may be fitted, or with `models` chosen too, under every name that it has.
+/// Keys that may be fitted and, with `models`, keys that choose a model; with all their names.
 std::vector<std::string> tunable_names(bool models) {
   std::vector<std::string> names;
   for (const auto& field : scene_fields()) {
@@ -25,13 +25,13 @@ std::vector<std::string> tunable_names(bool models) {
   return names;
 }
 
-/// The words of a choice of model.
+/// The allowed words of a key that chooses a model.
 std::vector<std::string> words_of(const Field<Scene>& field) {
   const auto& names = std::get<Choice<Scene>>(field.access).names;
   return {names.begin(), names.end()};
 }
 
-/// The constants that a scene must have as it is now, but had no need of as it was before.
+/// Constants that scene `now` requires and scene `before` did not.
 std::vector<const Field<Scene>*> newly_required(const Scene& before, const Scene& now) {
   std::vector<const Field<Scene>*> list;
   for (const auto& field : scene_fields()) {
@@ -46,10 +46,10 @@ Scene with_law(Scene scene, ContactLaw law) {
   return scene;
 }
 
-class Reader : TomlReader {
+class TuningReader : TomlReader {
  public:
-  Reader(const toml::table& document, const std::filesystem::path& file,
-         const std::function<std::vector<Fault>(const Scene&)>& check)
+  TuningReader(const toml::table& document, const std::filesystem::path& file,
+               const std::function<std::vector<Fault>(const Scene&)>& check)
       : TomlReader(document, file), check_(check) {}
 
   TuningStudy read() {
@@ -90,7 +90,7 @@ class Reader : TomlReader {
     return otherwise;
   }
 
-  /// Two numbers, the first below the second.
+  /// Two numbers, the first smaller than the second.
   std::optional<std::array<double, 2>> interval(const toml::node& node, const std::string& where, const Range& range,
                                                 const std::string& unit) {
     const toml::array* array = node.as_array();
@@ -103,7 +103,7 @@ class Reader : TomlReader {
     return std::nullopt;
   }
 
-  /// A word or a list of them, as values of an enumeration in the order of `words`.
+  /// A word or a list of words, as values of an enumeration in the order of `words`.
   template <class Enum>
   std::vector<Enum> choices(const std::string& key, const std::vector<std::string>& words) {
     std::vector<Enum> list;
@@ -196,14 +196,14 @@ class Reader : TomlReader {
     if (profile != nullptr && !profile->is_boolean()) add(*profile, "parameter.profile: expected true or false");
     for (const TuningParameter& other : study.parameters) {
       if (tunable_field(other.key) == field) {
-        add(table, "parameter.key = \"" + key + "\": \"" + other.key + "\" is the same constant already");
+        add(table, "parameter.key = \"" + key + "\": \"" + other.key + "\" stands for the same constant");
       }
     }
     study.parameters.push_back(std::move(out));
     places_.push_back(&table);
   }
 
-  /// What needs the contacts: laws and formulations of their own, and parameters that none of them has.
+  /// Checks and defaults that depend on the contacts: laws and formulations, and parameters that no contact uses.
   void complete(TuningStudy& study) {
     const Scene& first = study.training.front().scene;
     if (study.formulations.empty()) study.formulations = {first.fast.formulation};
@@ -219,7 +219,7 @@ class Reader : TomlReader {
       if (!complete) {
         const toml::node* node = document_.get("law");
         add(node != nullptr ? *node : document_, std::string("law: the scenes have no linear constant for \"") +
-                                                     (law == ContactLaw::duffing ? "duffing" : "area_aware") +
+                                                     std::string(name_of(law).word) +
                                                      "\"; expected a [[parameter]] with it");
       }
     }
@@ -254,7 +254,7 @@ class ParameterReader : TomlReader {
 
   Scene over(Scene scene) {
     const Scene before = scene;
-    // Which constants apply hangs on the model.
+    // Which constants apply depends on the model, so its choices are read first.
     for (const bool models : {true, false}) take(document_, "", models, scene);
     for (const Field<Scene>* field : newly_required(before, scene)) {
       if (given_.contains(field)) continue;
@@ -266,7 +266,7 @@ class ParameterReader : TomlReader {
   }
 
  private:
-  /// @param models  the choices of the model, else the constants
+  /// @param models  read the choices of the model, else the constants
   void take(const toml::table& table, const std::string& above, bool models, Scene& scene) {
     for (const auto& [name, node] : table) {
       const std::string key = above + std::string(name.str());
@@ -330,7 +330,7 @@ TuningStudy load_tuning_study(const std::filesystem::path& file,
                               const std::function<std::vector<Fault>(const Scene&)>& check) {
   const toml::table document = read_document(file, "the study");
   require_kind(document, file, FileKind::tuning);
-  return Reader(document, file, check).read();
+  return TuningReader(document, file, check).read();
 }
 
 }  // namespace touchstone::compare

@@ -55,7 +55,7 @@ using scene::TuningStage;
 
 /// One free number of the fast model.
 struct TuningParameter {
-  std::string key;  ///< a name that scene::tunable_field knows
+  std::string key;  ///< a name for scene::tunable_field
   std::string unit;
   TuningStage stage = TuningStage::force;
   double low = 0.0, high = 0.0;

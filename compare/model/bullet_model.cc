@@ -42,14 +42,14 @@ class BulletModel final : public ContactModel {
         body.step(scene::pose_at(scene_.track, time_s).position_m);
       }
       instant.displacement_m = body.displacement_m(asked.surface.points_m);
-      if (!body.sound()) throw Unavailable("its body flew apart");
+      if (!body.sound()) throw Unavailable("the simulation became unstable");
     }
   }
 
   [[nodiscard]] int size() const override { return body_.surface_triangles(); }
   [[nodiscard]] std::string note() const override {
     return fmt::format(
-        "implicit steps of 1 ms with Poisson's ratio {}; it tells neither the force on the tool nor its "
+        "implicit steps of 1 ms with Poisson's ratio {}; it gives neither the force on the tool nor its "
         "memory",
         number_text(setting_.poissons_ratio));
   }
@@ -60,7 +60,7 @@ class BulletModel final : public ContactModel {
   bench::BulletPeer body_;
 };
 
-/// Why Bullet's block cannot stand for a scene's body; empty when it can.
+/// Why Bullet's block cannot represent a scene's body; empty if it can.
 std::string unlike_bullet(const scene::Scene& scene) {
   const scene::Body& body = scene.body;
   if (body.shape != scene::BodyShape::box || (body.size_m.array() != body.size_m.x()).any())
@@ -81,7 +81,7 @@ std::vector<ModelEntry> bullet_models(const ModelRequest& request) {
     if (why.empty()) why = unlike_bullet(contact);
   }
   if (!why.empty()) {
-    return {{.name = name, .key = "bullet", .family = ModelFamily::peer, .absent = "not this scene: " + why}};
+    return {{.name = name, .key = "bullet", .family = ModelFamily::simulator, .absent = "not this scene: " + why}};
   }
   std::vector<ModelEntry> models;
   for (const int cells : request.quick ? std::vector{4} : std::vector{6, 9}) {
@@ -90,7 +90,7 @@ std::vector<ModelEntry> bullet_models(const ModelRequest& request) {
         {.name = fmt::format("{}, {} triangles", name, triangles),
          .key = fmt::format("bullet-{}", triangles),
          .label = "Bullet " + thousands_text(triangles),
-         .family = ModelFamily::peer,
+         .family = ModelFamily::simulator,
          .set_up = [cells](const scene::Scene& scene) { return std::make_unique<BulletModel>(scene, cells); },
          .gives_force = false});
   }
@@ -100,7 +100,7 @@ std::vector<ModelEntry> bullet_models(const ModelRequest& request) {
 std::vector<ModelEntry> bullet_models(const ModelRequest&) {
   return {{.name = "Bullet's deformable body",
            .key = "bullet",
-           .family = ModelFamily::peer,
+           .family = ModelFamily::simulator,
            .absent = "built without Bullet"}};
 }
 #endif

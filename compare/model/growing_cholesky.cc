@@ -37,8 +37,8 @@ bool GrowingCholesky::add(Eigen::Index index) {
 void GrowingCholesky::remove(Eigen::Index row) {
   const auto m = static_cast<Eigen::Index>(part_.size());
   part_.erase(part_.begin() + row);
-  // The columns behind move up by one, which leaves an entry below the diagonal in each; rotations of two rows at a
-  // time take them away.
+  // The later columns move up by one, which leaves one entry below the diagonal in each. Givens rotations of two rows
+  // at a time remove these entries.
   for (Eigen::Index j = row; j + 1 < m; ++j) upper_.col(j).head(j + 2) = upper_.col(j + 1).head(j + 2);
   for (Eigen::Index k = row; k + 1 < m; ++k) {
     const double a = upper_(k, k), b = upper_(k + 1, k);

@@ -21,7 +21,7 @@ void add_instant(scene::Answer& answer, double time_s, const scene::Pose& tool, 
   record.displacement_m.setZero(3, answer.surface.points_m.cols());
 }
 
-/// Median over the track's first ticks, where the model does not know.
+/// The model's own figure, else the median over the track's first ticks.
 double step_p50_us(ContactModel& model, const scene::Scene& scene) {
   if (const std::optional<double> known_us = model.step_p50_us()) return *known_us;
   if (const std::optional<KnownSteps> known = model.known_steps()) return 1e6 * known->total_s / known->count;
@@ -100,7 +100,7 @@ Contenders contenders(const scene::Scene& scene, const std::vector<std::filesyst
   Contenders out{scene, list_models(request, compared_models())};
   for (const std::string& key : keys) {
     ModelEntry& entry = out.models.emplace_back(find_model(request, key));
-    entry.name = entry.label;  // short, for the table
+    entry.name = entry.label;  // a short name for the table
   }
   return out;
 }

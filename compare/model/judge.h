@@ -33,7 +33,7 @@ struct JudgedModel {
   Measure force_nrmse{}, shape_rel_l2{};
   double step_p50_us = std::numeric_limits<double>::quiet_NaN();  ///< over the ticks of the track
   std::string trouble{};                                          ///< see ContactModel
-  std::string absent{};                                           ///< why there are no errors; empty where there are
+  std::string absent{};                                           ///< why there are no errors; else empty
 };
 
 /// Models that are judged on one scene.

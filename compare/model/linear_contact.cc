@@ -10,7 +10,7 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Less than this is round-off of a gap.
+/// A smaller gap is round-off.
 constexpr double gap_tolerance_m = 1e-13;
 
 }  // namespace
@@ -36,7 +36,7 @@ void LinearContact::find_rest_gaps(const scene::Pose& pose) {
       const scene::Vec3 to_center_m = pose.position_m - nodes_m_.col(i);
       const double along_m = to_center_m.dot(normals_.col(i));
       const double half2_m2 = ball_radius_m_ * ball_radius_m_ - to_center_m.squaredNorm() + along_m * along_m;
-      // A ball wholly behind the node is seen through the body.
+      // If the ball lies entirely behind the node, the line meets it through the body; this does not count.
       const bool met = half2_m2 >= 0.0 && along_m + std::sqrt(half2_m2) >= 0.0;
       rest_gap_m_[i] = met ? along_m - std::sqrt(half2_m2) : infinite;
     }
@@ -56,7 +56,7 @@ void LinearContact::solve_touching() {
 }
 
 void LinearContact::change_all() {
-  // One by one while few change, which is nearly always.
+  // Single insertions and removals while few nodes change, which is the usual case.
   constexpr std::size_t few = 16;
   const std::vector<Eigen::Index>& part = factor_.part();
   next_.clear();
@@ -101,7 +101,8 @@ void LinearContact::step(const scene::Pose& pose) {
   for (std::size_t k = factor_.part().size(); k-- > 0;) {
     if (!std::isfinite(rest_gap_m_[factor_.part()[k]])) factor_.remove(static_cast<Eigen::Index>(k));
   }
-  // All nodes change at once, which takes a few rounds; should that ever go round in circles, the worst one alone.
+  // All violated nodes change at once, which usually converges in a few iterations. Should the active set cycle, only
+  // the most violated node changes.
   const int nodes_at_once = 20, most_rounds = 20 + 4 * nodes();
   solved_ = false;
   for (int round = 0; round < most_rounds && !solved_; ++round) {

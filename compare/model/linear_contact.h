@@ -1,4 +1,4 @@
-// The honest competitor of a fast contact model: the body as a precomputed linear compliance, the rigid tool against it
+// A linear model for comparison: the body as a precomputed linear compliance, the rigid tool against it
 // without friction, solved exactly in every step.
 //
 // With gap s_i of node i at rest along its normal, compliance C and contact forces f,
@@ -33,12 +33,12 @@ class LinearContact {
   [[nodiscard]] const scene::Vec3& force_n() const noexcept { return force_n_; }  ///< on the tool
   [[nodiscard]] Eigen::Matrix3Xd displacement_m() const;                          ///< of the response's rest points
 
-  /// Of the last step, per node: contact force, and gap, infinite where the tool passes the node's normal by.
+  /// Of the last step, per node: contact force, and gap, infinite if the node's normal misses the tool.
   [[nodiscard]] const Eigen::VectorXd& node_force_n() const noexcept { return node_force_n_; }
   [[nodiscard]] const Eigen::VectorXd& gap_m() const noexcept { return gap_m_; }
   [[nodiscard]] int nodes() const noexcept { return static_cast<int>(gap_m_.size()); }
   [[nodiscard]] int touching() const noexcept { return static_cast<int>(factor_.part().size()); }
-  /// The last step's contact was found.
+  /// Whether the last step's contact was solved.
   [[nodiscard]] bool solved() const noexcept { return solved_; }
 
   /// What is kept between steps.
@@ -47,8 +47,8 @@ class LinearContact {
  private:
   void find_rest_gaps(const scene::Pose& pose);
   void solve_touching();
-  /// The next contact: lets every node go that pulls and takes in every one inside the tool, or the worst one alone.
-  /// Without any the contact is solved.
+  /// The next contact: releases every node with a negative force and adds every node inside the tool, or only the most
+  /// violated one. If there is none, the contact is solved.
   void change_all();
   void change_worst();
 

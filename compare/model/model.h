@@ -19,10 +19,10 @@ namespace touchstone::compare {
 /// Models of a family have one colour in the plots.
 enum class ModelFamily {
   paper,       ///< the paper's skeleton with its own law
-  area_aware,  ///< the same skeleton with the area-aware law
+  area_aware,  ///< the same skeleton with another law
   compliance,  ///< precomputed linear compliance with a contact solve
   response,    ///< a half space in closed form and the body's precomputed response
-  peer,        ///< another simulator's deformable body
+  simulator,   ///< another simulator's deformable body
   reference,   ///< the reference's levels
   other,
 };
@@ -38,7 +38,7 @@ class Unavailable : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What steps took that were made before, such as a solver's that keeps its results.
+/// Times of steps from an earlier run, for a solver that stores its results.
 struct KnownSteps {
   double total_s = 0.0;
   int count = 0;
@@ -59,18 +59,18 @@ class ContactModel {
   virtual void answer(scene::Answer& asked) = 0;
 
   [[nodiscard]] virtual int size() const = 0;  ///< surface triangles, or unknowns
-  /// Model and state; absent where the model does not know.
+  /// Of model and state; absent if unknown.
   [[nodiscard]] virtual std::optional<double> memory_bytes() const { return std::nullopt; }
   [[nodiscard]] virtual std::optional<KnownSteps> known_steps() const { return std::nullopt; }
-  /// What a reader must know to compare the model; may be empty.
+  /// A remark for comparing the model; may be empty.
   [[nodiscard]] virtual std::string note() const { return {}; }
-  /// What went wrong while it answered; empty when nothing did.
+  /// Faults of the last answer(); empty if there were none.
   [[nodiscard]] virtual std::string trouble() const { return {}; }
-  /// Median time of a step in the last answer() [us]; absent where it was not taken.
+  /// Median time of a step in the last answer() [us]; absent if it was not measured.
   [[nodiscard]] virtual std::optional<double> step_p50_us() const { return std::nullopt; }
-  /// What of the last answer() only this model tells, by keys of summary.json.
+  /// Further figures of the last answer(), by keys of summary.json.
   [[nodiscard]] virtual scene::Figures figures() const { return {}; }
-  /// The scene's whole track with all that the fast model records beside its answer, for pages about that model.
+  /// The scene's whole track with everything that the fast model records, for pages about that model.
   /// Nothing from any other.
   [[nodiscard]] virtual std::optional<fast::Run> track() { return std::nullopt; }
 };
@@ -99,13 +99,13 @@ struct ModelEntry {
   ModelFamily family = ModelFamily::other;
   /// @throws Unavailable
   std::function<std::unique_ptr<ContactModel>(const scene::Scene&)> set_up{};
-  /// Faster than set_up() and answer() with every change of a constant. Empty: there is nothing faster.
+  /// A faster way to repeat set_up() and answer() with other constants. Empty: there is none.
   std::function<std::unique_ptr<ModelReplay>(const scene::Scene&)> replay{};
   bool gives_force = true;
   bool own = false;                ///< the model that a comparison's page is about
-  bool yardstick = false;          ///< the reference's finest answer, which all are compared with
+  bool finest_reference = false;   ///< the reference's finest level, by which all are judged
   std::optional<int> triangles{};  ///< of the surface it is judged on; absent: the scene's
-  std::string absent{};            ///< why there is no such model here; then set_up is not called
+  std::string absent{};            ///< why the model is not available; then set_up is not called
 };
 
 }  // namespace touchstone::compare

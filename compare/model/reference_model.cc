@@ -63,7 +63,7 @@ std::vector<ModelEntry> reference_models(const ModelRequest& request) {
                             return std::make_unique<ReferenceModel>(solve(scene, surface, level),
                                                                     reference::choose_model(scene).dim);
                           },
-                      .yardstick = level == levels});
+                      .finest_reference = level == levels});
   }
   return models;
 }

@@ -1,4 +1,4 @@
-// Which models there are.
+// The list of models.
 #pragma once
 
 #include "compare/model/request.h"
@@ -8,11 +8,11 @@
 
 namespace touchstone::compare {
 
-/// Every kind, in the order in which tables list them: what `trade` judges, and what gates and `compare` know by key. A
-/// new kind is a line here.
+/// Every kind, in the order in which tables list them: `trade` judges all of them, gates and `compare` find them by
+/// key. A new kind is a line here.
 [[nodiscard]] const std::vector<ModelList>& registered_models();
 
-/// The kinds that every comparison judges beside each other. One that belongs there is a line here too.
+/// The kinds that every comparison judges.
 [[nodiscard]] const std::vector<ModelList>& compared_models();
 
 [[nodiscard]] std::vector<ModelEntry> list_models(const ModelRequest& request, const std::vector<ModelList>& kinds);

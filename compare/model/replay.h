@@ -1,4 +1,4 @@
-// A model for a fit, whether or not it has anything faster than to be set up anew.
+// A model's forces and shapes for a fit, by its own replay or by a new set-up in every call.
 #pragma once
 
 #include "compare/model/model.h"

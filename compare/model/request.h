@@ -1,4 +1,4 @@
-// What a list of models is made from.
+// The choices that determine a list of models.
 #pragma once
 
 #include "compare/model/model.h"
@@ -11,11 +11,11 @@
 
 namespace touchstone::compare {
 
-/// What models are chosen by.
+/// The scene, contacts and options from which models are chosen.
 struct ModelRequest {
   const scene::Scene& scene;
   std::vector<scene::Scene> contacts{};             ///< that they are judged on; empty: the scene
-  std::vector<std::filesystem::path> parameters{};  ///< files that tune left, each a model more
+  std::vector<std::filesystem::path> parameters{};  ///< files of tuned constants, each one more model
   bool quick = false;                               ///< small sizes
   std::function<int()> reference_levels{};          ///< that every contact's reference has; empty: it is no model here
   /// The reference of a contact on so many levels.

@@ -78,7 +78,7 @@ ModelEntry skeleton(ModelEntry entry, const Change& change) {
 }
 
 ModelFamily family_of(const Scene& scene) {
-  return scene.contact.law == scene::ContactLaw::area_aware ? ModelFamily::area_aware : ModelFamily::paper;
+  return scene.contact.law == scene::ContactLaw::duffing ? ModelFamily::paper : ModelFamily::area_aware;
 }
 
 std::string name_of(scene::Formulation formulation) {
@@ -86,14 +86,11 @@ std::string name_of(scene::Formulation formulation) {
 }
 
 std::string method_of(const Scene& scene) {
-  return (scene.contact.law == scene::ContactLaw::duffing ? "Duffing, " : "area-aware, ") +
-         name_of(scene.fast.formulation);
+  return std::string(scene::name_of(scene.contact.law).title) + ", " + name_of(scene.fast.formulation);
 }
 
 bool same_model(const Scene& a, const Scene& b) {
-  return a.fast.formulation == b.fast.formulation && a.contact.law == b.contact.law &&
-         a.contact.k1_n_per_m == b.contact.k1_n_per_m && a.contact.k3_n_per_m3 == b.contact.k3_n_per_m3 &&
-         a.contact.k1_per_radius_n_per_m2 == b.contact.k1_per_radius_n_per_m2 && a.fast.s_c_m2 == b.fast.s_c_m2;
+  return a.fast.formulation == b.fast.formulation && a.contact == b.contact && a.fast.s_c_m2 == b.fast.s_c_m2;
 }
 
 Scene as_given(Scene scene) { return scene; }
@@ -167,11 +164,13 @@ std::vector<ModelEntry> skeleton_variants(const ModelRequest& request) {
 
 std::vector<ModelEntry> skeleton_models(const ModelRequest& request) {
   std::vector<ModelEntry> models;
-  const bool duffing = request.scene.contact.law == scene::ContactLaw::duffing;
+  const scene::ContactLaw law = request.scene.contact.law;
+  const std::string own_word(scene::name_of(law).word), own_title(scene::name_of(law).title);
+  const bool own_area_law = law == scene::ContactLaw::area_aware;
   using Form = std::pair<const char*, Scene (*)(Scene)>;
   for (const auto& [name, change] : {Form{"published", as_printed}, Form{"corrected", corrected}}) {
     const std::string form = name;
-    if (duffing) {
+    if (law == scene::ContactLaw::duffing) {
       models.push_back(skeleton({.name = form + " skeleton, Duffing law of the scene",
                                  .key = form + "-duffing",
                                  .label = form,
@@ -181,28 +180,36 @@ std::vector<ModelEntry> skeleton_models(const ModelRequest& request) {
       models.push_back({.name = form + " skeleton, Duffing law",
                         .key = form + "-duffing",
                         .family = ModelFamily::paper,
-                        .absent = "the scene's law is the area-aware one"});
+                        .absent = "the scene's law is the " + own_title + " one"});
+      if (!own_area_law) {
+        models.push_back(skeleton({.name = form + " skeleton, " + own_title + " law of the scene",
+                                   .key = form + "-" + own_word,
+                                   .label = form + ", " + own_title,
+                                   .family = ModelFamily::area_aware},
+                                  change));
+      }
     }
-    const std::string from = duffing ? "k1 and s_c of material and size" : "of the scene";
+    const std::string from = own_area_law ? "of the scene" : "k1 and s_c of material and size";
     models.push_back(skeleton({.name = form + " skeleton, area-aware law, " + from,
                                .key = form + "-area-aware",
                                .label = form + ", area-aware",
                                .family = ModelFamily::area_aware},
-                              [change = change, duffing](Scene scene) {
+                              [change = change, own_area_law](Scene scene) {
                                 scene = change(std::move(scene));
-                                return duffing ? with_untuned_area_law(std::move(scene)) : scene;
+                                return own_area_law ? scene : with_untuned_area_law(std::move(scene));
                               }));
   }
   for (const std::filesystem::path& file : request.parameters) {
     const Scene tuned = with_parameters(request.scene, file);
-    const bool area_aware = tuned.contact.law == scene::ContactLaw::area_aware;
+    const bool duffing = tuned.contact.law == scene::ContactLaw::duffing;
+    const std::string title(scene::name_of(tuned.contact.law).title);
     const std::string form = name_of(tuned.fast.formulation);
-    models.push_back(skeleton({.name = fmt::format("{} skeleton, {} law, tuned ({})", form,
-                                                   area_aware ? "area-aware" : "Duffing", file.filename().string()),
-                               .key = "tuned-" + file.stem().string(),
-                               .label = form + (area_aware ? ", area-aware" : "") + ", tuned",
-                               .family = family_of(tuned)},
-                              [file](Scene scene) { return with_parameters(std::move(scene), file); }));
+    models.push_back(
+        skeleton({.name = fmt::format("{} skeleton, {} law, tuned ({})", form, title, file.filename().string()),
+                  .key = "tuned-" + file.stem().string(),
+                  .label = form + (duffing ? "" : ", " + title) + ", tuned",
+                  .family = family_of(tuned)},
+                 [file](Scene scene) { return with_parameters(std::move(scene), file); }));
   }
   return models;
 }
@@ -212,7 +219,7 @@ std::vector<ModelEntry> skeleton_meshes(const ModelRequest& request) {
   const std::vector<int> sizes = request.quick ? std::vector{400, 1000} : std::vector{1000, 3952, 16000, 100000};
   const bool tuned = !request.parameters.empty();
   for (const int triangles : sizes) {
-    if (triangles == request.scene.fast.triangles) continue;  // is there already
+    if (triangles == request.scene.fast.triangles) continue;  // already in the list
     const Change change = [triangles, tuned, file = tuned ? request.parameters.front() : ""](Scene scene) {
       if (tuned) scene = with_parameters(std::move(scene), file);
       scene.fast.triangles = triangles;

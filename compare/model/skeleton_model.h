@@ -17,7 +17,7 @@ namespace touchstone::compare {
 /// The fast model with the scene's own constants, which `fast`, `compare`, `tune` and gates are about.
 [[nodiscard]] ModelEntry fast_model();
 
-/// What the steps of a run complain about; empty when nothing.
+/// The status messages of a run's steps; empty if there are none.
 [[nodiscard]] std::string trouble_of(const fast::Run& run);
 
 /// Which constants to use: the paper's model as printed, the area-aware law that needs no tuning, the scene's own, and

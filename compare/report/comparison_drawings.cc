@@ -7,15 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace touchstone::compare {
 namespace {
 
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* band_name = "reference's uncertainty";
 
-/// One number per instant; NaN where there is none, which a plot leaves out.
+/// One number per instant; a plot leaves out NaN.
 template <class Get>
 std::vector<double> series(const Errors& errors, const Get& get) {
   std::vector<double> out;
@@ -23,7 +21,7 @@ std::vector<double> series(const Errors& errors, const Get& get) {
   return out;
 }
 
-/// What the instants are drawn over.
+/// The quantity along the horizontal axis.
 struct Abscissa {
   std::string name, label;
   std::vector<double> values;
@@ -37,7 +35,7 @@ Abscissa time_of(const Errors& errors) {
   return {"time", "time [s]", series(errors, [](const InstantErrors& e) { return e.time_s; })};
 }
 
-/// Depth where it only grows: instants at one depth would stand above each other.
+/// Whether the depth only increases: two instants at one depth would be drawn above each other.
 bool only_deeper(const Abscissa& depth) {
   return std::adjacent_find(depth.values.begin(), depth.values.end(), [](double before, double now) {
            return now > 0.0 ? now < before * (1.0 + 1e-6) : now < before;
@@ -52,7 +50,7 @@ Plot plot_over(const Abscissa& x, const std::string& title, const std::string& y
   return plot;
 }
 
-/// Force of both sides with the reference's band.
+/// Force of both sides with the reference's uncertainty as a band.
 Plot force_over(const Errors& errors, const Abscissa& x) {
   Plot plot = plot_over(x, "Force over " + x.name, "force on the tool [N]");
   Band band{band_name, Look::reference, x.values, {}, {}};
@@ -68,7 +66,7 @@ Plot force_over(const Errors& errors, const Abscissa& x) {
   return plot;
 }
 
-/// What there is to see of the reference's uncertainty in a plot of its force.
+/// Caption about the reference's uncertainty in a plot of its force.
 std::string band_caption(const Plot& plot, const Errors& errors, const reference::Result& result) {
   const std::optional<double> known = force_known_to(errors);
   std::string text;
@@ -89,8 +87,8 @@ std::string band_caption(const Plot& plot, const Errors& errors, const reference
   const bool missed =
       asked > 0.0 && (known.value_or(0.0) > asked || errors.shape_rel_l2.uncertainty.value_or(0.0) > asked);
   if (missed && !refinement.why_ended.empty()) {
-    text += fmt::format(" An uncertainty of {} was asked for and not reached: {}.", percent_text(asked),
-                        refinement.why_ended);
+    text +=
+        fmt::format(" The requested uncertainty of {} was not reached: {}.", percent_text(asked), refinement.why_ended);
   }
   return text;
 }
@@ -98,7 +96,7 @@ std::string band_caption(const Plot& plot, const Errors& errors, const reference
 Drawing logarithmic(Plot plot, const Errors& errors) {
   plot.title = "Force over depth, both axes logarithmic";
   plot.x_log = plot.y_log = true;
-  // A grazing instant's rounding would take most of the decades.
+  // At a grazing instant the force is round-off, which would take most of the decades.
   for (std::size_t t = 0; t < errors.instants.size(); ++t) {
     if (errors.instants[t].in_contact) continue;
     for (Curve& curve : plot.curves) curve.y[t] = no_value;
@@ -108,10 +106,10 @@ Drawing logarithmic(Plot plot, const Errors& errors) {
           to_svg(plot)};
 }
 
-/// Friction of both sides over the path of the tool's point at the contact.
+/// Friction of both sides over the slip path.
 Drawing friction_drawing(const Errors& errors) {
   const Abscissa path{"path", "path of the tool along the surface [mm]",
-                      series(errors, [](const InstantErrors& e) { return 1e3 * e.way_m; })};
+                      series(errors, [](const InstantErrors& e) { return 1e3 * e.path_m; })};
   Plot plot = plot_over(path, "Friction over the path", "friction on the tool [N]");
   plot.curves.push_back({"reference", Look::reference, path.values,
                          series(errors, [](const InstantErrors& e) { return e.friction_reference_n; })});
@@ -126,8 +124,8 @@ double largest(const std::vector<double>& values) {
   return found;
 }
 
-/// An error in percent with the reference's uncertainty in the same norm. Logarithmic where the sizes differ too much
-/// for one linear axis.
+/// An error in percent and the reference's uncertainty in the same norm. The axis is logarithmic if the values differ
+/// too much for a linear one.
 Drawing error_drawing(const Abscissa& x, const std::string& name, const std::string& title, const std::string& y_label,
                       const std::vector<double>& error, const std::vector<double>& uncertainty, std::string caption) {
   Plot plot = plot_over(x, title + " over " + x.name, y_label);
@@ -156,17 +154,18 @@ Drawing shape_error(const Errors& errors, const Abscissa& x) {
       x, "shape-error", "Shape error", "error / displacement, RMS [%]",
       series(errors, [](const InstantErrors& e) { return 100.0 * e.shape_rel_l2.value.value_or(no_value); }),
       series(errors, [](const InstantErrors& e) { return 100.0 * e.shape_rel_l2.uncertainty.value_or(no_value); }),
-      "Over the whole surface, weighted by area. A surface that never moves is 100 % off.");
+      "Over the whole surface, weighted by area. A surface that never moves has an error of 100 %.");
 }
 
 Drawing largest_error(const Errors& errors, const Abscissa& x) {
   Plot plot = plot_over(x, "Largest shape error over " + x.name, "distance [mm]");
-  plot.curves.push_back({"of one point from its true place", Look::fast, x.values,
+  plot.curves.push_back({"of one point from its reference position", Look::fast, x.values,
                          series(errors, [](const InstantErrors& e) { return 1e3 * e.shape_max_m; })});
   plot.curves.push_back({"between the two surfaces", Look::plain, x.values,
                          series(errors, [](const InstantErrors& e) { return 1e3 * e.hausdorff_m; })});
   return {"shape-largest-error",
-          "Points may slide along the surface unseen: then the surfaces are nearer than the points.", to_svg(plot)};
+          "Displacement errors along the surface do not separate the surfaces, which are then closer than the points.",
+          to_svg(plot)};
 }
 
 }  // namespace
@@ -209,11 +208,11 @@ std::string why_uncertainty_unknown(const reference::Result& result) {
 std::string slip_text(const Errors& errors) {
   const std::optional<double>&fast_m = errors.slip_onset_fast_m, &reference_m = errors.slip_onset_reference_m;
   if (fast_m && reference_m) {
-    return fmt::format("Sliding begins after {} of the path in the fast model and after {} in the reference.",
+    return fmt::format("Slip begins after {} of the path in the fast model and after {} in the reference.",
                        quantity_text(*fast_m, "m"), quantity_text(*reference_m, "m"));
   }
   const auto begins = [](const std::string& side, const std::optional<double>& path_m) {
-    return side + (path_m ? " slides after " + quantity_text(*path_m, "m") + " of the path" : " never slides");
+    return side + (path_m ? " slips after " + quantity_text(*path_m, "m") + " of the path" : " never slips");
   };
   return begins("The fast model", fast_m) + ", " + begins("the reference", reference_m) + ".";
 }
@@ -240,10 +239,10 @@ ComparisonDrawings comparison_drawings(const scene::Scene& scene, const fast::Ru
   if (errors.friction) out.forces.push_back(friction_drawing(errors));
   out.forces.push_back(force_error(errors, first));
   out.shapes = {
-      {"section", "Where the cut plane of the rest body has gone; true scale.",
+      {"section", "Deformed position of the rest body's cut plane; true scale.",
        section_svg(scene, run, result, errors.deepest, false)},
       {"section-contact",
-       "A surface should lie on the tool where they touch, and nowhere inside it. The reference is drawn on "
+       "In contact the surface should lie on the tool, and nowhere inside it. The reference is drawn on "
        "its own mesh, with dots at its nodes in this plane. The fast model is straight between its own points, "
        "the squares.",
        section_svg(scene, run, result, errors.deepest, true)},

@@ -21,15 +21,13 @@ using scene::InstantRecord;
 using scene::RegionRecord;
 using scene::Vec3;
 
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-
-/// More markers than this on a curve would hide it.
+/// A curve with more points has no markers.
 constexpr std::size_t most_markers = 32;
 
-/// More sections than this would not be looked at.
+/// Largest number of sections drawn.
 constexpr std::size_t most_sections = 6;
 
-/// A component smaller than this beside the largest cannot be told from zero in a plot.
+/// A component below this fraction of the largest is not visible in a plot.
 constexpr double visible_share = 5e-3;
 
 using Number = std::function<double(const InstantRecord&)>;
@@ -64,7 +62,7 @@ bool slides(const InstantRecord& record) {
   return std::any_of(record.regions.begin(), record.regions.end(), [](const RegionRecord& r) { return r.sliding; });
 }
 
-/// Null while there is no region of this id.
+/// Null if there is no region of this id.
 const RegionRecord* find_region(const InstantRecord& record, int id) {
   const auto found =
       std::find_if(record.regions.begin(), record.regions.end(), [id](const RegionRecord& r) { return r.id == id; });
@@ -77,7 +75,7 @@ std::size_t most_regions(const fast::Run& run) {
   return most;
 }
 
-/// The ids that occur are 0 to one less than this.
+/// Largest region id plus one.
 int region_ids(const fast::Run& run) {
   int ids = 0;
   for (const InstantRecord& record : run.instants) {
@@ -86,7 +84,7 @@ int region_ids(const fast::Run& run) {
   return ids;
 }
 
-/// The last of the instants [from, to) at which a quantity is largest.
+/// The last of the instants [from, to) at which a quantity has its maximum.
 std::size_t last_largest(const fast::Run& run, std::size_t from, std::size_t to, const Number& get) {
   std::size_t found = from;
   for (std::size_t t = from; t < to; ++t) {
@@ -105,7 +103,7 @@ double shallowest_region_m(const InstantRecord& record) {
   return depth_m;
 }
 
-/// Instants [from, to) with one number of regions.
+/// Consecutive instants [from, to) with the same number of regions.
 struct Stage {
   std::size_t from, to;
 };
@@ -120,7 +118,7 @@ std::vector<Stage> stages_of(const fast::Run& run) {
   return stages;
 }
 
-/// Instants in contact past what may be the way down.
+/// Instants in contact after the tool has reached 90 % of its largest depth.
 std::vector<std::size_t> pressed_instants(const fast::Run& run) {
   const double least_m = 0.9 * run.instants[deepest_of(run)].depth_m;
   std::vector<std::size_t> pressed;
@@ -134,7 +132,7 @@ double size_m(const scene::Surface& surface) {
   return (surface.points_m.rowwise().maxCoeff() - surface.points_m.rowwise().minCoeff()).maxCoeff();
 }
 
-/// The tool's way along the world axis it travels farthest while pressed.
+/// Displacement of the tool along the world axis of its longest motion while in contact.
 struct Travel {
   int axis;  ///< 0: x, 1: y
   double from_m, to_m;
@@ -155,7 +153,7 @@ constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
 
 std::string regions_text(std::size_t count) { return fmt::format("{} region{}", count, count == 1 ? "" : "s"); }
 
-/// Adjacent instants of one name as one span, from midway to midway; an empty name is none.
+/// Consecutive instants of the same name as one span, bounded midway between instants; an empty name makes no span.
 std::vector<Span> spans_by(const fast::Run& run, const std::function<std::string(const InstantRecord&)>& name,
                            const std::function<double(const InstantRecord&)>& shade) {
   std::vector<Span> spans;
@@ -194,8 +192,8 @@ Plot over_time(const fast::Run& run, const std::string& title, const std::string
   return plot;
 }
 
-/// Curves of the components of a force that can be seen beside its largest, and of its magnitude where it is not one of
-/// them alone.
+/// Curves of the force components that are visible beside the largest, and of the magnitude unless it equals a single
+/// component.
 /// @returns a sentence about the components left out
 std::string add_components(Plot& plot, const fast::Run& run, const std::string& symbol, const Number& x,
                            const std::function<Vec3(const InstantRecord&)>& force_n) {
@@ -228,7 +226,7 @@ Look look_of(int id) {
   return looks[static_cast<std::size_t>(id) % looks.size()];
 }
 
-/// One curve per region, named where there are several.
+/// One curve per region; they have names if there are several.
 void add_regions(Plot& plot, const fast::Run& run,
                  const std::function<double(const InstantRecord&, const RegionRecord&)>& x,
                  const std::function<double(const RegionRecord&)>& y) {
@@ -264,7 +262,7 @@ Drawing along_path(const fast::Run& run, const Travel& travel, const std::string
   return drawing(name, note, plot);
 }
 
-/// What a section is of, in a few words.
+/// A short description of the instant of a section.
 std::string instant_text(const scene::Scene& scene, const fast::Run& run, std::size_t instant) {
   const InstantRecord& record = run.instants[instant];
   std::string text = fmt::format("{}{}s", number_text(record.time_s), no_break);
@@ -279,7 +277,7 @@ std::string instant_text(const scene::Scene& scene, const fast::Run& run, std::s
   return text;
 }
 
-/// The rest body and what of the tool is near it.
+/// Sets the range to the rest body and the nearby part of the tool.
 void show_whole(Plot& plot, const scene::Surface& surface) {
   const double top_mm = 1e3 * tool_shown_below_m(surface);
   std::pair<double, double> x{0.0, 0.0}, z{0.0, 0.0};
@@ -295,7 +293,7 @@ void show_whole(Plot& plot, const scene::Surface& surface) {
   plot.y_range = {z.first - margin_mm, z.second + margin_mm};
 }
 
-/// Of one scale at all instants; with several regions at a time also of one place.
+/// Ranges of equal scale at all instants; with several regions at a time also of the same place.
 std::vector<Window> contact_windows(const scene::Scene& scene, const fast::Run& run,
                                     const std::vector<std::size_t>& instants) {
   std::vector<Window> windows;
@@ -317,7 +315,7 @@ std::vector<Window> contact_windows(const scene::Scene& scene, const fast::Run& 
 }
 
 /// The same section at several instants, side by side.
-/// @param show  sets what a plot shows, given the place of its instant among those shown
+/// @param show  sets the range of a plot, given its index among the instants shown
 Drawing sections(const scene::Scene& scene, const fast::Run& run, const std::vector<std::size_t>& instants,
                  const std::string& name, const std::string& title, const std::string& caption,
                  const std::function<void(Plot&, std::size_t)>& show) {
@@ -335,7 +333,7 @@ Drawing sections(const scene::Scene& scene, const fast::Run& run, const std::vec
   return {name, caption, one ? panels[0] : in_rows(title, panels, 3, width_px, height_px), !one};
 }
 
-/// How far the upper side of the section has moved up or down, heights exaggerated.
+/// Vertical displacement of the upper side of the section; vertical scale exaggerated.
 Drawing dent(const scene::Scene& scene, const fast::Run& run, const std::vector<std::size_t>& instants) {
   Plot plot;
   plot.title = "Dent in the section";
@@ -362,7 +360,7 @@ Drawing dent(const scene::Scene& scene, const fast::Run& run, const std::vector<
     plot.curves.push_back(std::move(curve));
   }
   if (low_mm < high_mm) plot.y_range = {1.06 * low_mm, 1.06 * high_mm};
-  return drawing("dent", "Of the upper side; heights exaggerated.", plot);
+  return drawing("dent", "Upper side only; vertical scale exaggerated.", plot);
 }
 
 }  // namespace
@@ -472,7 +470,7 @@ std::vector<Drawing> shape_drawings(const scene::Scene& scene, const fast::Run& 
   if (most_regions(run) == 0) return out;
   const std::vector<Window> windows = contact_windows(scene, run, shown);
   out.push_back(sections(scene, run, shown, "contact", "Around the contact",
-                         "The same nearer; between the surface's points it is drawn straight.",
+                         "The same, enlarged; straight lines between the surface's points.",
                          [&](Plot& plot, std::size_t i) { show_contact(plot, windows[i]); }));
   out.push_back(dent(scene, run, shown));
 

@@ -14,9 +14,6 @@
 namespace touchstone::compare {
 namespace {
 
-/// Unscaled, as on the time axes.
-std::string seconds_text(double time_s) { return fmt::format("{}{}s", number_text(time_s), no_break); }
-
 std::string head_section(const scene::Scene& scene, const fast::Run& run) {
   const auto strongest = std::max_element(run.instants.begin(), run.instants.end(), [](const auto& a, const auto& b) {
     return a.force_n().norm() < b.force_n().norm();

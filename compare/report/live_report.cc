@@ -13,8 +13,6 @@
 namespace touchstone::compare {
 namespace {
 
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-
 std::string us_text(double us) { return quantity_text(us, "us"); }
 
 /// "1 tick", "2000 ticks".
@@ -23,12 +21,9 @@ std::string counted(double count, const std::string& one) {
 }
 std::string counted(std::int64_t count, const std::string& one) { return counted(static_cast<double>(count), one); }
 
-/// Unscaled, as on the time axes.
-std::string seconds_text(double time_s) { return fmt::format("{}{}s", number_text(time_s), no_break); }
-
 double period_us(const live::LiveResult& result) { return 1e6 / result.rate_hz; }
 
-/// Ticks that were due.
+/// Number of ticks that were due.
 std::int64_t due(const live::LiveResult& result) { return result.ledger.ticks + result.ledger.missed; }
 
 double missed_part(const live::LiveResult& result) {
@@ -42,7 +37,7 @@ std::string device_words(live::DeviceKind device) {
     case live::DeviceKind::replay:
       return "the poses in the log of an earlier run";
     case live::DeviceKind::hand:
-      return "a simulated hand that follows the scene's track and yields to the force";
+      return "a simulated hand, a mass with spring and damper that follows the scene's track";
   }
   return "an unknown device";
 }
@@ -60,7 +55,7 @@ std::string interval_words(const live::LiveResult& result) {
                      us_text(static_cast<double>(length) * period_us(result)));
 }
 
-/// Time of the largest force sent, where there was one.
+/// Time of the largest force sent; empty if none was sent.
 std::string when_largest(const live::LiveResult& result) {
   const std::vector<live::Interval>& intervals = result.history.intervals();
   const auto largest = std::ranges::max_element(intervals, {}, &live::Interval::force_max_n);
@@ -86,20 +81,20 @@ std::string tiles(const scene::Scene& scene, const live::LiveResult& result) {
   return out + "</div>\n";
 }
 
-/// Whether all went well, and what did not.
+/// Summary: whether all ticks were done and what was limited or missing.
 std::string verdict(const live::LiveResult& result) {
   const live::Ledger& ledger = result.ledger;
   std::string out = ledger.ticks == 0 ? "No tick was done." : "";
   if (ledger.ticks > 0 && ledger.missed == 0) out = "Every tick was done.";
   if (ledger.missed > 0) {
     const bool one = ledger.missed == 1;
-    out = fmt::format("{} of {} ticks {} missed: the loop came to {} more than a period late and left {} out.",
+    out = fmt::format("{} of {} ticks {} missed: the loop reached {} more than a period late and skipped {}.",
                       number_text(static_cast<double>(ledger.missed)), number_text(static_cast<double>(due(result))),
                       one ? "was" : "were", one ? "it" : "them", one ? "it" : "them");
   }
-  if (result.interrupted) out += " The run was ended by a signal (Ctrl-C) before its time.";
+  if (result.interrupted) out += " The run was ended early by a signal (Ctrl-C).";
   if (ledger.limited_ticks > 0) {
-    out += fmt::format(" In {} the limits changed the model's force before it was sent.",
+    out += fmt::format(" In {} a safety limit changed the model's force before it was sent.",
                        counted(ledger.limited_ticks, "tick"));
   }
   if (ledger.bad_poses > 0) {
@@ -144,7 +139,7 @@ Plot force_plot(const scene::Scene& scene, const live::LiveResult& result) {
   return plot;
 }
 
-/// Durations in ten columns per factor of ten; a logarithmic count shows the few that are long.
+/// Histogram with ten columns per decade; the logarithmic count axis makes few long ticks visible.
 Plot histogram_plot(const std::string& title, const fast::DurationHistogram& histogram, const std::string& x_label,
                     double period_us) {
   Plot plot = plot_of(title, x_label + " [µs]", "ticks");
@@ -161,7 +156,7 @@ Plot histogram_plot(const std::string& title, const fast::DurationHistogram& his
         histogram.count_between(step == first ? 0.0 : edge_ns(step),
                                 step == last ? std::numeric_limits<double>::infinity() : edge_ns(step + 1))));
   }
-  // Half a tick is the foot, so that a single one is seen.
+  // The axis begins at half a tick, so that a single tick is visible.
   plot.y_range = {0.5, 2.0 * std::ranges::max(bars.heights)};
   if (bars.edges.back() > period_us) plot.spans.push_back({"more than a period", period_us, bars.edges.back() * 2.0});
   plot.bars.push_back(std::move(bars));
@@ -177,7 +172,7 @@ std::string histogram_caption(const fast::DurationHistogram& histogram) {
 std::string first_screen(const scene::Scene& scene, const live::LiveOptions& options, const live::LiveResult& result) {
   std::string out = tag("h1", scene_title(scene)) + "\n";
   out += tag("p",
-             fmt::format("The fast contact model in the wall clock at {} ticks a second over {}. The device: {}.",
+             fmt::format("The fast contact model in real time at {} ticks a second over {}. The device: {}.",
                          number_text(result.rate_hz), seconds_text(result.planned_s), device_words(options.device)),
              "class=\"dim\"") +
          "\n";
@@ -225,15 +220,15 @@ Section faults_section(const live::LiveResult& result) {
   out += row("scheduling", result.scheduling.text());
   for (const std::string& warning : result.scheduling.warnings) out += row("warning", warning);
   if (result.replay) out += row("replay", replay_words(*result.replay));
-  out += row("end", result.interrupted ? "by a signal (Ctrl-C), before its time" : "as planned");
+  out += row("end", result.interrupted ? "by a signal (Ctrl-C), early" : "as planned");
   return {"Status and faults", out + "</table></div>\n"};
 }
 
 Section missed_section(const live::LiveResult& result) {
   const live::Ledger& ledger = result.ledger;
   const std::string rule =
-      "A tick that starts less than a period late is done late. One that lies longer back is missed: it is left out "
-      "and never made up for.";
+      "A tick that starts less than a period late is done late. One that is later is missed: it is skipped "
+      "and not made up for.";
   if (ledger.missed == 0) return {"Missed ticks", tag("p", "None. " + rule) + "\n"};
   Plot plot = plot_of("Missed ticks over time", "time [s]", "ticks missed");
   Bars bars{"", Look::fast, {}, {}};
@@ -247,7 +242,7 @@ Section missed_section(const live::LiveResult& result) {
     shown += intervals[i].missed;
   }
   if (!intervals.empty()) plot.x_range = {std::max(0.0, bars.edges.front()), bars.edges.back()};
-  // Whole numbers on the axis also where only one was missed.
+  // The axis has whole numbers even if only one tick was missed.
   if (!bars.heights.empty()) plot.y_range = {0.0, std::max(4.0, 1.1 * std::ranges::max(bars.heights))};
   plot.bars.push_back(std::move(bars));
   std::string caption = "Drawn where the loop went on after them.";
@@ -271,7 +266,7 @@ Section tick_section(const live::LiveResult& result) {
                   words + " " + histogram_caption(histogram));
   };
   add("The whole tick", ledger.step, "From waking to the end of the tick.");
-  add("From pose to force", ledger.force, "From waking to the force's arrival at the device: what a hand feels.");
+  add("From pose to force", ledger.force, "From waking until the device has the force.");
   out += "</div>\n<table>\n<tr><th>Time</th>";
   for (const char* head : {"median", "99 %", "99.9 %", "longest"}) out += tag("th", head, "class=\"n\"");
   out += "</tr>\n" + percentiles_row("lateness", ledger.lateness) + percentiles_row("pose to force", ledger.force) +

@@ -1,4 +1,4 @@
-// What a live run did, as a page.
+// The page of a live run.
 #pragma once
 
 #include "fast/live/live.h"

@@ -15,7 +15,7 @@ constexpr std::string_view reading_note =
     "Force error: root mean square over the track, relative to the largest force. Shape error: relative to the "
     "displacement; a body that never moves would have 100 %. <: below the reference's uncertainty.";
 
-/// What lies below the reference's uncertainty is not known any better than that.
+/// An error below the reference's uncertainty is only known to be below it.
 std::string error_text(const Measure& error) {
   if (!error.value) return "–";
   return error.distinguishable() ? percent_text(*error.value) : "< " + percent_text(*error.uncertainty);

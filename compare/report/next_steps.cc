@@ -20,18 +20,18 @@
 namespace touchstone::compare {
 namespace {
 
-/// Errors smaller than this need no better constants.
+/// Smaller errors need no better constants.
 constexpr double small_error = 0.05;
 
-/// A trial is worth a command when it leaves no more than this share of the error.
+/// A trial is suggested if the remaining error is at most this fraction of the present one.
 constexpr double worth_it = 0.8;
 
-/// Trials end when they have taken this long together [s].
+/// No further trials after this total time [s].
 constexpr double trial_time_s = 5.0;
 
 bool has(std::uint32_t status, fast::StepStatus bit) { return (status & static_cast<std::uint32_t>(bit)) != 0; }
 
-/// The two figures that a trial is judged by, as Errors has them.
+/// The two errors by which a trial is judged, as in Errors.
 struct Trial {
   double force_nrmse = 0.0, shape_rel_l2 = 0.0;
   std::uint32_t status = 0;
@@ -54,10 +54,10 @@ Trial tried(const scene::Scene& changed, const reference::Result& result, const 
           run.status};
 }
 
-/// Two digits, as one would type it.
+/// Two significant digits, as a user would type them.
 std::string typed(double value) { return fmt::format("{:.2g}", value); }
 
-/// A study that trains on this scene, beside it or in the folder "studies" beside its own.
+/// A tuning study that trains on this scene, from its folder or the folder "studies" beside that.
 std::filesystem::path tuning_study_of(const std::filesystem::path& scene_file) {
   const std::filesystem::path here = scene_file.parent_path();
   for (const std::filesystem::path& folder : {here, here.parent_path() / "studies"}) {
@@ -74,7 +74,7 @@ std::filesystem::path tuning_study_of(const std::filesystem::path& scene_file) {
                                         [&](const auto& contact) { return contact.scene.name == scene_file.stem(); });
         if (trains) return file;
       } catch (const scene::InputError&) {
-        continue;  // somebody else's half-written file
+        continue;  // an unfinished file in the same folder
       }
     }
   }
@@ -113,7 +113,7 @@ class Finder {
                     number_text(nearest->time_s), no_break, quantity_text(separation_m(*nearest), "m")));
   }
 
-  /// Only the fast model may know it.
+  /// Only the fast model may have it.
   [[nodiscard]] double separation_m(const scene::ReferenceInstant& record) const {
     const auto index = static_cast<std::size_t>(&record - result_.instants.data());
     return std::max(record.separation_m, run_.instants[index].separation_m);
@@ -121,10 +121,10 @@ class Finder {
 
   void less_deep() {
     if (has(run_.status, fast::StepStatus::depth_limited)) {
-      add("Press less deep: beyond half of the body's thickness the fast model only holds its depth.");
+      add("Press less deeply: beyond half of the body's thickness the fast model limits its depth.");
     }
     if (has(run_.status, fast::StepStatus::law_saturated)) {
-      add("Press less deep, or raise contact.k3_n_per_m3: past its peak the contact law only holds its force.");
+      add("Press less deeply, or raise contact.k3_n_per_m3: beyond its peak the contact law keeps the peak force.");
     }
   }
 
@@ -145,13 +145,13 @@ class Finder {
     if (scene_.reference.levels && *scene_.reference.levels < 3) {
       add("Solve the reference on three meshes. With fewer its uncertainty is unknown.", command_text(more, ""));
     } else if (ended_by == reference::EndedBy::sensitivity || ended_by == reference::EndedBy::convergence) {
-      return;  // the verdict says why no mesh helps
+      return;  // the verdict says why finer meshes do not help
     } else if ((unknown || *force > 0.002) && ended_by == reference::EndedBy::memory) {
       add("A finer mesh needs more memory than is allowed. On a machine that has it, allow it with --memory-gib; "
           "otherwise make the first mesh coarser with reference.element_size_m.");
     } else if ((unknown || *force > 0.002) && ended_by == reference::EndedBy::time) {
       more.reference.minutes = 4.0 * call_.reference.minutes.value_or(default_minutes);
-      add("Give the reference more time. What it has solved is kept.", command_text(more, ""));
+      add("Give the reference more time. Finished load steps are kept.", command_text(more, ""));
     } else if (!unknown && *force > 0.002) {
       const double half = 0.5 * std::max(*force, *errors_.shape_rel_l2.uncertainty);
       more.reference.error = std::stod(typed(std::clamp(half, 1e-4, 0.5)));
@@ -159,7 +159,7 @@ class Finder {
     }
   }
 
-  /// Stiffer ones where the anchor points were held back, else whatever brings the shape nearer.
+  /// Stiffer beams if anchor points were limited, else the stiffness with the smallest shape error.
   void other_beams() {
     const bool limited = has(run_.status, fast::StepStatus::anchors_limited);
     const double before = errors_.shape_rel_l2.value.value_or(0.0);
@@ -175,14 +175,14 @@ class Finder {
       const Trial trial = tried(changed, result_, errors_);
       if (has(trial.status, fast::StepStatus::anchors_limited)) continue;
       if (!best || trial.shape_rel_l2 < best->second.shape_rel_l2) best = {changed.fast.s_c_m2, trial};
-      // The beams only need to be stiff enough; as stiff as a rock they would move nothing.
+      // Beams only need to be stiff enough; much stiffer ones would not move at all.
       if (limited && trial.shape_rel_l2 > best->second.shape_rel_l2) break;
     }
     if (!best || (!limited && best->second.shape_rel_l2 > worth_it * before)) return;
     const bool stiffer = best->first > scene_.fast.s_c_m2;
     add(fmt::format("Take {} beams. Tried: the shape error goes from {} to {}{}.", stiffer ? "stiffer" : "softer",
                     percent_text(before), percent_text(best->second.shape_rel_l2),
-                    limited ? ", and no anchor point has to be held back" : ""),
+                    limited ? ", and no anchor displacement is limited" : ""),
         again(" --set fast.s_c_m2=" + typed(best->first)));
   }
 

@@ -1,4 +1,4 @@
-// What to type next: commands for this very scene, each tried with the fast model against the reference at hand where
+// The next commands for this scene, each tried with the fast model against the reference at hand where
 // that can be tried.
 #pragma once
 

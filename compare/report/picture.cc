@@ -28,7 +28,7 @@ constexpr int row_px = 380;  ///< width of each of three
 
 Rgb colour_of(ColourMap map, double share) {
   const std::vector<std::array<int, 3>>& table = colour_table(map);
-  // Nothing moves: 0 / 0 takes the first colour too.
+  // Without any displacement this is 0 / 0, which takes the first colour.
   const double at = (share > 0.0 ? std::min(share, 1.0) : 0.0) * static_cast<double>(table.size() - 1);
   const std::size_t low = std::min(static_cast<std::size_t>(at), table.size() - 2);
   const double t = at - static_cast<double>(low);
@@ -41,10 +41,10 @@ std::string hex(const Rgb& c, double brightness) {
   return fmt::format("#{:02x}{:02x}{:02x}", byte(c.r), byte(c.g), byte(c.b));
 }
 
-/// Parallel projection from in front, above and a little to the right of the cut.
+/// Parallel projection: the view is from the front, above and slightly from the right.
 class Camera {
  public:
-  /// @param seen_m  points that must lie within the given rectangle
+  /// @param seen_m  points that must lie inside the given rectangle
   Camera(const std::vector<Vec3>& seen_m, double left_px, double top_px, double width_px, double height_px) {
     const double azimuth = 24.0 * std::numbers::pi / 180.0, elevation = 30.0 * std::numbers::pi / 180.0;
     towards_ =
@@ -89,7 +89,7 @@ struct Face {
   std::string svg;
 };
 
-/// One half of a body: its far surface from back to front, then the cut, which nothing hides.
+/// One half of a body: its far surface from back to front, then the cut, which covers them.
 std::string half_body(const scene::Surface& surface, const Eigen::Matrix3Xd& displacement_m, double y_m,
                       const Eigen::VectorXd& shade_by_m, double full_scale_m, ColourMap map, const Camera& camera) {
   const Vec3 light = Vec3(-0.35, -0.45, 0.82).normalized();
@@ -136,15 +136,15 @@ std::string label(double x, double y, const std::string& anchor, const std::stri
                      anchor, extra, escape_xml(text));
 }
 
-/// What colours stand for.
+/// The quantity that the colours show.
 struct ColourScale {
   ColourMap map;
-  double full_m;  ///< of the last colour
+  double full_m;  ///< value of the last colour
   std::string what;
-  bool clipped = false;  ///< values above the scale occur and take its last colour
+  bool clipped = false;  ///< some values exceed the scale and have its last colour
 };
 
-/// Horizontal, in millimetres.
+/// A horizontal colour bar, in millimetres.
 std::string colour_bar(const ColourScale& scale, double left_px, double top_px, double width_px) {
   constexpr int strips = 48;
   std::string out;
@@ -160,9 +160,8 @@ std::string colour_bar(const ColourScale& scale, double left_px, double top_px, 
                        x, top_px + 11, top_px + 15);
     out += label(x, top_px + 27, "middle", number_text(tick));
   }
-  return out +
-         label(left_px + 0.5 * width_px, top_px + 44, "middle",
-               fmt::format("{} [mm]{}", scale.what, scale.clipped ? "; the last colour also stands for more" : ""));
+  return out + label(left_px + 0.5 * width_px, top_px + 44, "middle",
+                     fmt::format("{} [mm]{}", scale.what, scale.clipped ? "; larger values have the last colour" : ""));
 }
 
 double largest(const Eigen::VectorXd& values) {
@@ -171,12 +170,12 @@ double largest(const Eigen::VectorXd& values) {
   return found;
 }
 
-/// What a half-cut view is made of, but for the displacement.
+/// The parts of a half-cut view other than the displacement.
 struct HalfCut {
   const scene::Surface& surface;
   double y_m;
   Outlines tool_m, inclusions_m;
-  std::vector<Vec3> seen_m;  ///< what the view must show: the rest body's rear half, and the tool near it
+  std::vector<Vec3> seen_m;  ///< what must be visible: rear half of the body at rest, nearby part of the tool
 
   HalfCut(const scene::Scene& scene, const scene::Surface& rest, const scene::Pose& pose)
       : surface(rest),
@@ -201,7 +200,7 @@ struct HalfCut {
     const Camera camera(seen_m, 14, view_top_px, width_px - 28, view_px);
     std::string out = svg_opening(title, width_px, static_cast<int>(view_height_px));
     out += label(0.5 * width_px, 20, "middle", title, " font-size=\"14\" font-weight=\"600\"");
-    // A viewport of its own keeps a body gone wild out of its neighbours.
+    // Its own viewport, so that a diverged shape does not cover the neighbouring views.
     out += fmt::format(
         "<svg x=\"{0:.0f}\" y=\"{1:.0f}\" width=\"{2:.0f}\" height=\"{3:.0f}\" viewBox=\"{0:.0f} {1:.0f} {2:.0f} "
         "{3:.0f}\" "
@@ -222,8 +221,8 @@ struct HalfCut {
   }
 };
 
-/// A body's section is one outline. On a reference's mesh it has gaps where a face meets two halves of another along a
-/// curved edge.
+/// The section of a body is one closed curve. On the reference's mesh it has gaps where one face meets two smaller ones
+/// along a curved edge.
 constexpr double gap_share = 5e-3;
 
 std::vector<std::vector<EdgePoint>> cut_of(const DeformedBody& body, double y_m) {
@@ -241,7 +240,7 @@ Outlines moved_m(const DeformedBody& body, const std::vector<std::vector<EdgePoi
   return outlines_m;
 }
 
-/// Small marks at those points of the cut that are wanted.
+/// Small markers at the selected points of the cut.
 void add_points(Plot& plot, const DeformedBody& body, double y_m, const std::function<bool(const EdgePoint&)>& wanted) {
   Curve curve{"", body.look, {}, {}};
   curve.points_only = true;
@@ -297,7 +296,7 @@ std::vector<std::string> half_cut_svgs(const scene::Scene& scene, const fast::Ru
   const Eigen::VectorXd fast_size_m = fast_m.colwise().norm();
   const Eigen::VectorXd reference_size_m = reference_m.colwise().norm();
   const Eigen::VectorXd error_m = (fast_m - reference_m).colwise().norm();
-  // The reference sets the scale: a fast model gone wild must not wash out the truth.
+  // The reference determines the colour scale, so that a diverged fast model does not hide the reference's colours.
   const double full_m = largest(reference_size_m) > 0.0 ? largest(reference_size_m) : largest(fast_size_m);
   const bool clipped = largest(fast_size_m) > 1.001 * full_m;
   const HalfCut cut(scene, run.surface, result.instants[instant].tool);

@@ -68,7 +68,7 @@ std::string pdf_of(const std::string&) { throw std::logic_error("this build has 
 
 void write_plots(const std::filesystem::path& folder, const std::vector<Drawing>& drawings) {
   std::filesystem::create_directories(folder);
-  // An earlier comparison may have had plots that this one has not.
+  // An earlier comparison may have left plots that this one does not have.
   for (const std::string& name : ComparisonDrawings::names()) {
     for (const char* ending : {".svg", ".pdf"}) std::filesystem::remove(folder / (name + ending));
   }

@@ -2,6 +2,7 @@
 
 #include "compare/errors/figures.h"
 #include "compare/format/page.h"
+#include "compare/format/svg_plot.h"
 #include "compare/format/text.h"
 #include "compare/report/viewer.h"
 
@@ -9,21 +10,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace touchstone::compare {
 namespace {
 
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-
 std::string measure_note(const Measure& measure) {
-  if (!measure.value) return "no contact to relate it to";
+  if (!measure.value) return "undefined without contact";
   if (!measure.uncertainty) return "the reference's uncertainty is unknown";
   return fmt::format("± {}, the reference's own{}", percent_text(*measure.uncertainty),
                      measure.distinguishable() ? "" : ": not distinguishable");
 }
 
-/// A figure's value, a dash where it has no meaning.
+/// The value of a figure, or a dash if it is undefined.
 std::string measure_text(const Measure& measure) { return quantity_text(measure.value, "", "–"); }
 
 std::string tiles(const ReportContent& c) {
@@ -48,7 +46,7 @@ std::string tiles(const ReportContent& c) {
   return out + "</div>\n";
 }
 
-/// What was typed to make the page; nothing where the manifest does not say.
+/// The command that made the page; empty if the manifest does not have it.
 std::string command_line(const scene::Manifest& manifest) {
   const auto typed = std::find_if(manifest.entries.begin(), manifest.entries.end(),
                                   [](const auto& entry) { return entry.first == "command_line"; });
@@ -62,7 +60,7 @@ std::string figures_of(const std::vector<Drawing>& drawings) {
   return out;
 }
 
-/// What is read first: numbers, two sentences, the force and both bodies.
+/// The top of the page: numbers, two sentences, the force and both bodies.
 std::string first_screen(const ReportContent& c) {
   std::string out = tiles(c);
   if (!c.models.empty()) out += model_table_html(c.models);
@@ -132,14 +130,14 @@ Section instants_section(const ReportContent& c) {
   return {"Every instant", out + "</table></div>\n", true};
 }
 
-/// What a reader should know about an error beside its number.
+/// Note beside an error: whether it is distinguishable from the reference's uncertainty.
 std::string remark(const scene::Figure& value, const scene::Figure* uncertainty) {
   if (uncertainty == nullptr || !value.text.empty()) return "";
   if (!uncertainty->text.empty()) return "";
   return std::abs(value.number) <= uncertainty->number ? "not distinguishable" : "";
 }
 
-/// Said by a figure that has no meaning in this scene.
+/// False for a figure that is undefined in this scene.
 bool applies(const scene::Figure& figure) { return !figure.text.starts_with("undefined"); }
 
 Section figures_section(const ReportContent& c) {
@@ -171,7 +169,7 @@ Section figures_section(const ReportContent& c) {
   out += "</table></div>\n";
   const auto left_out = std::count_if(c.figures.begin(), c.figures.end(), [](const auto& f) { return !applies(f); });
   if (left_out > 0) {
-    out += tag("p", "Figures that have no meaning in this scene are left out; summary.json says of each why.",
+    out += tag("p", "Figures that are undefined in this scene are left out; summary.json gives the reasons.",
                "class=\"dim\"") +
            "\n";
   }

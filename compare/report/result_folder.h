@@ -1,4 +1,4 @@
-// A result folder read back: what a verb left behind, for pages and windows over finished results.
+// Reads a finished result folder of a command, for pages and windows.
 #pragma once
 
 #include "scene/output/figures.h"

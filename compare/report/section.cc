@@ -21,10 +21,10 @@ bool is_behind(const scene::Surface& surface, Eigen::Index vertex, double y_m) {
   return surface.points_m(1, vertex) >= y_m;
 }
 
-/// Fine enough that a sphere's cut looks round.
+/// Fine enough that the section of a sphere looks round.
 constexpr int drawn_triangles = 8000;
 
-/// A point between two others adds nothing where these lie on a line with it.
+/// Removes points that lie on the line between their neighbours.
 std::vector<scene::Vec3> without_straight_points(const std::vector<scene::Vec3>& outline_m, double tolerance_m) {
   std::vector<scene::Vec3> kept_m;
   for (std::size_t i = 0; i < outline_m.size(); ++i) {
@@ -101,7 +101,7 @@ std::vector<std::vector<EdgePoint>> cut_at_y(const scene::Surface& surface, doub
     if (found == 2) segments.push_back(segment);
   }
 
-  // Chain by nearest end: patches do not share vertices, so the same place has several indices.
+  // Chains segments by the nearest end point: patches do not share vertices, so one place has several indices.
   std::vector<std::vector<EdgePoint>> outlines;
   for (Segment& first : segments) {
     if (first.used) continue;
@@ -130,7 +130,7 @@ std::vector<std::vector<EdgePoint>> cut_at_y(const scene::Surface& surface, doub
     if ((outline.front().of(surface.points_m) - outline.back().of(surface.points_m)).norm() <= same_place_m) {
       outline.pop_back();
     }
-    // Where many triangles meet a hair off the plane some are left over, all in one place.
+    // Where many triangles meet slightly off the plane, some segments are left over, all at one place.
     const scene::Vec3 first_m = outline.front().of(surface.points_m);
     const auto is_there = [&](const EdgePoint& p) { return (p.of(surface.points_m) - first_m).norm() <= same_place_m; };
     if (!std::all_of(outline.begin(), outline.end(), is_there)) outlines.push_back(std::move(outline));

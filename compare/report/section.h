@@ -20,13 +20,13 @@ struct EdgePoint {
 };
 
 /// Closed outlines of the cut, each without its first point repeated; empty when the plane misses the surface.
-/// No rest point may lie on the plane, for it would be on either side by rounding: choose one a hair off.
+/// No rest point may lie on the plane, where rounding would decide its side: choose a plane slightly beside it.
 /// @param gap_share  of the surface's size: ends of the cut no further apart than this belong together
 [[nodiscard]] std::vector<std::vector<EdgePoint>> cut_at_y(const scene::Surface& surface, double y_m,
                                                            double gap_share = 1e-6);
 
-/// The plane through the tool's mass centre, or the nearest that meets the body, a hair off so that no rest point lies
-/// on it.
+/// The plane through the tool's mass centre, or the nearest that meets the body, slightly beside it so that no rest
+/// point lies on it.
 [[nodiscard]] double cut_y_m(const scene::Surface& surface, const scene::Pose& tool);
 
 /// Closed outlines in the world frame, each without its first point repeated [m].

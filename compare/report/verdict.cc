@@ -19,15 +19,15 @@ namespace {
 /// The paper's Table I for rubber, read in millimetres and newtons: k1 = m w0^2, k3 = (3/4) m b0^2 eps (errata E2).
 constexpr double table1_k1_n_per_m = 40.0, table1_k3_n_per_m3 = 3.0e8;
 
-/// The law and the material disagree when one gives this many times the other's force.
+/// The law disagrees with the material if one gives this many times the other's force.
 constexpr double mismatch = 2.0;
 
-/// A surface left inside the tool by more than this share of the depth is seen at once.
+/// A penetration above this fraction of the depth is mentioned.
 constexpr double large_penetration_share = 0.1;
 
 std::string newtons(double force_n) { return quantity_text(force_n, "N"); }
 
-/// "169.6 N ± 0.2 N": the value to the digit its uncertainty leaves, four digits at most.
+/// "169.6 N ± 0.2 N": rounded to the digits that the uncertainty allows, four at most.
 std::string with_band(double force_n, double band_n) {
   if (!std::isfinite(band_n)) return newtons(force_n) + " (uncertainty unknown)";
   const auto exponent = [](double value) { return static_cast<int>(std::floor(std::log10(value))); };
@@ -55,14 +55,13 @@ std::string force_sentence(const Errors& errors) {
     return fmt::format("The fast model's force {} is not a finite number.", where);
   }
   if (!(deepest.force_reference_n > 0.0)) {
-    return fmt::format("The reference feels no force {}; the fast model's is {}.", where,
-                       newtons(deepest.force_fast_n));
+    return fmt::format("The reference has no force {}; the fast model's is {}.", where, newtons(deepest.force_fast_n));
   }
   return fmt::format("The fast model's force {} is {}: {}.", where,
                      how_wrong(deepest.force_fast_n / deepest.force_reference_n), numbers);
 }
 
-/// The force over the whole track, and its direction.
+/// The force error over the whole track, and the error of its direction.
 Reason force_paragraph(const Errors& errors) {
   if (!errors.force_nrmse.value) return {};
   std::string text = fmt::format("Over the whole track the error is {} of the peak force (root mean square)",
@@ -71,24 +70,25 @@ Reason force_paragraph(const Errors& errors) {
     text += fmt::format(". It is {} of the force itself where the depth exceeds {} of its largest",
                         percent_text(*errors.force_rel_deep.value), percent_text(deep_share));
   }
-  text += errors.force_nrmse.distinguishable() ? "." : ". Neither can be told from none.";
+  text += errors.force_nrmse.distinguishable() ? "." : ". Neither exceeds the reference's uncertainty.";
   const InstantErrors& deepest = errors.instants[errors.deepest];
-  // Same size, other direction.
+  // Equal magnitude, different direction.
   if (deepest.force_error_n > deepest.force_uncertainty_n && deepest.force_reference_n > 0.0 &&
       std::abs(deepest.force_fast_n - deepest.force_reference_n) < 0.5 * deepest.force_error_n) {
-    text += fmt::format(" At the deepest instant mostly the direction is wrong: the two force vectors are {} apart.",
-                        newtons(deepest.force_error_n));
+    text +=
+        fmt::format(" At the deepest instant the error is mostly one of direction: the two force vectors differ by {}.",
+                    newtons(deepest.force_error_n));
   }
   return {.about = "Force", .detail = text};
 }
 
-/// Why the force is off, as far as the scene's own numbers show; empty when they do not.
+/// Cause of the force error, as far as the scene's own numbers show it; else empty.
 Reason cause_paragraph(const scene::Scene& scene, const Errors& errors) {
   const InstantErrors& deepest = errors.instants[errors.deepest];
   if (!errors.force_peak_rel.distinguishable() || !(deepest.force_fast_n > 0.0)) return {};
   const double d = deepest.depth_m;
   const double law_n = scene.contact.k1_n_per_m * d + scene.contact.k3_n_per_m3 * d * d * d;
-  // Only Duffing's force is one of the depth alone, as Hertz's is.
+  // As in Hertz's formula, Duffing's force depends on the depth alone.
   const bool duffing = scene.contact.law == scene::ContactLaw::duffing;
   const std::optional<double> hertz_n = duffing ? hertz_force_n(scene, d) : std::nullopt;
   Reason out{.about = "Likely cause"};
@@ -102,7 +102,7 @@ Reason cause_paragraph(const scene::Scene& scene, const Errors& errors) {
     out.detail = fmt::format(
         "The law is F\u00a0=\u00a0k1\u00a0D\u00a0+\u00a0k3\u00a0D³ with k1 = {} N/m and k3 = {} N/m³; Hertz's formula "
         "takes "
-        "E = {} MPa and ν = {}. Nothing ties k1 and k3 to Young's modulus: they must be tuned.",
+        "E = {} MPa and ν = {}. k1 and k3 do not follow from Young's modulus: they must be tuned.",
         number_text(scene.contact.k1_n_per_m), number_text(scene.contact.k3_n_per_m3),
         number_text(1e-6 * scene.body.material.youngs_modulus_pa), number_text(scene.body.material.poissons_ratio));
     if (scene.contact.k1_n_per_m == table1_k1_n_per_m && scene.contact.k3_n_per_m3 == table1_k3_n_per_m3) {
@@ -110,11 +110,11 @@ Reason cause_paragraph(const scene::Scene& scene, const Errors& errors) {
     }
     if (deepest.force_fast_n < 0.95 * law_n) {
       out.detail += fmt::format(
-          " The model's force of {} is less than the law's, because it takes a mean depth of the contact region.",
+          " The model's force of {} is less than that, because its depth is a mean over the contact region.",
           newtons(deepest.force_fast_n));
     }
   }
-  // A constant factor could be scaled away; a factor that runs with the depth cannot.
+  // A constant factor can be corrected by scaling; a factor that varies with the depth cannot.
   double least = std::numeric_limits<double>::infinity(), most = 0.0, at_least_m = 0.0, at_most_m = 0.0;
   for (const InstantErrors& e : errors.instants) {
     if (!e.deep || !(e.force_reference_n > 0.0)) continue;
@@ -130,7 +130,7 @@ Reason cause_paragraph(const scene::Scene& scene, const Errors& errors) {
   }
   if (most > 1.3 * least) {
     const std::string form = fmt::format(
-        "the fast model gives {} of the reference's force at {} and {} at {}, so no single factor would put it right.",
+        "the fast model gives {} of the reference's force at {} and {} at {}, so no constant factor can correct it.",
         percent_text(least), quantity_text(at_least_m, "m"), percent_text(most), quantity_text(at_most_m, "m"));
     if (out.brief.empty()) {
       out.brief = "The form of the contact law: " + form;
@@ -140,33 +140,34 @@ Reason cause_paragraph(const scene::Scene& scene, const Errors& errors) {
   } else if (out.brief.empty() && least < most * (1.0 + 1e-12) && std::isfinite(least) && std::abs(most - 1.0) > 0.05) {
     out.brief = fmt::format(
         "The contact constants are not tuned to this contact. The fast model gives {} to {} of the reference's force "
-        "at every depth, so another constant would put it right.",
+        "at every depth, so another constant would correct it.",
         percent_text(least), percent_text(most));
   }
   return out;
 }
 
-/// What the fast model says of its own steps.
+/// Explains the fast model's status bits.
 std::vector<Reason> status_paragraphs(const scene::Scene& scene, const fast::Run& run) {
   std::vector<Reason> out;
   const auto add = [&](fast::StepStatus bit, std::string text) {
     if ((run.status & static_cast<std::uint32_t>(bit)) != 0) out.push_back({"Status", std::move(text)});
   };
   add(fast::StepStatus::not_finite,
-      "Some poses of the tool were not finite numbers; the fast model held its last good answer there.");
+      "Some poses of the tool were not finite numbers; the fast model kept its last valid result there.");
   add(fast::StepStatus::contact_missed,
-      "At some instant the tool is inside the body and none of its samples is, so the fast model has no force there. "
+      "At some instant the tool is inside the body but none of its samples is, so the fast model has no force there. "
       "Raise fast.tool_samples.");
   add(fast::StepStatus::depth_limited,
-      "The tool goes deeper than half of the body's thickness. The fast model held its depth there.");
-  add(fast::StepStatus::law_saturated, "The contact law is past its peak. The fast model held its force there.");
+      "The tool goes deeper than half of the body's thickness. The fast model limited its depth there.");
+  add(fast::StepStatus::law_saturated,
+      "The depth exceeds the peak of the contact law. The fast model kept the peak force there.");
   add(fast::StepStatus::regions_full,
       fmt::format("There are more contact regions than fast.max_regions = {}. The smallest were left out.",
                   scene.fast.max_regions));
   add(fast::StepStatus::anchors_limited,
       fmt::format(
           "The beams are too soft for this force (fast.s_c_m2 = {} m²). An anchor point would have moved farther "
-          "than the tool presses, and was held back there.",
+          "than the contact point, and was limited to its displacement.",
           number_text(scene.fast.s_c_m2)));
   return out;
 }
@@ -189,25 +190,26 @@ std::string shape_sentence(const Errors& errors) {
   const double error = *errors.shape_rel_l2.value;
   if (!errors.shape_rel_l2.distinguishable()) {
     return fmt::format(
-        "The deformed shapes are not distinguishable: they differ by {} of the displacement, the reference itself is "
-        "good to {}.",
+        "The deformed shapes are not distinguishable: they differ by {} of the displacement, and the reference's "
+        "uncertainty is "
+        "{}.",
         percent_text(error), percent_text(*errors.shape_rel_l2.uncertainty));
   }
   const std::string known = errors.shape_rel_l2.uncertainty ? " ± " + percent_text(*errors.shape_rel_l2.uncertainty)
                                                             : std::string(" (uncertainty unknown)");
   if (error > 1.0) {
     return fmt::format(
-        "The fast model's shape is off by {}{} of the displacement. That is worse than no deformation: a surface that "
-        "never moves is 100{}% off.",
+        "The fast model's shape error is {}{} of the displacement. That is worse than no deformation: a surface that "
+        "never moves has an error of 100{}%.",
         percent_text(error), known, no_break);
   }
   return fmt::format(
-      "The fast model's shape is off by {}{} of the displacement; a surface that never moves is 100{}% off.",
+      "The fast model's shape error is {}{} of the displacement; a surface that never moves has an error of 100{}%.",
       percent_text(error), known, no_break);
 }
 
-/// How far the fast model's surface goes along with the reference's: sum A u_f.u_r / sum A u_r.u_r. 1 where it goes as
-/// far in the mean, 0 where it stays.
+/// Mean ratio of the fast model's displacement to the reference's: sum A u_f.u_r / sum A u_r.u_r. 1 for equal
+/// displacements, 0 if the fast model's surface does not move.
 double moved_share(const fast::Run& run, const reference::Result& result) {
   double along = 0.0, scale = 0.0;
   for (std::size_t t = 0; t < run.instants.size(); ++t) {
@@ -227,11 +229,11 @@ Reason shape_paragraph(const scene::Scene& scene, const fast::Run& run, const re
   std::string text;
   const double share = moved_share(run, result);
   if (errors.shape_rel_l2.distinguishable() && std::isfinite(share) && (share < 0.8 || share > 1.25)) {
-    text += fmt::format(" In the mean the surface moves {} times as far as the reference's.", number_text(share, 2));
+    text += fmt::format(" On average the surface moves {} times as far as the reference's.", number_text(share, 2));
   }
   if (errors.shape_inside_r_rel_l2.value && errors.shape_outside_r_rel_l2.value) {
-    text += fmt::format(" Nearer than {} to the contact the error is {}, beyond that {}.",
-                        quantity_text(scene.fast.r_R_m, "m"), percent_text(*errors.shape_inside_r_rel_l2.value),
+    text += fmt::format(" Within {} of the contact the error is {}, outside {}.", quantity_text(scene.fast.r_R_m, "m"),
+                        percent_text(*errors.shape_inside_r_rel_l2.value),
                         percent_text(*errors.shape_outside_r_rel_l2.value));
     if (errors.shape_error_outside_share && *errors.shape_error_outside_share > 0.5) {
       text += fmt::format(" {} of the squared error lies away from the contact, where it is easily overlooked.",
@@ -249,7 +251,7 @@ Reason shape_paragraph(const scene::Scene& scene, const fast::Run& run, const re
   }
   if (errors.penetration_fast_rel.value_or(0.0) > large_penetration_share) {
     text += fmt::format(
-        " The fast model's surface does not follow the tool: it is left inside it by up to {} of the depth.",
+        " The fast model's surface does not follow the tool: the tool still penetrates it by up to {} of the depth.",
         percent_text(*errors.penetration_fast_rel));
   }
   return {.about = "Shape", .detail = text.empty() ? text : text.substr(1)};
@@ -309,7 +311,7 @@ Verdict verdict(const scene::Scene& scene, const fast::Run& run, const reference
   if (errors.force_peak_reference_n == 0.0) {
     out.force = errors.depth_max_m == 0.0
                     ? "The tool never touches the body on this track, so there is no force or shape to compare."
-                    : "The reference never feels a force on this track, so relative errors have no meaning.";
+                    : "The reference never has a force on this track, so relative errors have no meaning.";
     if (errors.force_peak_fast_n > 0.0) {
       out.force += fmt::format(" Yet the fast model reports a force of up to {}.", newtons(errors.force_peak_fast_n));
     }

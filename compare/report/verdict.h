@@ -1,4 +1,4 @@
-// The comparison in plain words, every number and every reason taken from the figures themselves.
+// The comparison in sentences, every number and every reason taken from the figures.
 #pragma once
 
 #include "compare/errors/errors.h"
@@ -27,7 +27,7 @@ struct Reason {
 };
 
 struct Verdict {
-  std::string force, shape;     ///< with numbers, for who reads no further
+  std::string force, shape;     ///< the result with its numbers
   std::vector<Reason> reasons;  ///< what limits each side, the most important first
   std::vector<NextStep> next;
 
@@ -39,7 +39,7 @@ struct Verdict {
 [[nodiscard]] Verdict verdict(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
                               const Errors& errors, const Call& call);
 
-/// How well the reference's force and shape are known, and why its refinement ended.
+/// The uncertainty of the reference's force and shape, and why its refinement ended.
 [[nodiscard]] std::string reference_sentence(const reference::Result& result, const Errors& errors);
 
 }  // namespace touchstone::compare

@@ -21,9 +21,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int chart_width_px = 560, chart_height_px = 250;
-constexpr int tool_triangles = 1500;
+constexpr int viewer_tool_triangles = 1500;
 
-/// Numbers in all instants together that keep the page at a few megabytes.
+/// Limit on the numbers of all instants together, which keeps the page at a few megabytes.
 constexpr std::size_t numbers_max = 600'000;
 constexpr std::size_t instants_max = 48;
 
@@ -76,7 +76,7 @@ Json data_of(const scene::Scene& scene, const fast::Run& run, const reference::R
   Json data;
   data["points_m"] = encoded(run.surface.points_m);
   data["triangles"] = encoded(run.surface.triangles);
-  const scene::Surface tool = scene::tool_surface(scene.tool, tool_triangles);
+  const scene::Surface tool = scene::tool_surface(scene.tool, viewer_tool_triangles);
   data["tool"] = {{"points_m", encoded(tool.points_m)}, {"triangles", encoded(tool.triangles)}};
   for (const ColourMap map : {ColourMap::displacement, ColourMap::error}) {
     data["colours"][map == ColourMap::error ? "error" : "displacement"] = colour_table(map);
@@ -107,7 +107,7 @@ Json data_of(const scene::Scene& scene, const fast::Run& run, const reference::R
   return data;
 }
 
-/// As the text of a script element, where neither HTML nor XML may see markup.
+/// Escaped for a script element, so that neither HTML nor XML finds markup in it.
 std::string script_text(const Json& data) {
   std::string out;
   for (const char c : data.dump(-1, ' ', false, Json::error_handler_t::replace)) {
@@ -147,7 +147,7 @@ std::vector<std::size_t> viewer_instants(std::size_t count, std::size_t deepest,
   const std::size_t wanted = std::min({count, instants_max, std::max<std::size_t>(fit, 3)});
   std::set<std::size_t> chosen;
   if (wanted < count) {
-    // One place is kept for the deepest.
+    // One place is reserved for the deepest instant.
     for (std::size_t i = 0; i + 1 < wanted; ++i) chosen.insert(i * (count - 1) / (wanted - 2));
     chosen.insert(deepest);
   } else {
@@ -160,10 +160,10 @@ std::string viewer_section(const scene::Scene& scene, const fast::Run& run, cons
                            const Errors& errors) {
   const std::size_t count = errors.instants.size();
   const std::vector<std::size_t> chosen = viewer_instants(count, errors.deepest, run.surface.points_m.cols());
-  // Paper takes the still picture below.
+  // In print the still picture below is used.
   std::string out = "<section class=\"screen\">\n" + tag("h3", "Both bodies in space");
   out += tag("p",
-             "The view in space needs scripts and WebGL, which this reader does not offer; the still picture below "
+             "The view in space needs scripts and WebGL, which this browser does not offer; the still picture below "
              "shows the deepest instant.",
              "id=\"viewer-still\" class=\"dim\"") +
          "\n<div id=\"viewer\" class=\"viewer\" hidden=\"hidden\">\n" + stage +

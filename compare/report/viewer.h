@@ -1,4 +1,4 @@
-// The part of the report that a reader turns and plays: both deformed bodies in space with the tool, by vtk.js.
+// The report's interactive view: both deformed bodies in three dimensions with the tool, by vtk.js.
 #pragma once
 
 #include "compare/errors/errors.h"
@@ -15,7 +15,7 @@ namespace touchstone::compare {
 [[nodiscard]] std::vector<std::size_t> viewer_instants(std::size_t count, std::size_t deepest, Eigen::Index points);
 
 /// Markup, data and script, well-formed XHTML that needs nothing else. Without scripts or WebGL a sentence that refers
-/// to the still picture below is all that shows. Displacements are held to single precision.
+/// to the still picture below is all that shows. Displacements have single precision.
 [[nodiscard]] std::string viewer_section(const scene::Scene& scene, const fast::Run& run,
                                          const reference::Result& result, const Errors& errors);
 

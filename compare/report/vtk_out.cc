@@ -18,8 +18,8 @@
 namespace touchstone::compare {
 namespace {
 
-/// Of an analytic tool's surface, to look round.
-constexpr int tool_triangles = 3000;
+/// Triangles of an analytic tool, enough to look round.
+constexpr int vtk_tool_triangles = 3000;
 
 void add_vectors(vtkPolyData* data, const char* name, const Eigen::Matrix3Xd& vectors) {
   vtkNew<vtkDoubleArray> array;
@@ -69,7 +69,7 @@ void write_series(const std::filesystem::path& folder, const std::string& name, 
   }
 }
 
-/// The body's rest surface with `add_arrays(instant, data)` for its point arrays.
+/// Writes the body's rest surface; `add_arrays(instant, data)` adds its point arrays.
 void write_body(const std::filesystem::path& folder, const scene::Surface& surface, const scene::Instants& instants,
                 const std::function<void(std::size_t, vtkPolyData*)>& add_arrays) {
   const vtkSmartPointer<vtkPolyData> rest = polydata_of(surface.points_m, surface.triangles);
@@ -101,7 +101,7 @@ void write_surfaces(const std::filesystem::path& folder, const fast::Run& run, c
 }
 
 void write_tool(const std::filesystem::path& folder, const scene::Tool& tool, const scene::Instants& instants) {
-  const scene::Surface own = scene::tool_surface(tool, tool_triangles);
+  const scene::Surface own = scene::tool_surface(tool, vtk_tool_triangles);
   write_series(folder, "tool", instants, [&](std::size_t t) {
     const scene::Pose& pose = instants[t].tool;
     return polydata_of((pose.orientation.toRotationMatrix() * own.points_m).colwise() + pose.position_m, own.triangles);

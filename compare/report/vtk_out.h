@@ -18,7 +18,7 @@ namespace touchstone::compare {
 void write_surfaces(const std::filesystem::path& folder, const fast::Run& run, const reference::Result& result,
                     const Errors& errors);
 
-/// Writes the tool as it stands at each instant: tool_0000.vtp ... and tool.pvd with the same times. Of its own file,
+/// Writes the tool at its pose of each instant: tool_0000.vtp ... and tool.pvd with the same times. Of its own file,
 /// so that surface.pvd stays one body to be warped and coloured: opened beside it in ParaView, both follow one clock.
 /// An analytic tool is drawn with some 3000 triangles, a mesh tool as it is.
 void write_tool(const std::filesystem::path& folder, const scene::Tool& tool, const scene::Instants& instants);

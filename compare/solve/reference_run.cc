@@ -18,7 +18,7 @@ namespace {
 
 std::string time_left_text(const reference::Progress& p) {
   if (p.seconds_left < 0.0) return "";
-  if (!std::isfinite(p.seconds_left)) return ", more time left than can be told";
+  if (!std::isfinite(p.seconds_left)) return ", too long to estimate the time left";
   return ", about " + reference::duration_text(p.seconds_left) + " left";
 }
 
@@ -47,7 +47,7 @@ scene::Scene asked(scene::Scene scene, const ReferenceOptions& options) {
 
 std::string progress_text(const reference::Progress& p) {
   if (p.level == 0) return "reference: " + p.note + time_left_text(p);
-  // What matters most first: a narrow terminal cuts the rest off.
+  // The most important part comes first: a narrow terminal cuts off the rest.
   std::string text = fmt::format("mesh {} of {}{}", p.level, p.at_least ? "at least " : "", p.levels);
   if (p.event)
     return text + fmt::format(" {}: {} unknowns, instant {} of {}{}", p.note, p.unknowns, p.instant, p.instants,
@@ -68,7 +68,7 @@ reference::Result solve_with_progress(const scene::Scene& scene, const scene::Su
   solve_options.stop = &fast::StopSignals::asked();
   solve_options.rest_area_m2 = surface.vertex_area_m2;
   if (options.memory_gib) solve_options.memory_limit_bytes = *options.memory_gib * gibibyte;
-  // Who asks for a number of meshes gets them.
+  // The default limits do not apply if a number of meshes is given.
   if (options.minutes || !scene.reference.levels) {
     solve_options.seconds_limit = 60.0 * options.minutes.value_or(default_minutes);
   }
@@ -121,7 +121,7 @@ std::string reference_text(const reference::Result& result) {
 }
 
 bool known_to(const reference::Result& result, double error) {
-  // Where nothing pushes or moves there is nothing to be uncertain about; an unknown uncertainty is no number.
+  // Without force or displacement no uncertainty is needed; an unknown uncertainty is NaN and fails.
   const auto small = [&](const std::optional<double>& rel) { return !rel || *rel <= error; };
   return result.levels.size() >= 3 && small(result.force_uncertainty_rel) && small(result.shape_uncertainty_rel);
 }

@@ -1,4 +1,4 @@
-// The offline side as the verbs run it: progress on the terminal, Ctrl-C, its own figures and curve.
+// The reference as the commands run it: progress on the terminal, Ctrl-C, its own figures and curve.
 #pragma once
 
 #include "reference/solver.h"
@@ -24,7 +24,7 @@ struct ReferenceOptions {
   std::optional<double> require_error = {};  ///< uncertainty of force and shape that the exit code depends on
 };
 
-/// What of it was said and bears on the answer, as it is typed, " --level 3 --minutes 20".
+/// The given options that affect the result, as typed: " --level 3 --minutes 20".
 [[nodiscard]] std::string options_text(const ReferenceOptions& options);
 
 /// The scene with the levels or the error that the command line asks for.
@@ -33,7 +33,7 @@ struct ReferenceOptions {
 /// One line for the terminal, the most important first.
 [[nodiscard]] std::string progress_text(const reference::Progress& progress);
 
-/// Solves, resumes or reads back, showing how far it is. Ctrl-C, SIGTERM or SIGHUP
+/// Solves, resumes or reads back, and shows the progress. Ctrl-C, SIGTERM or SIGHUP
 /// ends it after the current Newton iteration with reference::Interrupted; a second one ends the process at once.
 [[nodiscard]] reference::Result solve_with_progress(const scene::Scene& scene, const scene::Surface& surface,
                                                     const ReferenceOptions& options, bool quiet);
@@ -49,13 +49,13 @@ void write_reference(const std::filesystem::path& folder, const reference::Resul
 /// A few lines for the terminal: force with its uncertainty, model, cost, and the next.
 [[nodiscard]] std::string reference_text(const reference::Result& result);
 
-/// Two lines for the terminal: how far the answer is known, and why refinement ended.
+/// Two lines for the terminal: the uncertainty of the result, and why refinement ended.
 [[nodiscard]] std::string refinement_text(const reference::Result& result);
 
 /// Whether the uncertainties of force and shape are known and at most this.
 [[nodiscard]] bool known_to(const reference::Result& result, double error);
 
-/// The exit code of a verb whose results are written, with a sentence on stderr where --require-error is missed.
+/// The exit code of a command whose results are written, with a sentence on stderr where --require-error is missed.
 [[nodiscard]] int exit_of(const reference::Result& result, const ReferenceOptions& options);
 
 }  // namespace touchstone::compare

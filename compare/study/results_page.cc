@@ -11,27 +11,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <set>
 
 namespace touchstone::compare {
 namespace {
 
-/// Told apart on white and on black, by the colour-blind too (Okabe and Ito, without yellow and black).
-constexpr std::array palette = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"};
-
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-
-/// A result with what the page calls it.
+/// A result and its name on the page.
 struct Entry {
   const ResultFolder& result;
   std::string name, title, link;
 };
 
-/// How a page in `place` reaches a file, percent-encoded as an address.
+/// Link from a page in the folder `place` to a file, percent-encoded.
 std::string relative_link(const std::filesystem::path& file, const std::filesystem::path& place) {
   const std::string path =
       std::filesystem::proximate(std::filesystem::weakly_canonical(file), std::filesystem::weakly_canonical(place))
@@ -45,13 +38,13 @@ std::string relative_link(const std::filesystem::path& file, const std::filesyst
   return out;
 }
 
-/// A result with its place in the study it lies in, if it does.
+/// A result and its place in the study that contains it, if any.
 struct Placed {
   ResultFolder result;
   std::optional<StudyPlace> place;
 };
 
-/// Results of one study stand in the study's order, where the first of them was given.
+/// Results of one study are listed in the study's order, at the place of the first of them.
 std::vector<Placed> in_order(const std::vector<ResultFolder>& results) {
   std::vector<Placed> out;
   for (const ResultFolder& result : results) {
@@ -67,8 +60,8 @@ std::vector<Placed> in_order(const std::vector<ResultFolder>& results) {
   return out;
 }
 
-/// What its study calls it, with the study where others have the name, too; else the folder's name, with its parents'
-/// as far as needed to tell it from the others.
+/// The case's name in its study, with the study's name if several studies have such a case; else the folder's name,
+/// with as many parent folders as needed to be unique.
 std::string short_name(const std::vector<Placed>& results, std::size_t at) {
   if (const auto& place = results[at].place) {
     const bool shared = std::any_of(results.begin(), results.end(), [&](const Placed& other) {
@@ -102,7 +95,7 @@ std::string headline_table(const std::vector<Entry>& entries) {
   return out + "</table></div>\n" + headline_note();
 }
 
-/// A curve of one result; drawn as the reference is, or the fast model.
+/// A curve of one result, drawn as the reference or as the fast model.
 Curve result_curve(const Entry& entry, std::size_t at, Look look, std::vector<double> x, std::vector<double> y) {
   Curve curve{look == Look::reference ? entry.name : "", look, std::move(x), std::move(y)};
   curve.own_colour = palette[at % palette.size()];
@@ -110,7 +103,7 @@ Curve result_curve(const Entry& entry, std::size_t at, Look look, std::vector<do
   return curve;
 }
 
-/// Both sides of one result over the same x.
+/// Curves of both sides of one result over the same x.
 void add_curves(Plot& plot, const Entry& entry, std::size_t at, const std::vector<double>& x,
                 std::vector<double> reference, std::vector<double> fast) {
   plot.curves.push_back(result_curve(entry, at, Look::reference, x, std::move(reference)));
@@ -128,11 +121,11 @@ std::vector<double> scaled(std::vector<double> values, double offset, double fac
   return values;
 }
 
-/// Forces of both sides over the track, relative to its length and to the reference's peak.
+/// Forces of both sides over the fraction of the track's time, relative to the reference's peak.
 Plot share_plot(const std::vector<Entry>& entries) {
   Plot plot;
   plot.title = "Force over the track, relative";
-  plot.x_label = "share of the track's time [%]";
+  plot.x_label = "fraction of the track's time [%]";
   plot.y_label = "force / reference's largest [%]";
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const ResultFolder& result = entries[i].result;
@@ -148,7 +141,8 @@ Plot share_plot(const std::vector<Entry>& entries) {
   return plot;
 }
 
-/// Forces of both sides over depth, as they are; grazing instants, whose rounding would take most decades, left out.
+/// Forces of both sides over depth in SI-based units, without grazing instants, whose round-off would take most
+/// decades.
 Plot depth_plot(const std::vector<Entry>& entries) {
   Plot plot;
   plot.title = "Force over depth, both axes logarithmic";
@@ -165,7 +159,7 @@ Plot depth_plot(const std::vector<Entry>& entries) {
   return plot;
 }
 
-/// As many results to a pair of plots as there are colours.
+/// Each pair of plots has as many results as there are colours.
 std::string force_section(const std::vector<Entry>& entries) {
   std::string out = tag("h2", "Force") + "\n<div class=\"plots\">\n";
   for (std::size_t begin = 0; begin < entries.size(); begin += palette.size()) {

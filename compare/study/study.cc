@@ -22,10 +22,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Raised when the manifest changes so that an older one would be misread.
+/// Increased if the manifest changes so that an older one would be misread.
 constexpr int manifest_format = 1;
 
-/// What most sites allow in one array (Slurm's MaxArraySize of 1001).
+/// The limit of most sites for one job array (Slurm's default MaxArraySize is 1001).
 constexpr int most_array_tasks = 1000;
 
 Json pairs(const std::vector<std::pair<std::string, std::string>>& list) {
@@ -40,7 +40,7 @@ std::vector<std::pair<std::string, std::string>> pairs(const Json& json) {
   return list;
 }
 
-/// For a shell, whatever is in the path.
+/// Quotes a path for a shell.
 std::string quoted(const std::filesystem::path& path) {
   std::string out = "'";
   for (const char c : path.string()) out += c == '\'' ? "'\\''" : std::string(1, c);
@@ -86,7 +86,7 @@ exec "$program" study run "$study" --index "$SLURM_ARRAY_TASK_ID" --step {tasks}
                      fmt::arg("store", quoted(std::filesystem::absolute(store).lexically_normal())));
 }
 
-/// Copies a mesh tool into the study's folder, which then holds all it needs wherever it is moved.
+/// Copies a mesh tool into the study's folder, which is then complete and can be moved.
 /// @returns its path from a scene there
 std::string keep_tool(const scene::Tool& tool, const std::filesystem::path& folder) {
   const std::string& content = *scene::content_of_file(tool.mesh);
@@ -184,7 +184,7 @@ std::optional<StudyPlace> place_in_study(const std::filesystem::path& result_fol
       if (folder.filename() == one.id) return StudyPlace{study, one.index, one.name};
     }
   } catch (const scene::InputError&) {
-    // Some other manifest: the folder only happens to be called as in a study.
+    // Another kind of manifest: the folder only has a name as in a study.
   }
   return {};
 }

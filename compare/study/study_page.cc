@@ -22,37 +22,32 @@
 namespace touchstone::compare {
 namespace {
 
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-
-/// Told apart on white and on black, by the colour-blind too (Okabe and Ito, without yellow and black).
-constexpr std::array palette = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"};
-
-/// A range of values this wide is drawn logarithmically.
+/// A larger ratio of values gets a logarithmic axis.
 constexpr double log_ratio = 30.0;
 
-/// What a study measures: a figure and how it is drawn.
+/// A figure that a study shows, and how it is drawn.
 struct Quantity {
   std::string_view key, title, y_label;
-  double factor;  ///< from the figure's unit to the label's
+  double factor;  ///< the figure's unit over the label's
 };
 constexpr Quantity errors[] = {
     {"force.nrmse", "Force error", "RMS error / largest force [%]", 100.0},
     {"shape.rel_l2", "Shape error", "RMS error / displacement [%]", 100.0},
     {"force.friction_nrmse", "Friction error", "RMS error / largest friction [%]", 100.0},
 };
-/// In place of errors, where the study ran one side alone.
+/// Shown in place of errors if the study ran only one solver.
 constexpr Quantity of_one_side[] = {
     {"reference.force_uncertainty_rel", "Uncertainty of the reference's force", "of the force [%]", 100.0},
     {"reference.shape_uncertainty_rel", "Uncertainty of the reference's shape", "of the displacement [%]", 100.0},
     {"fast.step_us.p50", "Time of a step, median", "time [µs]", 1.0},
 };
 
-/// A quantity of one case, in the unit of its label. NaN: none.
+/// A quantity of one case, in the unit of its label. NaN: no value.
 struct Point {
   double value = no_value;
-  double half = no_value;  ///< of the bar; NaN: not known
-  bool has_half = false;   ///< the figure comes with an uncertainty, known or not
-  std::string text;        ///< as people read it, with the uncertainty
+  double half = no_value;  ///< uncertainty; NaN: not known
+  bool has_half = false;   ///< whether the figure has an uncertainty, known or not
+  std::string text;        ///< formatted value with the uncertainty
 };
 
 Point point_of(const StudyRow& row, const Quantity& quantity) {
@@ -74,7 +69,7 @@ Point point_of(const StudyRow& row, const Quantity& quantity) {
   return out;
 }
 
-/// The cases with their points of one quantity.
+/// The values of one quantity for all cases.
 struct Series {
   const Quantity& quantity;
   std::vector<Point> points;  ///< by case
@@ -93,7 +88,7 @@ struct Series {
     return std::any_of(points.begin(), points.end(),
                        [](const Point& p) { return std::isfinite(p.value) && std::isfinite(p.half); });
   }
-  /// What the bars and marks say.
+  /// Explains the error bars and markers.
   [[nodiscard]] std::string note() const {
     std::string out;
     if (any_half()) {
@@ -115,11 +110,11 @@ bool spans_decades(const std::vector<double>& values) {
   return high >= log_ratio * low;
 }
 
-/// One line for every combination of the other parameters. @param drawn  which cases
+/// One line for every combination of the other parameters. @param drawn  which cases to draw
 Plot line_plot(const Series& series, const std::vector<StudyParameter>& parameters, std::size_t along,
                const std::vector<bool>& drawn) {
   const StudyParameter& x = parameters[along];
-  std::vector<std::string> names;  // of the lines, in the study's order
+  std::vector<std::string> names;  // names of the lines, in the study's order
   std::map<std::string, std::vector<std::size_t>> lines;
   for (std::size_t k = 0; k < series.points.size(); ++k) {
     if (!drawn[k] || !std::isfinite(x.numbers[k]) || !std::isfinite(series.points[k].value)) continue;
@@ -157,7 +152,7 @@ Plot line_plot(const Series& series, const std::vector<StudyParameter>& paramete
   return plot;
 }
 
-/// Dark or light, whichever is read on the colour.
+/// Dark or light text, whichever is readable on the colour.
 const char* ink_on(const std::array<int, 3>& rgb) {
   return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2] > 110.0 ? "#1c1e21" : "#ffffff";
 }
@@ -168,7 +163,7 @@ std::array<int, 3> colour_at(double share) {
   return steps[static_cast<std::size_t>(std::lround(at))];
 }
 
-/// Two parameters against each other: the value and its colour in every cell.
+/// Two parameters against each other; each cell shows the value and its colour.
 std::string heat_table(const Series& series, const StudyParameter& across, const StudyParameter& down,
                        const std::vector<bool>& drawn) {
   double largest = 0.0;
@@ -188,7 +183,7 @@ std::string heat_table(const Series& series, const StudyParameter& across, const
         if (!drawn[k] || across.values[k] != column || down.values[k] != row || series.points[k].text.empty()) continue;
         text = series.points[k].text;
         if (!std::isfinite(series.points[k].value)) continue;
-        // From light to dark; the lightest fifth is left to the page.
+        // From light to dark; the lightest fifth is not used, to differ from the page.
         const auto rgb = colour_at(largest > 0.0 ? 0.12 + 0.7 * series.points[k].value / largest : 0.12);
         style = fmt::format(
             "class=\"n\" style=\"background:rgb({},{},{});color:{};padding-left:.7rem;"
@@ -203,7 +198,7 @@ std::string heat_table(const Series& series, const StudyParameter& across, const
   return out + "</table></div>\n" + tag("p", "Colour: from zero, light, to the largest, dark.", "class=\"dim\"") + "\n";
 }
 
-/// One row for each case: its name, a mark with its bar on a common scale from zero, and the number.
+/// One row per case: name, marker with error bar on a common scale from zero, and number.
 std::string rows_by_case(const Series& series, const std::vector<StudyRow>& rows) {
   constexpr double width_px = 300.0, edge_px = 6.0, height_px = 18.0;
   double largest = 0.0;
@@ -240,7 +235,7 @@ std::string rows_by_case(const Series& series, const std::vector<StudyRow>& rows
   return out + "</table></div>\n";
 }
 
-/// Is there a value for most pairs, and are they few enough to be read?
+/// Whether most pairs have a value and a table would not be too large.
 bool makes_a_table(const std::vector<StudyParameter>& parameters) {
   if (parameters.size() != 2) return false;
   const std::size_t across = parameters[0].distinct().size(), down = parameters[1].distinct().size();
@@ -255,7 +250,7 @@ bool makes_a_table(const std::vector<StudyParameter>& parameters) {
 std::string quantity_section(const Series& series, const std::vector<StudyParameter>& all,
                              const std::vector<StudyRow>& rows) {
   constexpr std::size_t lines_with_names = 8;
-  // Where there are axes, cases beside them are no points of their lines.
+  // Cases that are not on the axes are not points of the lines.
   std::vector<StudyParameter> parameters = all;
   const bool has_axes = std::any_of(all.begin(), all.end(), [](const StudyParameter& one) { return one.axis; });
   if (has_axes) std::erase_if(parameters, [](const StudyParameter& one) { return !one.axis; });
@@ -287,7 +282,7 @@ std::string quantity_section(const Series& series, const std::vector<StudyParame
   return out;
 }
 
-/// Between which cases a quantity lies, and where it is not known how well.
+/// Smallest and largest value of a quantity, and the cases in which its uncertainty is unknown.
 std::string range_sentence(const Series& series, const std::vector<StudyRow>& rows) {
   std::optional<std::size_t> least, most;
   int unknown = 0, values = 0;

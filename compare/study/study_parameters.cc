@@ -18,14 +18,14 @@ namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-/// "3.5 mm" as 3.5 and "mm"; nothing for a text that does not begin with a number.
-struct Quantity {
+/// "3.5 mm" as 3.5 and "mm"; nothing if the text does not begin with a number.
+struct NumberWithUnit {
   double number = 0.0;
   std::string unit;
 };
-std::optional<Quantity> quantity_of(std::string_view text) {
+std::optional<NumberWithUnit> quantity_of(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
-  Quantity out;
+  NumberWithUnit out;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out.number);
   if (error != std::errc()) return std::nullopt;
   out.unit = std::string(end, text.data() + text.size());
@@ -34,12 +34,13 @@ std::optional<Quantity> quantity_of(std::string_view text) {
   return word ? std::optional(out) : std::nullopt;
 }
 
-/// The numbers and the unit, where all values are numbers of one unit.
+/// The numbers and their unit, if all values are numbers of the same unit.
 void read_numbers(StudyParameter& parameter) {
   std::optional<std::string> unit;
   std::vector<double> numbers;
   for (const std::string& value : parameter.values) {
-    const std::optional<Quantity> one = value.empty() ? Quantity{no_number, unit.value_or("")} : quantity_of(value);
+    const std::optional<NumberWithUnit> one =
+        value.empty() ? NumberWithUnit{no_number, unit.value_or("")} : quantity_of(value);
     if (!one || (!value.empty() && unit && *unit != one->unit)) return;
     if (!value.empty()) unit = one->unit;
     numbers.push_back(one->number);
@@ -48,14 +49,14 @@ void read_numbers(StudyParameter& parameter) {
   parameter.unit = unit.value_or("");
   std::vector<std::string> rounded;
   for (const double number : parameter.numbers) rounded.push_back(std::isnan(number) ? "" : number_text(number, 4));
-  // Rounded only where that leaves different values different.
+  // Rounded only if different values remain different.
   if (std::set(rounded.begin(), rounded.end()).size() ==
       std::set(parameter.values.begin(), parameter.values.end()).size()) {
     parameter.values = std::move(rounded);
   }
 }
 
-/// A value as TOML without the quotes of a text.
+/// A TOML value without the quotes of a string.
 std::string words_of(const std::string& toml) {
   const bool quoted = toml.size() >= 2 && (toml.front() == '"' || toml.front() == '\'') && toml.back() == toml.front();
   return quoted ? toml.substr(1, toml.size() - 2) : toml;
@@ -68,7 +69,7 @@ std::string label_on(const ManifestCase& one, const std::string& axis) {
   return "";
 }
 
-/// What the case sets a key to, last; else what its scene has.
+/// The last value that the case sets for a key; else the scene's.
 std::string value_of(const StudyManifest& manifest, const ManifestCase& one, const std::string& key) {
   for (auto setting = one.settings.rbegin(); setting != one.settings.rend(); ++setting) {
     if (setting->first == key) return words_of(setting->second);
@@ -79,8 +80,8 @@ std::string value_of(const StudyManifest& manifest, const ManifestCase& one, con
   return words_of(value_in(*text, file, key).value_or(""));
 }
 
-/// Places of the cases beside the axes on this axis, when it is this key that varies along it: the label of the cases
-/// that have the same value. @returns whether it is
+/// Finds the position on this axis of the cases that are not on it, if this key alone varies along the axis: the label
+/// of the cases with the same value. @returns whether it was found
 bool place_beside(const StudyManifest& manifest, const std::vector<std::string>& values, StudyParameter& axis) {
   std::map<std::string, std::string> label_of_value, value_of_label;
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -121,7 +122,7 @@ std::vector<StudyParameter> study_parameters(const StudyManifest& manifest) {
     }
     found.push_back(std::move(parameter));
   }
-  std::vector<std::string> keys;  // that cases beside the axes set
+  std::vector<std::string> keys;  // keys set by cases that are not on the axes
   for (const ManifestCase& one : manifest.cases) {
     for (const auto& [key, value] : one.settings) {
       if (one.along.empty() && std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);

@@ -25,14 +25,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A file of ours, or null when it is missing or altered.
+/// A file that the program wrote, or null if it is missing or altered.
 Json read_json(const std::filesystem::path& path) {
   const std::optional<std::string> text = scene::read_file(path);
   Json json = text ? Json::parse(*text, nullptr, false) : Json();
   return json.is_object() ? json : Json();
 }
 
-/// A text in it; empty when there is none.
+/// A text in the JSON object; empty if there is none.
 std::string text_in(const Json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_string() ? found->get<std::string>() : "";
@@ -56,7 +56,7 @@ std::string utc_now() {
   return text.data();
 }
 
-/// While it lives, what goes to a stream is also looked at for its last line: verbs say there why they gave up.
+/// While it exists, it also keeps the last line written to a stream, in which commands say why they failed.
 class LastLine : public std::streambuf {
  public:
   explicit LastLine(std::ostream& stream) : stream_(stream), below_(stream.rdbuf(this)) {}
@@ -90,7 +90,7 @@ bool is_done(const StudyManifest& manifest, const ManifestCase& one, const Json&
   return summary && text_in(done, "summary") == scene::hash_text(*summary);
 }
 
-/// Runs the verb; every way of failing becomes an exit code and a message.
+/// Runs the command; every kind of failure becomes an exit code and a message.
 int run_verb(const CaseRun& run, const std::filesystem::path& scene_file, const std::filesystem::path& folder,
              std::string& why) {
   try {
@@ -105,7 +105,7 @@ int run_verb(const CaseRun& run, const std::filesystem::path& scene_file, const 
   }
 }
 
-/// One case whose lock is held. @returns its exit code
+/// Runs one case, whose lock is held. @returns its exit code
 int run_case(const StudyManifest& manifest, const ManifestCase& one, const CaseRun& run,
              const std::function<void(const std::string&)>& say) {
   const std::filesystem::path folder = manifest.result_folder(one), scene_file = manifest.scene_file(one);
@@ -134,7 +134,7 @@ int run_case(const StudyManifest& manifest, const ManifestCase& one, const CaseR
     return code;
   }
   const std::optional<std::string> summary = scene::read_file(folder / "summary.json");
-  if (!summary) throw std::logic_error("the verb left no summary.json");
+  if (!summary) throw std::logic_error("the command wrote no summary.json");
   Json done = attempt;
   done["ended"] = utc_now();
   done["wall_s"] = watch.wall_s();
@@ -177,13 +177,13 @@ int run_cases(const StudyManifest& manifest, const CaseRange& range, const CaseR
   }
   if (range.step < 1) throw scene::InputError(fmt::format("--step {}: expected a whole number from 1", range.step));
   const auto failure = [&](const ManifestCase& one) { return read_json(manifest.result_folder(one) / "failed.json"); };
-  std::deque<std::pair<const ManifestCase*, Json>> todo;  // with the failure it had before
+  std::deque<std::pair<const ManifestCase*, Json>> todo;  // with its earlier failure
   for (int index = range.first; index <= count; index += range.step) {
     todo.emplace_back(&manifest.cases[index - 1], failure(manifest.cases[index - 1]));
   }
   const bool single = todo.size() == 1;
   int worst = fast::done;
-  // What others have in hand goes to the end; when nothing else is left, it is waited for.
+  // Cases that other processes run are moved to the end. If nothing else is left, the loop waits for them.
   std::size_t busy = 0;
   while (!todo.empty()) {
     const auto [at, failed_before] = std::move(todo.front());
@@ -210,7 +210,7 @@ int run_cases(const StudyManifest& manifest, const CaseRange& range, const CaseR
       });
     }
     busy = 0;
-    // Another process may have finished it meanwhile, or tried as we would.
+    // Another process may have finished it meanwhile, or failed with the same settings.
     if (case_status(manifest, one).state == CaseState::done) continue;
     const Json failed = failure(one);
     const bool tried = !failed.is_null() && failed != failed_before;

@@ -1,9 +1,9 @@
-// Running the cases of a study: by index, by as many processes as there are, as often as one likes.
+// Running the cases of a study: by index, by as many processes as there are, repeatedly.
 //
-// A case's result folder holds, beside what its verb writes: `lock`, held by the process at work; attempt.json, who
-// began last; failed.json, why it gave up; done.json, written when all else is on the disk, with the checksum of
-// summary.json. A case is done when that is right; everything else is done again, and the reference's finished load
-// steps come from its store.
+// A case's result folder holds, in addition to the command's files: `lock`, held by the process that runs it;
+// attempt.json, who began last; failed.json, why it failed; done.json, written when all else is on the disk, with the
+// checksum of summary.json. A case is done when that is right; everything else is done again, and the reference's
+// finished load steps come from its store.
 #pragma once
 
 #include "compare/study/study.h"
@@ -32,8 +32,8 @@ struct StudyRow {
   scene::Figures figures;  ///< of its summary.json where it is done
 };
 
-/// Runs one scene file into a prepared folder as the verb of that name does. Messages go to std::cerr.
-/// @returns the verb's exit code; may throw what the verb throws
+/// Runs one scene file into a prepared folder as the command of that name does. Messages go to std::cerr.
+/// @returns the command's exit code; may throw what the command throws
 using CaseRun = std::function<int(const std::filesystem::path& scene_file, const std::filesystem::path& folder)>;
 
 /// Which cases to run: from `first` on in steps of `step`.
@@ -42,7 +42,7 @@ struct CaseRange {
   int step = 1;
 };
 
-/// Runs what is not done of the range, then waits for the cases that other processes have in hand.
+/// Runs what is not done of the range, then waits for the cases that other processes run.
 /// @param say  called with one line about every case
 /// @returns 0 when all are done; of one case its exit code, of several 1 when any failed; fast::interrupted at once
 /// when

@@ -24,7 +24,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What the short table shows, of the figures that are there.
+/// Columns of the short table, as far as the figures exist.
 constexpr std::array short_figures = {"force.nrmse",
                                       "force.peak_rel",
                                       "shape.rel_l2",
@@ -59,7 +59,7 @@ std::string label_at(const ManifestCase& one, const std::string& axis) {
   return "";
 }
 
-/// What varies beside the axes.
+/// Parameters set by cases that are not on the axes.
 std::vector<StudyParameter> keys_beside(const StudyManifest& manifest) {
   std::vector<StudyParameter> parameters = study_parameters(manifest);
   std::erase_if(parameters, [&](const StudyParameter& parameter) {

@@ -1,4 +1,4 @@
-// What a step of every model takes, measured by turns.
+// Step times of all models, measured in alternating blocks.
 #pragma once
 
 #include "compare/model/model.h"
@@ -9,7 +9,7 @@
 
 namespace touchstone::compare {
 
-/// Poses of the ticks in contact, there and back again without end, so that no step jumps.
+/// Poses of the ticks in contact, repeatedly forwards and backwards, so that no step jumps.
 class Poses {
  public:
   /// @throws scene::InputError when the track is never in contact or takes more than a million ticks

@@ -1,4 +1,4 @@
-// Domination and words; the rows are made in trade_ladder.cc.
+// Domination of rows and the sentences about them; trade_rows.cc computes the rows.
 #include "compare/trade/trade.h"
 
 #include "compare/format/text.h"
@@ -11,7 +11,7 @@
 namespace touchstone::compare {
 namespace {
 
-/// What a row is judged by.
+/// The two quantities by which rows are compared.
 struct Point {
   double step_us = 0.0, error = 0.0;
 };
@@ -26,11 +26,11 @@ bool dominates(const Point& a, const Point& b) {
   return a.step_us <= b.step_us && a.error <= b.error && (a.step_us < b.step_us || a.error < b.error);
 }
 
-std::string error_text(const Measure& error) {
-  return percent_text(*error.value) + (error.distinguishable() ? "" : " (not distinguishable from none)");
+std::string error_in_words(const Measure& error) {
+  return percent_text(*error.value) + (error.distinguishable() ? "" : " (not distinguishable from zero)");
 }
 
-/// The row with the smallest error among those that pass; null where there is none.
+/// The row with the smallest error among those that pass; null if none passes.
 template <class Pass>
 const TradeRow* most_accurate(const Trade& trade, TradeError error, Pass pass) {
   const TradeRow* best = nullptr;
@@ -48,30 +48,30 @@ const TradeRow* most_accurate(const Trade& trade, TradeError error, Pass pass) {
 }
 
 std::string with_numbers(const TradeRow& row, TradeError error) {
-  return fmt::format("{} ({}, {} a step)", row.name, error_text(row.*error), quantity_text(row.step_p50_us, "us"));
+  return fmt::format("{} ({}, {} a step)", row.name, error_in_words(row.*error), quantity_text(row.step_p50_us, "us"));
 }
 
-/// What is to be said about a row's slowest steps; empty where they keep up too.
+/// A remark about a row whose slowest steps take longer than a tick; else empty.
 std::string late_text(const Trade& trade, const TradeRow& row) {
   if (row.step_p999_us <= trade.tick_us) return "";
-  return fmt::format(" (but for its slowest: p99.9 {} in this run)", quantity_text(row.step_p999_us, "us"));
+  return fmt::format(" (except its slowest steps: p99.9 {} in this run)", quantity_text(row.step_p999_us, "us"));
 }
 
-/// Whether the paper's model wins or loses in one error, in words.
+/// Says whether the paper's model is on the Pareto front of one error.
 std::string paper_sentence(const Trade& trade, TradeError error, const std::string& what) {
   const auto of_paper = [](const TradeRow& row) { return row.family == ModelFamily::paper; };
   const TradeRow* paper = most_accurate(trade, error, of_paper);
   if (paper == nullptr) {
     return std::any_of(trade.rows.begin(), trade.rows.end(), of_paper)
-               ? "The paper's model has no " + what + " that could be judged."
+               ? "The paper's model has no " + what + " that can be judged."
                : "No row of the " + what + " is the paper's model; the absent rows say why.";
   }
   const std::string best = fmt::format("In {} the best of the paper's model is {}", what, with_numbers(*paper, error));
   const std::optional<std::size_t> by =
       dominating(trade.rows, error)[static_cast<std::size_t>(paper - trade.rows.data())];
   if (by && !of_paper(trade.rows[*by])) {
-    std::string text =
-        fmt::format("{}. It loses: {} is no slower and no worse.", best, with_numbers(trade.rows[*by], error));
+    std::string text = fmt::format("{}. It is dominated: {} is no slower and no less accurate.", best,
+                                   with_numbers(trade.rows[*by], error));
     const std::vector<std::size_t> front = pareto_front(trade.rows, error);
     const auto left = std::find_if(front.begin(), front.end(), [&](std::size_t k) { return of_paper(trade.rows[k]); });
     if (left != front.end()) {
@@ -85,12 +85,12 @@ std::string paper_sentence(const Trade& trade, TradeError error, const std::stri
   });
   if (rival == nullptr || *judged_error(rival->*error) >= *judged_error(paper->*error)) {
     const bool worse_than_none = error == &TradeRow::shape_rel_l2 && *judged_error(paper->*error) >= 1.0;
-    return best + ". It wins: nothing else that keeps up with the device loop is as accurate" +
-           (worse_than_none ? ", but for the rest shape, which is off by 100 % and takes no time." : ".");
+    return best + ". No other model that keeps up with the device loop is as accurate" +
+           (worse_than_none ? ", except the rest shape, whose error is 100 % and which takes no time." : ".");
   }
   const double ratio = *judged_error(paper->*error) / *judged_error(rival->*error);
   return fmt::format(
-      "{}; it is on the front for its speed alone. It loses where accuracy counts: {} keeps up with the device loop of "
+      "{}; it is on the front for its speed alone. It is less accurate: {} keeps up with the device loop of "
       "{} as well{}, at {} times the time of a step and one part in {} of the error.",
       best, with_numbers(*rival, error), quantity_text(trade.tick_us, "us"), late_text(trade, *rival),
       number_text(rival->step_p50_us / paper->step_p50_us), number_text(ratio));

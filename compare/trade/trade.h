@@ -1,4 +1,4 @@
-// The trade: what a step of every model costs, and what it gets wrong. One row per model and level, on one machine in
+// The trade: step time against errors of every model. One row per model and level, on one machine in
 // one run.
 #pragma once
 
@@ -25,7 +25,7 @@ struct TradeRow {
   std::string label{};  ///< short, for the plot
   ModelFamily family = ModelFamily::paper;
   std::string absent{};  ///< why there is nothing to measure; empty where there is
-  std::string note{};    ///< what a reader must know to compare it
+  std::string note{};    ///< a remark for comparing it
   int size = 0;          ///< surface triangles, or unknowns
   double step_p50_us = std::numeric_limits<double>::quiet_NaN();
   double step_p999_us = std::numeric_limits<double>::quiet_NaN();
@@ -39,7 +39,7 @@ struct TradeRow {
 /// A figure that rows are compared by.
 using TradeError = Measure TradeRow::*;
 
-/// The error as it counts: what lies below the reference's uncertainty is not known to be any better than that.
+/// The error for comparisons: at least the reference's uncertainty.
 /// Nothing where it is not known at all.
 [[nodiscard]] std::optional<double> judged_error(const Measure& error);
 
@@ -60,16 +60,16 @@ struct Trade {
 };
 
 struct TradeOptions {
-  std::vector<std::filesystem::path> parameters{};      ///< files that tune left, each a row more
+  std::vector<std::filesystem::path> parameters{};      ///< files of tuned constants, each one more row
   std::filesystem::path held_out{};                     ///< a tuning study; empty: judged on the scene
   bool quick = false;                                   ///< few steps, small sizes
   std::filesystem::path store = "out/reference-store";  ///< as of ModelRequest
 };
 
-/// Builds, measures and judges every row.
+/// Sets up, times and judges every row.
 /// @param solve  the reference, by number of levels; nothing: as many as the scene and the command line ask for
 /// @param say    one line about what begins; may be empty
-/// @param models which are traded
+/// @param models the models to compare
 /// @throws scene::InputError, and what `solve` throws
 [[nodiscard]] Trade trade(
     const scene::Scene& scene, const TradeOptions& options,
@@ -77,7 +77,7 @@ struct TradeOptions {
     const std::function<void(const std::string&)>& say = {},
     const std::vector<ModelList>& models = registered_models());
 
-/// Who wins, a sentence each; able to say that the paper's model loses.
+/// Which models dominate, and whether the paper's model is among them; one sentence each.
 [[nodiscard]] std::vector<std::string> trade_verdict(const Trade& trade);
 
 /// The plot: time of a step over both errors, the fronts drawn, the points named.

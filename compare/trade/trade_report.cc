@@ -1,4 +1,4 @@
-// What a trade leaves in its folder.
+// Writes the files of a trade.
 #include "compare/format/page.h"
 #include "compare/format/svg_plot.h"
 #include "compare/format/text.h"
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view nothing = "–";
 
-/// The two figures that rows are compared by.
+/// The two errors that rows are compared by.
 struct Judged {
   TradeError error;
   const char* what;
@@ -33,13 +33,11 @@ struct FamilyStyle {
   const char* name;
   const char* colour;
 };
-constexpr FamilyStyle families[] = {{ModelFamily::paper, "the paper's model", "#e4600a"},
-                                    {ModelFamily::area_aware, "area-aware law", "#a03070"},
-                                    {ModelFamily::response, "response", "#d62728"},
-                                    {ModelFamily::compliance, "linear compliance", "#2e8b57"},
-                                    {ModelFamily::peer, "Bullet", "#6a51a3"},
-                                    {ModelFamily::reference, "reference", "#1f77b4"},
-                                    {ModelFamily::other, "other models", "#555555"}};
+constexpr FamilyStyle families[] = {
+    {ModelFamily::paper, "the paper's model", "#e4600a"}, {ModelFamily::area_aware, "area-aware law", "#a03070"},
+    {ModelFamily::response, "response", "#d62728"},       {ModelFamily::compliance, "linear compliance", "#2e8b57"},
+    {ModelFamily::simulator, "Bullet", "#6a51a3"},        {ModelFamily::reference, "reference", "#1f77b4"},
+    {ModelFamily::other, "other models", "#555555"}};
 
 std::string number(double value, std::string_view unit) {
   return std::isfinite(value) ? quantity_text(value, unit) : std::string(nothing);
@@ -52,7 +50,7 @@ std::string error_text(const Measure& error) {
   return error.distinguishable() ? text : text + ", not distinguishable";
 }
 
-/// The name of what dominates a row, per figure; "front" on it and a dash where there is nothing to judge.
+/// For both errors the name of the row that dominates a row; "front" if none does, a dash if it cannot be judged.
 std::vector<std::array<std::string, 2>> standing(const Trade& trade, std::string TradeRow::*name) {
   std::vector<std::array<std::string, 2>> out(trade.rows.size());
   for (std::size_t f = 0; f < 2; ++f) {
@@ -74,14 +72,14 @@ std::string one_plot(const Trade& trade, const Judged& figure, int width_px, int
   plot.y_label = "time of a step, median [µs]";
   plot.x_log = plot.y_log = true;
   const auto percent = [&](const TradeRow& row) { return 100.0 * judged_error(row.*figure.error).value_or(NAN); };
-  Curve front{"nothing is faster and better", Look::outline, {}, {}, false};
+  Curve front{"nothing is faster and more accurate", Look::outline, {}, {}, false};
   for (const std::size_t k : pareto_front(trade.rows, figure.error)) {
     front.x.push_back(percent(trade.rows[k]));
     front.y.push_back(trade.rows[k].step_p50_us);
   }
   plot.curves.push_back(std::move(front));
   for (const FamilyStyle& style : families) {
-    // Points alone: between any two of them nothing is drawn.
+    // Points without connecting lines.
     Curve points{style.name, Look::plain, {}, {}, true, false, style.colour};
     for (const TradeRow& row : trade.rows) {
       if (row.family != style.family || !std::isfinite(percent(row)) || !std::isfinite(row.step_p50_us)) continue;
@@ -145,23 +143,26 @@ std::string notes(const Trade& trade) {
 std::string html(const Trade& trade, const scene::Manifest& manifest) {
   std::string out =
       tag("h1", trade.title) + "\n" +
-      tag("p", "What a step of every model costs and what it gets wrong, on one machine in one run.", "class=\"dim\"") +
+      tag("p", "Step time and errors of every model, measured on one machine in one run.", "class=\"dim\"") +
       "\n<div class=\"verdict\">\n";
   for (const std::string& sentence : trade_verdict(trade)) out += tag("p", sentence) + "\n";
   out += "</div>\n<div class=\"plots\">\n";
   for (const Judged& one : judged) {
-    out += figure(one_plot(trade, one, 1000, 560),
-                  "Down and to the left is better. An error below the reference's uncertainty stands at that.", true);
+    out += figure(
+        one_plot(trade, one, 1000, 560),
+        "Down and to the left is better. An error below the reference's uncertainty is drawn at the uncertainty.",
+        true);
   }
   out += "</div>\n" + tag("h2", "Every model") + "\n" + table(trade);
-  out += tag("p",
-             judged_on(trade) +
-                 " Force: root mean square over the instants, of the peak force. Shape: of the displacement, by area "
-                 "and over the instants. Behind ± stands the reference's uncertainty in the same norm; an error no "
-                 "larger is not distinguishable from none. Dominated: another row is no slower (median) and no worse, "
-                 "and better in one. Steps in contact only, models by turns.",
-             "class=\"dim\"") +
-         "\n" + tag("h2", "To read the rows by") + "\n" + notes(trade);
+  out +=
+      tag("p",
+          judged_on(trade) +
+              " Force: root mean square over the instants, of the peak force. Shape: of the displacement, by area "
+              "and over the instants. The number after ± is the reference's uncertainty in the same norm; an error no "
+              "larger is not distinguishable from zero. Dominated: another row is no slower (median) and no worse, "
+              "and better in one. Steps in contact only, models timed in turn.",
+          "class=\"dim\"") +
+      "\n" + tag("h2", "Notes on the rows") + "\n" + notes(trade);
   out += manifest_section(manifest,
                           "Beside this page: trade.csv and trade.svg, summary.json (every figure), "
                           "manifest.json.");

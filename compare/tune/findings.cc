@@ -14,7 +14,8 @@ std::string value_text(double value, const std::string& unit) {
   return number_text(value) + (unit.empty() ? "" : std::string(no_break) + unit);
 }
 
-/// The reference's and the model's force at one depth on a way in, between its instants; nothing where it never is.
+/// Forces of the reference and of the model at a depth while the depth grows, interpolated between instants; nothing if
+/// it is never reached.
 std::optional<std::array<double, 2>> forces_at_n(const TuningOutcome& outcome, double depth_m) {
   const std::vector<InstantErrors>& e = outcome.errors.instants;
   for (std::size_t t = 1; t < e.size(); ++t) {
@@ -46,13 +47,14 @@ std::vector<std::string> notes_of(const StageFit& stage) {
     if (found.at_bound != AtBound::no) {
       const bool low = found.at_bound == AtBound::low;
       notes.push_back(fmt::format(
-          "{} ended at its {} bound, {}: the data want it {}, no error can be given for it, and the errors of the "
+          "{} ended at its {} bound, {}: the data favour a {} value. It has no standard error, and the errors of the "
           "others "
-          "hold only while it stays there.",
+          "hold only if it stays there.",
           one.key, low ? "lower" : "upper", value_text(low ? one.low : one.high, one.unit), low ? "lower" : "higher"));
     } else if (found.open) {
       notes.push_back(fmt::format(
-          "These data cannot determine {}: it is known no better than its bounds say already, {} to {}; {} is where "
+          "These data cannot determine {}: its uncertainty is no smaller than the range between its bounds, {} to {}; "
+          "{} is where "
           "the "
           "search ended.",
           one.key, value_text(one.low, one.unit), value_text(one.high, one.unit), value_text(found.value, one.unit)));
@@ -62,7 +64,7 @@ std::vector<std::string> notes_of(const StageFit& stage) {
     if (direction.size() < 2) continue;
     std::string names;
     for (const std::size_t k : direction) names += (names.empty() ? "" : " and ") + stage.parameters[k].key;
-    notes.push_back("Only a combination of " + names + " is determined: one can be traded for the other.");
+    notes.push_back("Only a combination of " + names + " is determined: a change of one is compensated by the others.");
   }
   if (fit.rank < fit.free) {
     notes.push_back(
@@ -76,7 +78,7 @@ std::vector<std::string> notes_of(const StageFit& stage) {
     if (found.open || found.at_bound != AtBound::no) continue;
     if (profile.open_low && profile.open_high) {
       notes.push_back(
-          fmt::format("The profile of {} stays flat from bound to bound: these data cannot determine it.", one.key));
+          fmt::format("The profile of {} is flat between its bounds: these data cannot determine it.", one.key));
     } else if (profile.open_low || profile.open_high) {
       notes.push_back(fmt::format("By its profile {} is known only to be {} {}.", one.key,
                                   profile.open_low ? "below" : "above",
@@ -97,11 +99,11 @@ std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model
     }
     if (worst == nullptr) continue;
     const Errors& e = worst->errors;
-    std::string text = fmt::format("Force at {} (worst: {}): off by {} of the peak, {} at the peak.", in_what(differs),
-                                   tuning.data[worst->data].contact.name, percent_text(*e.force_nrmse.value),
-                                   *e.force_peak_rel.value < 0.0
-                                       ? fmt::format("{} too weak", percent_text(-*e.force_peak_rel.value))
-                                       : fmt::format("{} too strong", percent_text(*e.force_peak_rel.value)));
+    std::string text = fmt::format(
+        "Force at {} (worst: {}): an error of {} of the peak, {} at the peak.", in_what(differs),
+        tuning.data[worst->data].contact.name, percent_text(*e.force_nrmse.value),
+        *e.force_peak_rel.value < 0.0 ? fmt::format("{} too weak", percent_text(-*e.force_peak_rel.value))
+                                      : fmt::format("{} too strong", percent_text(*e.force_peak_rel.value)));
     const double depth_m = std::min(e.depth_max_m, trained.errors.depth_max_m);
     const auto here = forces_at_n(*worst, depth_m), there = forces_at_n(trained, depth_m);
     if (here && there && (*there)[0] > 0.0 && (*there)[1] > 0.0) {
@@ -121,27 +123,28 @@ std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model
   }
   if (worst != nullptr && trained.errors.shape_rel_l2.value) {
     const Errors& e = worst->errors;
-    std::string text =
-        fmt::format("Shape: off by {} of the displacement on the training contact {}, and by up to {} held out ({}).",
-                    percent_text(*trained.errors.shape_rel_l2.value), tuning.data[trained.data].contact.name,
-                    percent_text(*e.shape_rel_l2.value), tuning.data[worst->data].contact.name);
+    std::string text = fmt::format(
+        "Shape: an error of {} of the displacement on the training contact {}, and up to {} on held-out contacts ({}).",
+        percent_text(*trained.errors.shape_rel_l2.value), tuning.data[trained.data].contact.name,
+        percent_text(*e.shape_rel_l2.value), tuning.data[worst->data].contact.name);
     if (e.shape_inside_r_rel_l2.value && e.shape_outside_r_rel_l2.value && e.shape_error_outside_share) {
       text += fmt::format(
-          " There it is {} within the local radius and {} beyond it, where {} of the squared error lies: only "
-          "the anchor points move the surface there, whatever the local factor is.",
+          " There it is {} within the local radius and {} outside, where {} of the squared error lies: only "
+          "the anchor points move the surface there, and the local factor has no effect.",
           percent_text(*e.shape_inside_r_rel_l2.value), percent_text(*e.shape_outside_r_rel_l2.value),
           percent_text(*e.shape_error_outside_share));
     }
     if (e.shape_side_faces_rel_l2.value) {
-      text += fmt::format(" On the faces that are not touched, which hear only the anchor points, it is {}.",
+      text += fmt::format(" On untouched faces, which only the anchor points move, it is {}.",
                           percent_text(*e.shape_side_faces_rel_l2.value));
     }
     limits.push_back(std::move(text));
     if (!model.shape_parts) return limits;
     const ShapeParts& parts = *model.shape_parts;
     limits.push_back(fmt::format(
-        "What its parts are good for, on the training contact {}: {} with the contact point's hat alone, {} with the "
-        "anchor points' movement on top, {} with the local factor in its place, {} with both.",
+        "Shape error by parts of the model, on the training contact {}: {} with the contact point's kernel function "
+        "alone, {} with the "
+        "anchor points' displacements added, {} with the local factor added instead, {} with both.",
         tuning.data[trained.data].contact.name, percent_text(parts.hat_alone), percent_text(parts.without_local_factor),
         percent_text(parts.anchors_at_rest), percent_text(parts.whole)));
   }

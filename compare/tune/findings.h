@@ -1,4 +1,4 @@
-// What a tuning found, in words.
+// The findings of a tuning, as sentences.
 #pragma once
 
 #include "compare/tune/tuning.h"

@@ -13,19 +13,19 @@
 namespace touchstone::compare {
 namespace {
 
-/// Step of the difference quotients, as a share of the bounds.
+/// Step of the difference quotients, as a fraction of the distance between the bounds.
 constexpr double difference = 1e-3;
 
-/// Nearer to a bound than this share a parameter is at it.
+/// A parameter closer to a bound than this fraction counts as at the bound.
 constexpr double bound_share = 1e-3;
 
-/// Singular values below this share of the largest, or of the scatter, are none.
+/// Singular values below this fraction of the largest, or of the scatter, count as zero.
 constexpr double rank_share = 1e-9, effect_share = 1e-6;
 
-/// From this share of a direction on a parameter takes part in it.
+/// A parameter takes part in a direction if its component is at least this large.
 constexpr double part_of_direction = 0.3;
 
-/// The residuals over the places of the parameters that are free; the others are held.
+/// The residuals as a function of the free parameters; the others are fixed.
 class Model {
  public:
   Model(const std::vector<FitParameter>& parameters, const Residuals& residuals, Eigen::VectorXd held,
@@ -45,7 +45,7 @@ class Model {
     if (residual && !residual->allFinite()) residual.reset();
     return residual;
   }
-  /// Central differences, one-sided at a bound and where the model has no answer on one side.
+  /// Central differences; one-sided at a bound, and where the model has no result on one side.
   [[nodiscard]] std::optional<Eigen::MatrixXd> jacobian(const double* places, const Eigen::VectorXd& here) const {
     Eigen::MatrixXd out(here.size(), static_cast<Eigen::Index>(count()));
     std::vector<double> moved(places, places + count());
@@ -93,7 +93,8 @@ class Cost : public ceres::CostFunction {
   const Model& model_;
 };
 
-/// Descends from these places, which move. @returns chi2 there; nothing where the model has no answer at the start
+/// Minimises from the start `places`, which it updates. @returns chi2 at the end; nothing if the model has no result at
+/// the start
 std::optional<double> descend(const Model& model, std::vector<double>& places, int iterations) {
   const std::optional<Eigen::VectorXd> first = model.at(places.data());
   if (!first) return std::nullopt;
@@ -131,7 +132,7 @@ std::vector<std::size_t> all_of(std::size_t count) {
   return list;
 }
 
-/// Standard errors, correlations and what is open, from the Jacobian at the best place.
+/// Standard errors, correlations and undetermined directions, from the Jacobian at the best fit.
 void determine(const std::vector<FitParameter>& parameters, const Residuals& residuals,
                const std::vector<double>& places, int observations, Fit& fit) {
   const std::size_t count = parameters.size();
@@ -141,12 +142,13 @@ void determine(const std::vector<FitParameter>& parameters, const Residuals& res
   fit.correlation = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count), none);
   const Model model(parameters, residuals, fit.value, all_of(count));
   const std::optional<Eigen::MatrixXd> all = model.jacobian(places.data(), fit.residual);
-  if (!all) throw std::runtime_error("the model has no answer beside the fit's own values");
-  // What the model cannot follow counts as scatter, so that the errors are those of the misfit and not of the data.
+  if (!all) throw std::runtime_error("the model has no result next to the fitted values");
+  // The misfit of the model counts as scatter, so that the standard errors reflect the misfit and not the data's
+  // uncertainty.
   const double scatter = std::sqrt(std::max(1.0, fit.chi2_per_freedom));
   std::vector<std::size_t> inner;
   for (std::size_t k = 0; k < count; ++k) {
-    // A parameter without effect stays wherever it was started.
+    // A parameter without effect stays at its start value.
     const bool counts = all->col(static_cast<Eigen::Index>(k)).norm() * open_share >= scatter;
     if (counts && places[k] < bound_share) {
       fit.parameters[k].at_bound = AtBound::low;
@@ -177,7 +179,7 @@ void determine(const std::vector<FitParameter>& parameters, const Residuals& res
         if (std::abs(direction[i]) >= part_of_direction) parts.push_back(inner[static_cast<std::size_t>(i)]);
       }
     }
-    // A direction without any effect is as wide as can be told from its bounds many times over.
+    // Cap the standard error of a direction without effect, so that the covariance stays finite.
     const double told = std::min(width, 1e6);
     covariance += told * told * direction * direction.transpose();
   }
@@ -235,7 +237,7 @@ Fit fit(const std::vector<FitParameter>& parameters, const Residuals& residuals,
     }
     if (count == 0) break;
   }
-  if (best.empty() && count > 0) throw std::runtime_error("the model has no answer at any start of the fit");
+  if (best.empty() && count > 0) throw std::runtime_error("the model has no result at any start of the fit");
   out.value = model.values(best.data());
   out.residual = model.at(best.data()).value();
   for (const FitStart& one : out.starts) {

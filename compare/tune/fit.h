@@ -77,7 +77,7 @@ inline constexpr double open_share = 0.25;
 [[nodiscard]] Fit fit(const std::vector<FitParameter>& parameters, const Residuals& residuals,
                       const FitOptions& options);
 
-/// The best chi2 with one parameter held, at values from bound to bound.
+/// The best chi2 with one parameter fixed, at values from bound to bound.
 struct Profile {
   std::size_t parameter = 0;
   std::vector<double> values, chi2;   ///< NaN where the model has no answer
@@ -97,8 +97,8 @@ struct ProfiledFit {
   int rounds = 0;                 ///< fits made
 };
 
-/// Fits and takes profiles. A rough parameter hides better places from a descent: where a profile finds one, better by
-/// more than a thousandth of chi2, the given start moves there and all is fitted again, up to six times.
+/// Fits and takes profiles. With a rough parameter a descent may end in a local minimum: if a profile finds a better
+/// one, better by more than a thousandth of chi2, the given start moves there and all is fitted again, up to six times.
 /// @param profiled  parameters to take a profile of; @param points  as of `profile`
 [[nodiscard]] ProfiledFit fit_through_profiles(std::vector<FitParameter> parameters, const Residuals& residuals,
                                                const FitOptions& options, const std::vector<std::size_t>& profiled,

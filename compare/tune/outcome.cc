@@ -56,7 +56,7 @@ std::vector<RegimePoint> regime_of(const Tuning& tuning, const TuningData& data,
   return regime;
 }
 
-/// shape.rel_l2 over the instants that count.
+/// shape.rel_l2 over the instants that are fitted.
 double shape_error_rel(const TuningData& data, const scene::Scene& scene, ModelReplay& replay) {
   double error2 = 0.0, scale2 = 0.0;
   (void)replay.forces_n(scene);
@@ -80,7 +80,7 @@ TuningOutcome outcome_of(const Tuning& tuning, const ModelEntry& entry, const Tu
 }
 
 ShapeParts shape_parts_of(const TuningData& data, const ModelEntry& entry, const TunedModel& model) {
-  // A million square metres: no beam gives.
+  // A beam area of a million square metres: the beams do not deform.
   constexpr double stiff_s_c_m2 = 1e6;
   const scene::Scene whole = tuned_scene(data.contact.scene, model);
   const std::unique_ptr<ModelReplay> replay = replay_of(entry, whole);

@@ -21,7 +21,7 @@ double peak_force_n(const TuningData& data) {
   return peak_n;
 }
 
-/// The reference's own, but no less than the floor, which also stands for one that is not known.
+/// The reference's uncertainty, but at least the floor; the floor if the uncertainty is unknown.
 double at_least(double uncertainty, double floor) {
   return std::isfinite(uncertainty) ? std::max(uncertainty, floor) : floor;
 }
@@ -29,7 +29,7 @@ double at_least(double uncertainty, double floor) {
 /// The training contacts as residuals of one stage.
 class Training {
  public:
-  /// @param deepest_m  of all contacts, on which the laws must have an answer
+  /// @param deepest_m  largest depth of all contacts, up to which the law must be valid
   Training(const Tuning& tuning, const ModelEntry& entry, const TunedModel& model, double deepest_m)
       : deepest_m_(deepest_m) {
     for (const TuningData& data : tuning.data) {
@@ -64,10 +64,11 @@ class Training {
     }
   }
 
-  /// One for every instant in contact: its force, or its whole surface, whose points hang together.
+  /// One observation per instant in contact, for the force as for the shape: displacements of one surface are
+  /// correlated.
   [[nodiscard]] int observations() const noexcept { return observations_; }
 
-  /// Difference of the force vectors over the band, three components an instant.
+  /// Difference of the force vectors over the uncertainty, three components per instant.
   std::optional<Eigen::VectorXd> force(const std::vector<TuningParameter>& parameters, const Eigen::VectorXd& values) {
     Eigen::VectorXd out(3 * observations_);
     Eigen::Index row = 0;
@@ -85,8 +86,8 @@ class Training {
     return out;
   }
 
-  /// Difference of the displacements times sqrt(area), so scaled that the mean of an instant's sum of squares is
-  /// (shape.rel_l2 / the reference's uncertainty of it)^2.
+  /// Difference of the displacements times sqrt(area), scaled so that the mean over the instants of the sum of squares
+  /// is (shape.rel_l2 / the reference's uncertainty of it)^2.
   std::optional<Eigen::VectorXd> shape(const std::vector<TuningParameter>& parameters, const Eigen::VectorXd& values) {
     Eigen::VectorXd out(shape_rows_);
     Eigen::Index row = 0;
@@ -113,13 +114,13 @@ class Training {
     const TuningData* data = nullptr;
     scene::Scene scene;
     std::unique_ptr<ModelReplay> replay;
-    std::vector<std::size_t> touching;           ///< of the instants that count
-    std::vector<std::size_t> touching_in_track;  ///< the same of all instants
+    std::vector<std::size_t> touching;           ///< fitted instants in contact
+    std::vector<std::size_t> touching_in_track;  ///< all instants in contact
     double force_floor_n = 0.0;
     double shape_uncertainty = 0.0;
     double shape_scale = 0.0;      ///< root mean square over the instants of sqrt(sum A |u|^2) [m^2]
     Eigen::VectorXd weight_per_m;  ///< per rest point: sqrt(A) over the scale and the uncertainty
-    std::vector<Eigen::Matrix3Xd> weighted_reference;  ///< per touching instant
+    std::vector<Eigen::Matrix3Xd> weighted_reference;  ///< per fitted instant in contact
     bool forces_known = false;
   };
   double deepest_m_;

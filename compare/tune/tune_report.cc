@@ -15,8 +15,6 @@
 namespace touchstone::compare {
 namespace {
 
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-
 std::string measure_cell(const Measure& measure, const std::string& unit) {
   if (!measure.value) return number_cell("–");
   const auto under = [](const std::string& text) { return tag("span", text, "class=\"under\""); };
@@ -26,7 +24,7 @@ std::string measure_cell(const Measure& measure, const std::string& unit) {
   return "<td class=\"n\">" + out + "</td>";
 }
 
-/// The worst of the contacts in one figure; null where none has it.
+/// The largest value of one error over the contacts; null if no contact has it.
 const Measure* worst(const Tuning& tuning, const TunedModel& model, bool held_out, Measure Errors::*figure) {
   const Measure* found = nullptr;
   for (const TuningOutcome& outcome : model.outcomes) {
@@ -46,11 +44,12 @@ std::string worst_tile(const Tuning& tuning, bool held_out, const std::string& w
 std::string head_section(const Tuning& tuning) {
   const TuningStudy& study = tuning.study;
   std::string out = tag("h1", study.title.empty() ? study.name : study.title) + "\n";
-  out += tag("p",
-             "The fast model's free numbers, fitted to the finite-element reference on training contacts and judged on "
-             "contacts that the fit never saw.",
-             "class=\"dim\"") +
-         "\n<div class=\"tiles\">\n";
+  out +=
+      tag("p",
+          "The fast model's free constants, fitted to the finite-element reference on training contacts and judged on "
+          "contacts that the fit does not use.",
+          "class=\"dim\"") +
+      "\n<div class=\"tiles\">\n";
   out += worst_tile(tuning, true, "Force error held out, of the peak", &Errors::force_nrmse);
   out += worst_tile(tuning, true, "Shape error held out, of the displacement", &Errors::shape_rel_l2);
   out += worst_tile(tuning, false, "Force error in training, of the peak", &Errors::force_nrmse);
@@ -61,7 +60,7 @@ std::string head_section(const Tuning& tuning) {
   return out + "</div>\n";
 }
 
-/// A column of the errors' tables.
+/// A column of the error tables.
 struct ErrorColumn {
   const char* head;
   Measure Errors::*figure;
@@ -79,7 +78,7 @@ constexpr ErrorColumn error_columns[] = {{"force, of the peak", &Errors::force_n
                                          {"on the side faces", &Errors::shape_side_faces_rel_l2},
                                          {"largest, of the depth", &Errors::shape_max_over_depth}};
 
-/// Those that some contact has a figure for.
+/// The columns for which some contact has a value.
 std::vector<ErrorColumn> columns_in_use(const Tuning& tuning) {
   std::vector<ErrorColumn> columns;
   for (const ErrorColumn& column : error_columns) {
@@ -118,7 +117,8 @@ std::string errors_table(const Tuning& tuning, bool held_out) {
 
 std::string errors_note() {
   return tag("p",
-             "Behind ± stands the reference's own uncertainty in the same norm. Force of the peak: root mean square "
+             "The number after ± is the reference's own uncertainty in the same norm. Force of the peak: root mean "
+             "square "
              "over "
              "the instants, relative to the largest force; relative: root mean square where the depth is above 10 % of "
              "its largest. Shape: of the displacement, by area and over the instants; side faces are those that are "
@@ -134,7 +134,7 @@ std::string unit_text(double value, const std::string& unit) {
 std::string error_text(const TuningParameter& parameter, const Determination& found, bool another_at_bound) {
   if (found.at_bound != AtBound::no)
     return found.at_bound == AtBound::low ? "none: at its lower bound" : "none: at its upper bound";
-  if (!found.error) return "none: the data leave it open";
+  if (!found.error) return "none: not determined by the data";
   return "± " + (parameter.log ? percent_text(*found.error) : unit_text(*found.error, parameter.unit)) +
          (another_at_bound ? ", with the bound held" : "");
 }
@@ -163,8 +163,7 @@ std::string fit_sentence(const StageFit& stage) {
       "{} of {} starts ended at the same place. The squared differences, in units of the reference's uncertainty, "
       "come to {} per degree of freedom{}. Rank {} of {}, condition {}.",
       fit.starts_agreeing, fit.starts.size(), number_text(fit.chi2_per_freedom),
-      fit.chi2_per_freedom > 2.0 ? ": the model cannot follow the data, so the errors given are those of the misfit"
-                                 : "",
+      fit.chi2_per_freedom > 2.0 ? ": the model cannot follow the data, so the standard errors reflect the misfit" : "",
       fit.rank, fit.free, std::isfinite(fit.condition) ? number_text(fit.condition) : "infinite");
 }
 
@@ -193,7 +192,7 @@ std::string starts_table(const StageFit& stage) {
     for (Eigen::Index k = 0; k < start.from.size(); ++k) {
       out += number_cell(number_text(start.from[k]) + " → " + number_text(start.to[k]));
     }
-    out += number_cell(start.chi2 ? number_text(*start.chi2) : "no answer there") + "</tr>\n";
+    out += number_cell(start.chi2 ? number_text(*start.chi2) : "no result there") + "</tr>\n";
   }
   return out + "</table></div>\n</details>\n";
 }
@@ -206,7 +205,7 @@ std::string profile_plots(const StageFit& stage) {
     Plot plot;
     plot.title = "Profile of " + one.key;
     plot.x_label = one.key + (one.unit.empty() ? "" : " [" + one.unit + "]");
-    plot.y_label = "best squared differences / least";
+    plot.y_label = "squared differences / minimum";
     plot.x_log = one.log;
     Curve curve{"the others fitted", Look::fast, profile.values, {}};
     for (const double chi2 : profile.chi2) curve.y.push_back(chi2 / stage.fit.chi2);
@@ -218,7 +217,8 @@ std::string profile_plots(const StageFit& stage) {
 }
 
 std::string stage_section(const StageFit& stage) {
-  std::string out = tag("h3", stage.stage == TuningStage::force ? "Force" : "Shape, with the force as found") + "\n";
+  std::string out =
+      tag("h3", stage.stage == TuningStage::force ? "Force" : "Shape, with the force constants as fitted") + "\n";
   out += parameter_table(stage) + tag("p", fit_sentence(stage)) + "\n";
   for (const std::string& note : stage.notes) out += tag("p", note) + "\n";
   return out + correlation_table(stage) + profile_plots(stage) + starts_table(stage);
@@ -226,7 +226,7 @@ std::string stage_section(const StageFit& stage) {
 
 Plot residual_plot(const Tuning& tuning, const TunedModel& model) {
   Plot plot;
-  plot.title = "What is left on the training contacts";
+  plot.title = "Residuals on the training contacts";
   plot.x_label = "depth [mm]";
   plot.y_label = "force, model − reference [% of the peak]";
   constexpr Look looks[] = {Look::first, Look::second, Look::third, Look::plain};
@@ -244,17 +244,17 @@ Plot residual_plot(const Tuning& tuning, const TunedModel& model) {
   return plot;
 }
 
-/// Points without a line: each is followed by a gap.
+/// Points without a connecting line: each is followed by a gap.
 Plot regime_plot(const TunedModel& model, const std::string& y_label,
                  const std::function<double(const RegimePoint&)>& y_of) {
   Plot plot;
-  plot.title = "Where the force holds";
+  plot.title = "Range of validity of the force";
   plot.x_label = "depth / radius";
   plot.y_label = y_label;
   plot.curves = {{"within 5 %", Look::first, {}, {}},
                  {"within 10 %", Look::second, {}, {}},
                  {"within 20 %", Look::third, {}, {}},
-                 {"farther off", Look::plain, {}, {}}};
+                 {"larger error", Look::plain, {}, {}}};
   for (const TuningOutcome& outcome : model.outcomes) {
     for (const RegimePoint& point : outcome.regime) {
       const auto limit = std::find_if(std::begin(regime_limits), std::end(regime_limits),
@@ -267,7 +267,7 @@ Plot regime_plot(const TunedModel& model, const std::string& y_label,
   return plot;
 }
 
-/// Ranges of depth over radius in which every instant is within a limit, from the deepest such stretch's ends.
+/// Ranges of depth over radius in which the error of every instant is within a limit.
 std::string within_text(const std::vector<RegimePoint>& regime, double limit) {
   std::vector<RegimePoint> sorted = regime;
   std::sort(sorted.begin(), sorted.end(),
@@ -330,13 +330,13 @@ std::string regime_section(const Tuning& tuning, const TunedModel& model) {
 
 std::string model_section(const Tuning& tuning, const TunedModel& model) {
   std::string out = tag("h2", "The " + model.name() + " model") + "\n";
-  // The first model's stand at the top of the page.
+  // The findings on the first model are at the top of the page.
   if (&model != &tuning.models.front()) {
     for (const std::string& sentence : model.limits) out += tag("p", sentence) + "\n";
   }
   for (const StageFit& stage : model.stages) out += stage_section(stage);
   out += tag("h3", "Fit and held-out forces") + "\n<div class=\"plots\">\n";
-  out += figure(to_svg(residual_plot(tuning, model)), "A pattern here is the law's form, not noise.");
+  out += figure(to_svg(residual_plot(tuning, model)), "A pattern shows a wrong form of the law, not noise.");
   for (const TuningOutcome& outcome : model.outcomes) {
     const TuningData& data = tuning.data[outcome.data];
     Plot force = force_plot(outcome.errors);
@@ -350,7 +350,7 @@ std::string data_section(const Tuning& tuning) {
   std::string out =
       tag("h2", "The contacts and their reference") +
       "\n<div class=\"scroll\"><table>\n<tr><th>Contact</th><th>scene</th><th class=\"n\">instants</th><th class=\"n\">"
-      "force known to</th><th class=\"n\">shape known to</th><th>model</th></tr>\n";
+      "force uncertainty</th><th class=\"n\">shape uncertainty</th><th>model</th></tr>\n";
   for (const TuningData& data : tuning.data) {
     out += "<tr>" + cell(data.contact.name) + cell(data.contact.scene.name) +
            number_cell(number_text(static_cast<double>(data.instants.size()))) +
@@ -361,9 +361,9 @@ std::string data_section(const Tuning& tuning) {
   return out + "</table></div>\n" +
          tag("p",
              fmt::format(
-                 "Differences are weighed by the reference's uncertainty, but by no less than {} of a contact's peak "
-                 "force and {} of its displacement, which also stand for an uncertainty that is not known. An "
-                 "instant counts as one observation: points of one surface hang together.",
+                 "Differences are divided by the reference's uncertainty, but at least by {} of a contact's peak "
+                 "force and {} of its displacement, which also replace an unknown uncertainty. An "
+                 "instant counts as one observation: the points of one surface are correlated.",
                  percent_text(tuning.study.force_floor), percent_text(tuning.study.shape_floor)),
              "class=\"dim\"") +
          "\n";

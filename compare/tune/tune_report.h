@@ -1,4 +1,4 @@
-// The page of one tuning: how the tuned models do on contacts they were not tuned to, then how they were tuned.
+// The page of one tuning: the tuned models' errors on held-out contacts, then how they were tuned.
 #pragma once
 
 #include "compare/tune/tuning.h"

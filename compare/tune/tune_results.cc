@@ -18,7 +18,7 @@ namespace {
 
 using Field = scene::Field<scene::Scene>;
 
-/// A name as a part of a dotted key.
+/// A name as part of a dotted key.
 std::string slug(const std::string& name) {
   std::string out;
   for (const char c : name) {
@@ -32,7 +32,7 @@ std::string slug(const std::string& name) {
   return out;
 }
 
-/// What of the reference's figures says something about one contact, whatever machine it ran on.
+/// The reference's figures that describe one contact and do not depend on the machine.
 scene::Figures reference_side(const Tuning& tuning, const TuningOutcome& outcome) {
   const scene::Figures all = reference_figures(tuning.data[outcome.data].result, outcome.errors.reference);
   scene::Figures out;
@@ -42,7 +42,7 @@ scene::Figures reference_side(const Tuning& tuning, const TuningOutcome& outcome
   return out;
 }
 
-/// Every error of the contacts at its worst, with the uncertainty of the contact it is from.
+/// The largest value of every error over the contacts, with the uncertainty of that contact.
 scene::Figures worst_figures(const std::vector<scene::Figures>& contacts) {
   scene::Figures out;
   for (const scene::Figure& first : contacts.front()) {
@@ -107,7 +107,7 @@ scene::Figures model_figures(const Tuning& tuning, const TunedModel& model) {
         out.push_back({key, *found.error, "", one.log ? "" : one.unit});
       } else {
         out.push_back({key, NAN,
-                       found.open                       ? "none: the data leave it open"
+                       found.open                       ? "none: not determined by the data"
                        : found.at_bound == AtBound::low ? "none: at its lower bound"
                                                         : "none: at its upper bound",
                        ""});
@@ -124,7 +124,7 @@ scene::Figures model_figures(const Tuning& tuning, const TunedModel& model) {
   return out;
 }
 
-/// One row per contact and instant, contacts and models numbered in the order of the study.
+/// One row per contact and instant; contacts and models are numbered in the order of the study.
 std::vector<scene::Column> tuning_columns(const Tuning& tuning) {
   std::vector<scene::Column> columns;
   for (const char* name : {"model", "contact", "held_out", "time_s", "depth_m", "fast_force_n", "reference_force_n",
@@ -164,7 +164,7 @@ std::string parameters_toml(const Tuning& tuning, const TunedModel& model) {
   for (const StageFit& stage : model.stages) {
     for (const TuningParameter& one : stage.parameters) tuned.insert(scene::tunable_field(one.key));
   }
-  // Of a contact in which all of them apply, as friction's do not everywhere.
+  // The scene of a contact in which all tuned keys apply; those of friction may not apply in all.
   std::vector<scene::Scene> scenes;
   for (const TuningData& data : tuning.data) scenes.push_back(tuned_scene(data.contact.scene, model));
   const auto whole = std::ranges::find_if(scenes, [&](const scene::Scene& scene) {
@@ -191,12 +191,12 @@ std::string parameters_toml(const Tuning& tuning, const TunedModel& model) {
     keys += key.substr(dot + 1) + " = " + scene::value_text(field, values) + "\n";
   }
   std::string text = fmt::format(
-      "# The {} model, tuned by the study {}.\n# A scene takes it over with include = \"<this file>\" at its "
-      "top, and leaves these keys out: its own win.\n",
+      "# The {} model, tuned by the study {}.\n# A scene uses it with include = \"<this file>\" at its "
+      "top, and leaves these keys out: a scene's own keys have precedence.\n",
       model.name(), tuning.study.name);
   if (!shared.empty())
     text += fmt::format(
-        "# The reference reads {} too, and a scene with other values is another one to it. compare --parameters gives "
+        "# The reference reads {} too; with other values it solves a different scene. compare --parameters gives "
         "them to the fast model alone.\n",
         shared);
   return text + keys;

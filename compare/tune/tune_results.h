@@ -1,4 +1,4 @@
-// What a tuning leaves in its folder.
+// The result files of a tuning.
 #pragma once
 
 #include "compare/tune/tuning.h"

@@ -51,13 +51,13 @@ void set_values(scene::Scene& scene, const std::vector<TuningParameter>& paramet
 }
 
 std::string TunedModel::name() const {
-  return std::string(formulation == scene::Formulation::published ? "published" : "corrected") +
-         (law == scene::ContactLaw::duffing ? " duffing" : " area-aware");
+  return std::string(formulation == scene::Formulation::published ? "published" : "corrected") + " " +
+         std::string(scene::name_of(law).title);
 }
 
 std::string TunedModel::key() const {
-  return std::string(formulation == scene::Formulation::published ? "published" : "corrected") +
-         (law == scene::ContactLaw::duffing ? "-duffing" : "-area_aware");
+  return std::string(formulation == scene::Formulation::published ? "published" : "corrected") + "-" +
+         std::string(scene::name_of(law).word);
 }
 
 scene::Scene tuned_scene(const scene::Scene& scene, const TunedModel& model) {

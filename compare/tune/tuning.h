@@ -1,4 +1,4 @@
-// What a tuning is made of: contacts with the reference's answer, fits, and what the tuned models do on every contact.
+// The data of a tuning: contacts with the reference's results, fits, and the tuned models' results on every contact.
 #pragma once
 
 #include "compare/errors/errors.h"
@@ -53,12 +53,12 @@ struct TuningOutcome {
 };
 
 /// Shape error on the first training contact, over the instants that count as shape.rel_l2 is, with parts of the tuned
-/// model switched off and nothing fitted again: what each part is good for.
+/// model switched off and nothing fitted again: which shows the effect of each part.
 struct ShapeParts {
   double whole = 0.0;
   double without_local_factor = 0.0;  ///< C_n = 0
   double anchors_at_rest = 0.0;       ///< beams too stiff to move them
-  double hat_alone = 0.0;             ///< neither: the contact point spread over its patches
+  double hat_alone = 0.0;             ///< neither: the contact point's kernel function alone
 };
 
 /// One formulation and law, tuned.

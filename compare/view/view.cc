@@ -61,13 +61,13 @@ namespace touchstone::compare {
 namespace {
 
 constexpr int width_px = 1280, height_px = 760;
-/// The body's part of the window; the curve has the rest.
+/// Fraction of the window for the body; the curve has the rest.
 constexpr double body_share = 0.62;
 constexpr std::array ink = {0.11, 0.12, 0.13};
-/// Of a point whose value is not known.
+/// Grey of a point whose value is not known.
 constexpr double unknown_grey = 0.75;
 constexpr int tool_triangles = 3000;
-/// Of 100: thin lines and letters stay clean.
+/// In percent; high, so that thin lines and letters stay sharp.
 constexpr int jpeg_quality = 95;
 
 struct Key {
@@ -84,12 +84,12 @@ constexpr Key keys[] = {{"Left", "left, right", "one instant back, on"},
                         {"h", "h", "this help"},
                         {"q", "q", "close"}};
 
-/// One body that can be shown, and one quantity it can be coloured by: names of point arrays.
+/// A body that can be shown, or a quantity to colour it by: names of point arrays.
 struct Body {
   std::string name, displacement;
 };
 struct Colouring {
-  std::string name, array;  ///< array "": the shown body's displacement
+  std::string name, array;  ///< array "": the displacement of the shown body
   ColourMap map;
 };
 
@@ -111,7 +111,7 @@ vtkSmartPointer<vtkPolyData> read_surface(const std::filesystem::path& file) {
   return reader->GetOutput();
 }
 
-/// Size of the total force per instant, of columns "<prefix>regionN_force_x_n".
+/// Magnitude of the total force per instant, from columns "<prefix>regionN_force_x_n".
 std::vector<double> force_n(const ResultFolder& result, const std::string& prefix) {
   std::vector<Eigen::Vector3d> sum(result.required_column("time_s").size(), Eigen::Vector3d::Zero());
   for (int region = 0; result.column(fmt::format("{}region{}_force_x_n", prefix, region)) != nullptr; ++region) {
@@ -153,7 +153,7 @@ vtkSmartPointer<vtkLookupTable> lookup_table(ColourMap map) {
   return table;
 }
 
-/// Turns by mouse; leaves every key to us, where VTK's own style has letters of its own.
+/// Rotates with the mouse; passes all keys on, because VTK's own style uses letters for itself.
 class Style : public vtkInteractorStyleTrackballCamera {
  public:
   static Style* New();
@@ -174,7 +174,7 @@ void set_ink(vtkTextProperty* text, int size) {
 
 enum class PictureFormat { png, jpeg };
 
-/// By the file's ending, in any case of letters; nothing for any other ending.
+/// By the file's extension in upper or lower case; nothing for an unknown one.
 std::optional<PictureFormat> format_of(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -183,7 +183,7 @@ std::optional<PictureFormat> format_of(const std::filesystem::path& file) {
   return std::nullopt;
 }
 
-/// The image as the bytes of a file.
+/// The encoded image file.
 template <class Writer>
 std::string encoded(vtkAlgorithmOutput* image, Writer* writer) {
   writer->SetInputConnection(image);
@@ -203,7 +203,7 @@ struct ResultView::Parts {
   std::vector<scene::Column> forces;  ///< one per side, named as in the legend
   std::vector<scene::Pose> poses;
   std::size_t instant = 0, body = 0, colouring = 0;
-  std::map<std::pair<std::size_t, std::size_t>, double> full_scales_m;  ///< by body and colouring, as they are needed
+  std::map<std::pair<std::size_t, std::size_t>, double> full_scales_m;  ///< by body and colouring, computed when needed
 
   vtkNew<vtkPolyData> shown;
   vtkNew<vtkPolyDataNormals> normals;
@@ -238,7 +238,7 @@ struct ResultView::Parts {
     add_colouring("uncertainty", "displacement_uncertainty_m");
   }
 
-  /// Of one point at one instant [m].
+  /// Value at one point and one instant [m].
   [[nodiscard]] double value_m(std::size_t at, vtkIdType point) const {
     vtkPointData* data = surfaces[at]->GetPointData();
     const std::string& array = colourings[colouring].array;
@@ -248,7 +248,7 @@ struct ResultView::Parts {
     return std::hypot(u[0], u[1], u[2]);
   }
 
-  /// Largest over all instants, so that a colour means the same along the slider.
+  /// Maximum over all instants, so that a colour has the same meaning at all of them.
   [[nodiscard]] double full_scale_m() {
     const auto [known, is_new] = full_scales_m.try_emplace({body, colouring}, 0.0);
     double& found = known->second;
@@ -261,7 +261,7 @@ struct ResultView::Parts {
     return found;
   }
 
-  /// Has the colouring a value anywhere at this instant?
+  /// Whether the colouring has a value anywhere at this instant.
   [[nodiscard]] bool any_value() const {
     for (vtkIdType i = 0; i < surfaces[instant]->GetNumberOfPoints(); ++i) {
       if (std::isfinite(value_m(instant, i))) return true;
@@ -316,7 +316,7 @@ struct ResultView::Parts {
     first_view();
   }
 
-  /// From in front, above and a little to the right, as in the report.
+  /// The view is from the front, above and slightly from the right, as in the report.
   void first_view() {
     vtkCamera* camera = space->GetActiveCamera();
     camera->ParallelProjectionOn();
@@ -324,7 +324,7 @@ struct ResultView::Parts {
     camera->SetPosition(0.352, -0.791, 0.5);
     camera->SetViewUp(0.0, 0.0, 1.0);
     space->ResetCamera(surfaces.front()->GetBounds());
-    camera->Zoom(0.8);  // room for the words and the colour bar
+    camera->Zoom(0.8);  // leaves space for the text and the colour bar
   }
 
   void make_curve() {
@@ -368,7 +368,7 @@ struct ResultView::Parts {
     window->SetMultiSamples(4);
   }
 
-  /// Redraws the body, and colours it anew.
+  /// Draws the body again with its colours.
   void show() {
     vtkPolyData* surface = surfaces[instant];
     vtkDataArray* move = surface->GetPointData()->GetArray(bodies[body].displacement.c_str());
@@ -514,7 +514,7 @@ bool ResultView::can_write(const std::filesystem::path& file) { return format_of
 
 void ResultView::write_picture(const std::filesystem::path& file) {
   const std::optional<PictureFormat> format = format_of(file);
-  if (!format) throw scene::InputError({{file.string(), 0, 0, "unknown ending; expected .png, .jpg or .jpeg"}});
+  if (!format) throw scene::InputError({{file.string(), 0, 0, "unknown extension; expected .png, .jpg or .jpeg"}});
   parts_->window->SetOffScreenRendering(1);
   parts_->window->Render();
   vtkNew<vtkWindowToImageFilter> image;

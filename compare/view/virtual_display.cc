@@ -35,7 +35,7 @@ VirtualDisplay::VirtualDisplay() {
       posix_spawnp(&process_, arguments[0], &actions, nullptr, const_cast<char* const*>(arguments), environ);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
-  // It writes its number once it listens; nothing when it ends before.
+  // Xvfb writes its display number when it is ready; nothing if it ends before.
   std::string number;
   char digit = 0;
   while (failure == 0 && read(ends[0], &digit, 1) == 1 && digit != '\n') number += digit;
@@ -45,7 +45,7 @@ VirtualDisplay::VirtualDisplay() {
     return;
   }
   if (failure == 0) waitpid(process_, nullptr, 0);
-  throw scene::InputError("no display, and Xvfb, which would stand in for one, " +
+  throw scene::InputError("no display, and Xvfb, which would replace one, " +
                           std::string(failure != 0 ? "is missing: apt-get install xvfb" : "did not start"));
 }
 

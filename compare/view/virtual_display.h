@@ -1,4 +1,4 @@
-// An X display: the one there is, or one of our own for as long as pictures are drawn.
+// An X display: the one there is, or a virtual one while pictures are drawn.
 #pragma once
 
 #include <sys/types.h>

@@ -366,7 +366,7 @@ class Viewer {
         points.push(m[axis] * tool[i] + m[4 + axis] * tool[i + 1] + m[8 + axis] * tool[i + 2] + m[12 + axis]);
       }
     }
-    // A long handle, or a body gone wild, must not make the bodies small.
+    // A long handle or a diverged shape must not make the bodies small.
     const beyond = 0.25 * this.size_m;
     return points.map((value, i) => Math.min(Math.max(value, low[i % 3] - beyond), high[i % 3] + beyond));
   }
@@ -422,7 +422,7 @@ class Viewer {
     this.camera.setClippingRange(0.5 * distance_m, 1.5 * distance_m);
   }
 
-  /** Nobody has zoomed or moved the picture since; turned it may be. */
+  /** Whether the picture was neither zoomed nor moved since; it may have been rotated. */
   isFitted() {
     const now = [...this.camera.getFocalPoint(), this.camera.getParallelScale()];
     return !this.fitted || now.every((value, i) => Math.abs(value - this.fitted[i]) < 1e-6 * this.size_m);
@@ -448,7 +448,7 @@ class Viewer {
   /** Five numbers along the colour bar, and what they are. */
   barText(colour) {
     const full = this.fullScale[colour] * millimetres;
-    const more = this.clipped[colour] ? '; the last colour also stands for more' : '';
+    const more = this.clipped[colour] ? '; larger values have the last colour' : '';
     return {
       name: `${this.data.meanings[colour]} [mm]${more}`,
       numbers: [0, 1, 2, 3, 4].map((i) => String(Number(((full * i) / 4).toPrecision(3)))),

@@ -1,4 +1,4 @@
-// The script of the report's view in space, with what it uses of vtk.js, as viewer/bundle.js made it.
+// The script of the report's three-dimensional view, with what it uses of vtk.js, as viewer/bundle.js made it.
 #pragma once
 
 #include <string_view>

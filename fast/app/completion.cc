@@ -10,18 +10,18 @@
 namespace touchstone::fast {
 namespace {
 
-/// What may stand in a place of the command line.
+/// What the shell completes at a place of the command line.
 enum class Expects { nothing, keys, toml_files, folders, files, words };
 
 struct Place {
-  std::string name;  ///< an option; empty for what stands alone
+  std::string name;  ///< an option; empty for a positional argument
   Expects expects = Expects::nothing;
   std::string words;
 };
 
 struct VerbWords {
-  std::string name, what;  ///< "study expand"
-  std::string options;     ///< and verbs below it
+  std::string name, what;  ///< such as "study expand"
+  std::string options;     ///< and subcommands
   std::vector<Place> values;
   Place alone;
 };
@@ -35,7 +35,7 @@ Place place_of(const CommandWords::Value& value) {
     if (name == "SHELL") return {"", Expects::words, "bash zsh"};
     return {"", name == "FILE" ? Expects::files : Expects::nothing, ""};
   }
-  // A plain text is most often a path; numbers and lengths have a type of their own.
+  // A text argument is usually a path; numbers and lengths have types of their own.
   Place place{name, starts("TEXT") ? Expects::files : Expects::nothing, ""};
   if (starts("KEY=VALUE")) {
     place.expects = Expects::keys;
@@ -70,7 +70,7 @@ std::string keys() {
   return out;
 }
 
-/// The shells' own ways to offer words, keys and files.
+/// Shell-specific code that completes words, keys and files.
 struct Dialect {
   std::string words_before, words_after, keys, toml_files, folders, files;
 };
@@ -93,7 +93,7 @@ std::string action(const Place& place, const Dialect& shell) {
   return "";
 }
 
-/// The branches over "$verb $previous" for values of options, and over "$verb" for the rest.
+/// The case branches: "$verb $previous" for values of options, then "$verb".
 std::string branches(const std::vector<VerbWords>& verbs, const Dialect& shell) {
   std::string out = "  case \"$verb $previous\" in\n";
   for (const VerbWords& verb : verbs) {
@@ -112,7 +112,7 @@ std::string branches(const std::vector<VerbWords>& verbs, const Dialect& shell) 
   return out + "  esac\n";
 }
 
-/// "study|other": verbs that have verbs below them.
+/// "study|other": commands that have subcommands.
 std::string nested(const std::vector<VerbWords>& verbs) {
   std::string out;
   for (const VerbWords& verb : verbs) {
@@ -183,7 +183,7 @@ std::string completion_script(const CommandWords& program, const std::string& sh
 }
 
 void add_completion_verb(Program& program, std::string& shell) {
-  Command verb = program.add("completion", "print a script that completes verbs, options and files in a shell");
+  Command verb = program.add("completion", "print a script that completes commands, options and files in a shell");
   verb.option("SHELL", shell, "bash or zsh").required().one_of({"bash", "zsh"});
   verb.footer("Example:\n  source <(" + program.program_name() + " completion bash)");
   verb.action([&program, &shell] {

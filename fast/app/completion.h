@@ -1,4 +1,4 @@
-// Shell completion of verbs, options, files and scene keys, read off the command line's own declaration.
+// Shell completion of commands, options, files and scene keys, from the declaration of the command line.
 #pragma once
 
 #include "fast/command/command.h"
@@ -10,7 +10,7 @@ namespace touchstone::fast {
 /// A script to source. @param shell  "bash" or "zsh"
 [[nodiscard]] std::string completion_script(const CommandWords& program, const std::string& shell);
 
-/// Adds the verb that prints it. To be added last, when all verbs are there, though the script is written when it runs.
+/// Adds the command that prints it, after all other commands.
 void add_completion_verb(Program& program, std::string& shell);
 
 }  // namespace touchstone::fast

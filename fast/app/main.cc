@@ -40,13 +40,13 @@ int run_program(int argc, char** argv) {
   fast::add_verb(program, "plan", "what the fast model computes for a scene, what it leaves out and why",
                  "meshes/scenes/ball-on-cube-press.toml --set fast.formulation=published", options,
                  [&] { return plan(options); });
-  fast::add_verb(program, "fast", "the real-time pipeline over the scene's track in virtual time",
+  fast::add_verb(program, "fast", "the real-time model over the scene's track in virtual time",
                  "meshes/scenes/ball-on-cube-press.toml --out out/press", options, [&] { return run(options); })
       .option("--out", options.out, "result folder (default out/<scene>-fast)");
   live::add_live_verb(program, options, live_options);
   bench::add_bench_verb(program, bench_options);
   fast::add_completion_verb(program, shell);
-  program.footer("touchstone-fast VERB --help: options and an example");
+  program.footer("touchstone-fast COMMAND --help: options and an example");
   return program.run(argc, argv);
 }
 

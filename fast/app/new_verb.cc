@@ -23,14 +23,14 @@ using scene::Vec3;
 
 struct Unit {
   std::string_view name;
-  double times, over;  ///< a power of ten divides exactly where it would not multiply so
+  double times, over;  ///< factor, divisor: dividing by a power of ten is exact, multiplying by its inverse is not
 };
 constexpr std::array length_units = {Unit{"um", 1.0, 1e6}, Unit{"mm", 1.0, 1e3}, Unit{"cm", 1.0, 1e2},
                                      Unit{"m", 1.0, 1.0}, Unit{"in", 0.0254, 1.0}};
 constexpr std::array stress_units = {Unit{"Pa", 1.0, 1.0}, Unit{"kPa", 1e3, 1.0}, Unit{"MPa", 1e6, 1.0},
                                      Unit{"GPa", 1e9, 1.0}};
 
-/// A number and the text behind it; nothing when there is no number.
+/// A number and the text after it; nothing if the text does not begin with a number.
 std::optional<std::pair<double, std::string_view>> number_and_rest(std::string_view text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -45,7 +45,7 @@ const Unit* unit_of(std::string_view name, std::span<const Unit> units) {
   return found == units.end() ? nullptr : &*found;
 }
 
-/// A shape's name and how its lengths are meant.
+/// A shape's name and the meaning of its lengths.
 struct ShapeWords {
   std::string_view name;
   std::size_t count;
@@ -143,7 +143,7 @@ std::string words_of(std::span<const ShapeWords> shapes) {
 
 double largest_m(const scene::Bounds& bounds) { return (bounds.upper_m - bounds.lower_m).maxCoeff(); }
 
-/// What is in range and yet most likely a slip.
+/// Refuses values that are in range but most likely a mistake.
 void require_likely(const scene::Scene& loaded, const scene::NewScene& asked) {
   const double height_m = scene::body_shape(loaded.body)->bounds().upper_m.z();
   if (asked.depth_m > 0.5 * height_m) {
@@ -204,11 +204,11 @@ int write_new_scene(const NewOptions& options, const std::string& program) {
     throw InputError(options.file.string() + ": expected a file name that ends in .toml");
   }
   if (std::filesystem::exists(options.file)) {
-    throw InputError(options.file.string() + ": there is such a file already; expected a new name");
+    throw InputError(options.file.string() + ": the file exists already; expected a new name");
   }
   const std::filesystem::path folder = std::filesystem::absolute(options.file).parent_path();
   if (!std::filesystem::is_directory(folder)) {
-    throw InputError(options.file.string() + ": expected a folder that is there, and there is no " + folder.string());
+    throw InputError(options.file.string() + ": expected an existing folder, and there is no " + folder.string());
   }
   scene::NewScene asked;
   asked.body = body_of(options.body);
@@ -230,7 +230,8 @@ int write_new_scene(const NewOptions& options, const std::string& program) {
   try {
     require_likely(scene::parse_scene(text, options.file), asked);
   } catch (const InputError& error) {
-    // There is no such file yet whose lines could be told, and its track's rows share their faults.
+    // The faults have no line numbers, since the file does not exist yet, and all rows of the track have the same
+    // faults.
     std::vector<scene::Fault> faults;
     std::set<std::string> told;
     for (scene::Fault fault : error.faults()) {
@@ -263,15 +264,14 @@ Command add_new_verb(Command& program, NewOptions& options) {
       .values(2)
       .type("sphere|capsule|cylinder|box|mesh SIZE");
   verb.option("--unit", options.unit, "of a mesh tool's coordinates").type("m|cm|mm|in");
-  verb.option("--depth", options.depth, "how far the tool goes on beyond first contact, such as 3mm")
+  verb.option("--depth", options.depth, "how far the tool moves beyond first contact, such as 3mm")
       .required()
       .type("LENGTH");
-  verb.option("--at", options.place, "x and y where it comes down, such as 10x5mm (default the middle)")
+  verb.option("--at", options.place, "x and y of first contact, such as 10x5mm (default the middle)")
       .type("LENGTHxLENGTH");
-  verb.option("--slide", options.slide, "how far it is then moved along x, such as 10mm (default not at all)")
-      .type("LENGTH");
-  verb.option("--friction", options.friction, "Coulomb's coefficient (default frictionless)").range(0.0, 10.0);
-  verb.option("--title", options.title, "for reports").type("WORDS");
+  verb.option("--slide", options.slide, "how far it then moves along x, such as 10mm (default 0)").type("LENGTH");
+  verb.option("--friction", options.friction, "Coulomb friction coefficient (default frictionless)").range(0.0, 10.0);
+  verb.option("--title", options.title, "title for reports").type("WORDS");
   verb.example(
       "new block.toml --body box 60x60x40mm --youngs-modulus 3MPa --poissons-ratio 0.45 \\\n"
       "    --tool capsule 6x20mm --depth 3mm --at 10x5mm --friction 0.3");

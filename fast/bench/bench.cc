@@ -22,7 +22,7 @@ BenchResult run_bench(const BenchOptions& options, const std::function<void(cons
     if (progress) progress(text);
   };
   std::vector<Case> cases;
-  // A case asked for by name need not be on the quick list.
+  // A case that is named need not be on the quick list.
   for (const Case& which : all_cases(options.quick && options.only.empty())) {
     if (chosen(which.name(), options.only)) cases.push_back(which);
   }
@@ -53,7 +53,7 @@ BenchResult run_bench(const BenchOptions& options, const std::function<void(cons
       if (chosen(peer_name(size, setting), options.only)) here.push_back(setting);
     }
     const std::vector<PeerResult> measured = measure_peer(size, here, options.quick, report);
-    // What failed on a coarse mesh only takes time on a finer one.
+    // A setting that failed on a coarse mesh is not tried on a finer one.
     std::erase_if(settings, [&](const PeerSetting& setting) {
       return std::any_of(measured.begin(), measured.end(),
                          [&](const PeerResult& peer) { return peer.setting.name == setting.name && !peer.valid(); });

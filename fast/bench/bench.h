@@ -10,11 +10,11 @@ namespace touchstone::bench {
 
 struct BenchOptions {
   bool quick = false;
-  std::string only;  ///< pattern of matches(); empty: everything. The peer's names are "bullet/1k/rubber.implicit"
+  std::string only;  ///< pattern of matches(); empty: everything. Bullet's names are "bullet/1k/rubber.implicit"
   int ticks = 0;     ///< per case; 0: by the time
 };
 
-/// Where the peer is measured.
+/// Sizes at which Bullet is measured.
 [[nodiscard]] std::vector<std::string> peer_sizes(bool quick);
 
 /// @param progress called with a line before each case; may be empty

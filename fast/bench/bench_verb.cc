@@ -12,7 +12,7 @@
 namespace touchstone::bench {
 namespace {
 
-/// Of the last minute, as an entry of the manifest.
+/// Load average of the last minute, for the manifest.
 std::string load_average() {
   double load = 0.0;
   if (getloadavg(&load, 1) != 1) return "unknown";
@@ -42,10 +42,11 @@ int bench_verb(const BenchVerbOptions& options, const std::string& command) {
 }
 
 void add_bench_verb(fast::Command& program, BenchVerbOptions& options) {
-  fast::Command verb = program.add("bench", "what a tick costs, per stage, beside copying its output and Bullet");
+  fast::Command verb =
+      program.add("bench", "time of a tick, per stage, compared with copying its output and with Bullet");
   verb.flag("--quick", options.quick, "about 10 s instead of more than a minute: fewer cases and ticks");
   verb.option("--only", options.only, "some cases: the first parts of a name such as box/4k/1, * for any part");
-  verb.option("--ticks", options.ticks, "measured per case (default by the time)").range(1, 10000000);
+  verb.option("--ticks", options.ticks, "measured per case (default: by the time available)").range(1, 10000000);
   verb.option("--out", options.out, "result folder (default out/bench)");
   verb.flag("--quiet", options.quiet, "no progress, only results and errors");
   verb.example("bench --only box/4k");

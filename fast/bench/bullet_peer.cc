@@ -21,11 +21,11 @@ namespace {
 
 using scene::Vec3;
 
-/// Bullet's own unit. Its tolerances are absolute: in centimetres it takes more steps of its solver for the same
-/// answer.
+/// Bullet computes in metres. Its tolerances are absolute: in centimetres its solver takes more iterations for the same
+/// result.
 constexpr double unit_m = 1.0;
 
-/// Stress per rate of strain over the modulus. With a tenth of it Bullet's rubber flies apart at steps of 1 ms.
+/// Damping: stress per strain rate, over the modulus. With a tenth of it Bullet's rubber is unstable at steps of 1 ms.
 constexpr double damping_s = 0.01;
 
 btVector3 to_bullet(const Vec3& v_m) {
@@ -35,8 +35,8 @@ btVector3 to_bullet(const Vec3& v_m) {
 
 Vec3 from_bullet(const btVector3& v) { return unit_m * Vec3(v.x(), v.y(), v.z()); }
 
-/// Five tetrahedra of a cell by its corners (bit 0: x, bit 1: y, bit 2: z). Cells that touch take turns with their
-/// mirror image, so that the diagonals of a shared face agree.
+/// Five tetrahedra of a cell by its corners (bit 0: x, bit 1: y, bit 2: z). Neighbouring cells alternate with the
+/// mirror image, so that the diagonals of a common face agree.
 constexpr std::array<std::array<int, 4>, 5> even_cell = {
     {{0, 1, 2, 4}, {3, 2, 1, 7}, {5, 4, 7, 1}, {6, 7, 4, 2}, {1, 2, 4, 7}}};
 
@@ -81,7 +81,7 @@ struct BulletPeer::World {
   }
 
   ~World() {
-    // The world keeps pointers to both.
+    // The world keeps pointers to both, so they are removed before they are deleted.
     dynamics->removeSoftBody(body.get());
     dynamics->removeRigidBody(ball.get());
   }
@@ -154,13 +154,13 @@ struct BulletPeer::World {
         const int corner = corners[c] ^ mirror;
         node[c] = index(i + (corner & 1), j + ((corner >> 1) & 1), k + ((corner >> 2) & 1));
       }
-      // Mirrored tetrahedra are turned inside out.
+      // Mirrored tetrahedra have the opposite orientation; swap two nodes.
       const Vec3 a = nth(rest_m, node[1]) - nth(rest_m, node[0]);
       const Vec3 b = nth(rest_m, node[2]) - nth(rest_m, node[0]);
       const Vec3 c = nth(rest_m, node[3]) - nth(rest_m, node[0]);
       if (a.cross(b).dot(c) < 0.0) std::swap(node[2], node[3]);
       body->appendTetra(node[0], node[1], node[2], node[3]);
-      // Bullet's tree of the nodes never ends without links.
+      // Without links Bullet's tree of the nodes never terminates.
       for (int first = 0; first < 4; ++first) {
         for (int second = first + 1; second < 4; ++second) {
           body->appendLink(nth(node, first), nth(node, second), nullptr, true);

@@ -5,7 +5,7 @@
 namespace touchstone::bench {
 namespace {
 
-/// The memory behind the pointer may be read and written here, as far as the compiler knows.
+/// A compiler barrier: the memory behind the pointer may be read and written here.
 void seen(const void* memory) noexcept { asm volatile("" : : "r"(memory) : "memory"); }
 
 void copy_columns(const fast::Columns3& from, fast::Columns3& to) noexcept {
@@ -20,7 +20,7 @@ void copy_columns(const fast::Columns3& from, fast::Columns3& to) noexcept {
 
 CopyFloor::CopyFloor(const fast::SurfacePatches& rest) : from_(rest), to_(rest) {
   for (auto& column : to_.normal) std::fill(column.begin(), column.end(), 0.0f);
-  // Not the rest shape's zeros, which a memory page may share with others.
+  // Not the zero displacements at rest, whose pages may share one zero page of memory.
   for (std::size_t axis = 0; axis < 3; ++axis) from_.displacement_m[axis] = rest.rest_W_m[axis];
 }
 

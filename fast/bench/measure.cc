@@ -17,15 +17,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Ticks at the start of every block that are not measured: they bring back what the other kind of work drove out of
-/// the caches.
+/// Unmeasured ticks at the start of every block: they reload the caches after the other kind of work.
 constexpr int warming_ticks = 2;
 
-/// Everything collected tick by tick; storage taken before the first.
+/// All measurements per tick; memory is allocated before the first one.
 struct Samples {
   std::vector<double> step_us, force_us, floor_us;
   std::array<std::vector<double>, fast::stage_count> stage_us;
-  std::vector<double> step_cpu_us, floor_cpu_us, instructions, cycles;  ///< a block's mean each
+  std::vector<double> step_cpu_us, floor_cpu_us, instructions, cycles;  ///< mean of each block
 };
 
 class Measurement {
@@ -33,7 +32,7 @@ class Measurement {
   Measurement(const Case& which, fast::Engine& engine, HardwareCounters& counters)
       : which_(which), engine_(engine), floor_(engine.model().rest), counters_(counters) {}
 
-  /// Presses the tool in, and says what a step takes [us].
+  /// Presses the tool in. @returns the time of a step [us]
   double approach() {
     while (tick_ < approach_ticks) engine_.step(next_pose());
     constexpr int trial = 9;
@@ -46,7 +45,7 @@ class Measurement {
 
   void step_block(int ticks, CaseResult& result) {
     for (int i = 0; i < warming_ticks; ++i) engine_.step(next_pose());
-    // Poses are made outside: a sine is none of the step's business.
+    // Poses are computed in advance: computing them is not part of the step.
     poses_.clear();
     for (int i = 0; i < ticks; ++i) poses_.push_back(next_pose());
     counters_.start();
@@ -179,7 +178,7 @@ CaseResult measure(const Case& which, const Effort& effort, HardwareCounters& co
   }
   Measurement measurement(which, engine, counters);
   const double step_us = measurement.approach();
-  // Two steps a tick, and a floor that takes a part of one.
+  // Two steps per tick, and the copying of the output, which takes a fraction of a step.
   const double wished = 1e6 * effort.seconds_per_case / (2.3 * std::max(step_us, 0.1));
   const int ticks = effort.ticks > 0 ? effort.ticks
                                      : static_cast<int>(std::clamp<double>(wished, effort.ticks_min, effort.ticks_max));

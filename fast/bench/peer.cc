@@ -35,14 +35,14 @@ const PeerResult* fastest(const std::vector<PeerResult>& peers, const std::strin
 #ifdef TOUCHSTONE_BULLET
 namespace {
 
-/// Our step on the same box, some ticks after each of the peer's.
+/// Our step on the same box, some ticks after each of the other code's steps.
 class OurStep {
  public:
   explicit OurStep(const Case& which) : which_(which), engine_(scene_of(which)) {
     while (tick_ < approach_ticks) engine_.step(next_pose());
   }
   void run() {
-    // The first ones find their data gone from the caches.
+    // The first ticks have their data displaced from the caches.
     constexpr int warming = 4, measured = 16;
     for (int i = 0; i < warming + measured; ++i) {
       const double step_us = 1e-3 * static_cast<double>(engine_.step_timed(next_pose()).step_ns);

@@ -1,4 +1,4 @@
-// The peer of the benchmark: another deformable body under the same press, by turns with ours.
+// Another simulator in the benchmark: its deformable body under the same press, in turn with ours.
 #pragma once
 
 #include "fast/bench/measure.h"
@@ -21,8 +21,8 @@ struct PeerResult {
   std::string size;  ///< "1k" or "4k"
   PeerSetting setting;
   int triangles = 0, tetrahedra = 0, ticks = 0;
-  bool sound = false;     ///< every node stayed at a finite place near its own
-  bool touching = false;  ///< the surface gave way under the ball as far as the ball went in, and was not pierced
+  bool sound = false;                  ///< every node stayed at a finite place near its own
+  bool touching = false;               ///< the surface moved as far as the ball, without penetration
   double dent_m = 0.0, depth_m = 0.0;  ///< under the ball, at the last tick
   Durations step;                      ///< of Bullet
   double our_step_us = not_measured;   ///< median of our step on the same box in the same minutes, wall clock
@@ -42,10 +42,10 @@ struct PeerResult {
 [[nodiscard]] const PeerResult* fastest(const std::vector<PeerResult>& peers, const std::string& size,
                                         const std::string& begins);
 
-/// Whether this build has the peer, and which: "Bullet 3.24", or empty.
+/// Name and version of the other simulator in this build: "Bullet 3.24", or empty.
 [[nodiscard]] std::string peer_version();
 
-/// Every setting on the box of one size, by turns with our step. Empty without the peer.
+/// Every setting on the box of one size, in turn with our step. Empty if this build has no other simulator.
 /// @param settings those to try
 [[nodiscard]] std::vector<PeerResult> measure_peer(const std::string& size, const std::vector<PeerSetting>& settings,
                                                    bool quick, const std::function<void(const std::string&)>& progress);

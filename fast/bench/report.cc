@@ -118,7 +118,7 @@ std::string stage_table(const BenchResult& result) {
 }
 
 std::string peer_table(const BenchResult& result) {
-  if (result.peer_version.empty()) return "Peer: built without Bullet (Debian's libbullet-dev)\n";
+  if (result.peer_version.empty()) return "Bullet: not in this build (Debian's libbullet-dev)\n";
   std::vector<std::vector<std::string>> rows = {{"peer", "triangles", "tetrahedra", "p50", "p99", "cpu", "our step",
                                                  "x our step", "dent of depth [mm]", "state"}};
   for (const PeerResult& p : result.peers) {
@@ -136,7 +136,7 @@ std::string peer_table(const BenchResult& result) {
          aligned(rows, true);
 }
 
-/// Stages by their share of a case's step, the largest first.
+/// Stages by their fraction of a case's step, the largest first.
 std::string where_time_goes(const CaseResult& c) {
   double sum_us = 0.0;
   std::vector<std::size_t> order;
@@ -183,7 +183,7 @@ std::string verdict_text(const BenchResult& result) {
     }
   }
   std::string text = "Targets\n" + aligned(rows, true);
-  if (!behind.empty()) text += "Where the time goes of what missed\n";
+  if (!behind.empty()) text += "Stages of the cases that missed their target\n";
   for (const std::string& name : behind) {
     if (const CaseResult* c = result.find(name)) text += where_time_goes(*c);
   }
@@ -197,7 +197,7 @@ std::string remarks(const BenchResult& result) {
     text += fmt::format("  {}: {} to {} regions pressed, {}\n", c.which.name(), c.regions_least, c.regions_most,
                         fast::status_text(c.status));
   }
-  return text.empty() ? "" : "Other than planned\n" + text;
+  return text.empty() ? "" : "Cases that differ from the plan\n" + text;
 }
 
 }  // namespace
@@ -263,7 +263,7 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows, bool word
   for (const auto& row : rows) columns = std::max(columns, row.size());
   std::vector<std::size_t> width(columns, 0);
   for (const auto& row : rows) {
-    // A short row ends in a sentence, which may run on over the columns it lacks.
+    // A short row ends in a sentence, which may extend over the missing columns.
     const std::size_t fitted = row.size() < columns ? row.size() - 1 : columns;
     for (std::size_t i = 0; i < fitted; ++i) width[i] = std::max(width[i], row[i].size());
   }

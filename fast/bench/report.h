@@ -42,11 +42,11 @@ struct Verdict {
 /// Everything by stable dotted key: the targets' keys, then `bench.<body>.<size>.<regions>.<figure>`.
 [[nodiscard]] scene::Figures figures(const BenchResult& result);
 
-/// Cases by columns, the stages' medians, the peer, the targets, and where the time goes of what missed one.
+/// Cases by columns, the stages' medians, the other simulator, the targets, and the stages of cases that missed one.
 [[nodiscard]] std::string report_text(const BenchResult& result);
 
 /// Rows of cells as aligned columns: the first to the left, the others to the right.
-/// @param words the last column holds words and stands to the left as well
+/// @param words the last column holds words and is left-aligned as well
 [[nodiscard]] std::string aligned(const std::vector<std::vector<std::string>>& rows, bool words = false);
 
 }  // namespace touchstone::bench

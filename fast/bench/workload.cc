@@ -20,7 +20,7 @@ using scene::Vec3;
 constexpr double one_ball_radius_m = 0.010, small_ball_radius_m = 0.004;
 constexpr double box_edge_m = 0.06;
 const Vec3 semi_axes_m(0.040, 0.030, 0.025);
-/// Of the ball of 10 mm with 2000 samples: 0.79 mm between two of them.
+/// As on the ball of 10 mm with 2000 samples: 0.79 mm between neighbours.
 constexpr double samples_per_m2 = 2000.0 / (4.0 * std::numbers::pi * one_ball_radius_m * one_ball_radius_m);
 
 constexpr std::array<std::pair<const char*, int>, 4> sizes = {
@@ -32,7 +32,7 @@ struct Foot {
   Vec3 point_m, normal;
 };
 
-/// Point of the body's top over a place.
+/// Point of the body's top surface above (x, y).
 Foot foot(const Case& which, const Eigen::Vector2d& place_m) {
   if (which.body == BodyShape::box) return {{place_m.x(), place_m.y(), box_edge_m}, Vec3::UnitZ()};
   const Vec3& a = semi_axes_m;
@@ -41,7 +41,7 @@ Foot foot(const Case& which, const Eigen::Vector2d& place_m) {
   return {{place_m.x(), place_m.y(), a.z() * (1.0 + z)}, Vec3(x / a.x(), y / a.y(), z / a.z()).normalized()};
 }
 
-/// A mesh is placed by the middle of the body's top, a ball by its centre.
+/// Tool height at first touch: a mesh has its origin at its tip, a ball at its centre.
 double height_at_touch_m(const Case& which) { return top_m(which) + (which.regions == 1 ? one_ball_radius_m : 0.0); }
 
 double depth_m(const Case& which) { return which.regions == 1 ? 0.0025 : 0.0022; }
@@ -138,7 +138,7 @@ scene::TriangleMesh balls_mesh(const std::vector<Vec3>& centers_m, double radius
 }
 
 std::vector<Eigen::Vector2d> contact_places_m(int regions) {
-  // The first two and the first five are spread as well.
+  // Ordered so that the first two and the first five are spread as well.
   constexpr double x = 0.0065, y = 0.014;
   const std::array<Eigen::Vector2d, 10> all = {{{-2 * x, 0},
                                                 {2 * x, 0},

@@ -36,7 +36,7 @@ std::vector<std::string> names_of_options(const CLI::App& app) {
   return names;
 }
 
-/// The message for a misspelt command or option, with the nearest known one; empty when the fault is another.
+/// The message for a misspelt command or option, with the nearest known one; empty for another fault.
 std::string misspelt(const CLI::App& app) {
   const CLI::App* at = &app;
   std::string command = app.get_name();
@@ -54,13 +54,13 @@ std::string misspelt(const CLI::App& app) {
     if (verbs.empty()) continue;
     if (std::filesystem::is_regular_file(word)) {
       const std::string verb = std::ranges::find(verbs, "plan") != verbs.end() ? "plan" : verbs.front();
-      return command + ": expected a verb before " + word + ", such as: " + command + " " + verb + " " + word;
+      return command + ": expected a command before " + word + ", such as: " + command + " " + verb + " " + word;
     }
     const std::string meant = scene::did_you_mean(word, verbs);
-    if (!meant.empty()) return command + ": unknown verb \"" + word + "\"" + meant;
+    if (!meant.empty()) return command + ": unknown command \"" + word + "\"" + meant;
     std::string all;
     for (const std::string& verb : verbs) all += (all.empty() ? "" : ", ") + verb;
-    return command + ": unknown verb \"" + word + "\"; expected one of " + all;
+    return command + ": unknown command \"" + word + "\"; expected one of " + all;
   }
   return "";
 }

@@ -1,4 +1,4 @@
-// The command line's declaration: a program, its commands and their options. The one place that knows CLI11, which
+// The command line's declaration: a program, its commands and their options. The only user of CLI11, which
 // takes ten seconds to compile.
 #pragma once
 

@@ -49,9 +49,9 @@ Command add_verb(Command& program, const std::string& name, const std::string& w
 
 namespace {
 
-constexpr const char* no_memory = "the memory does not suffice; expected more of it, or a smaller scene";
+constexpr const char* no_memory = "not enough memory; expected more memory, or a smaller scene";
 
-/// The text in one line: libraries set theirs in several.
+/// The text in one line; the messages of libraries may have several.
 std::string in_one_line(const std::string& text) {
   std::istringstream words(text);
   std::string line;
@@ -59,10 +59,10 @@ std::string in_one_line(const std::string& text) {
   return line;
 }
 
-/// The last resort where nothing catches, as in a thread; perhaps without memory.
+/// Last resort for an uncaught exception, as in a thread; memory may be exhausted.
 [[noreturn]] void say_and_end() noexcept {
   const auto end = [](const char* what) {
-    std::fprintf(stderr, "cannot go on: %s\n", what);
+    std::fprintf(stderr, "cannot continue: %s\n", what);
     std::_Exit(not_converged);
   };
   try {
@@ -77,8 +77,8 @@ std::string in_one_line(const std::string& text) {
   std::abort();
 }
 
-/// Keeps the first file that is opened from taking the place of a standard stream that was closed. Reading and writing
-/// there still fail.
+/// Occupies standard streams that were closed, so that no opened file takes their number. Reading and writing there
+/// still fail.
 void hold_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
@@ -92,7 +92,7 @@ Failure failure_at_hand() {
     throw;
   } catch (const scene::InputError& error) {
     return {bad_input, error.what()};
-  } catch (const std::system_error& error) {  // of files and streams, too
+  } catch (const std::system_error& error) {  // also thrown by files and streams
     if (error.code() == std::errc::resource_unavailable_try_again || error.code() == std::errc::not_enough_memory) {
       return {not_converged, "no thread can be started: " + std::string(no_memory)};
     }
@@ -123,7 +123,7 @@ int guarded(const std::function<int()>& program) noexcept {
   errno = 0;
   const bool taken = static_cast<bool>(std::cout.flush());
   if (std::fflush(stdout) == 0 && taken) return exit_code;
-  // A stream that failed before does not try again, so its reason has to be asked for.
+  // A stream that failed before does not try again, so the reason is found by writing to the descriptor.
   if (errno == 0) static_cast<void>(!::write(STDOUT_FILENO, "\n", 1));
   std::cerr << "cannot write to standard output" << (errno != 0 ? std::string(": ") + std::strerror(errno) : "")
             << '\n';

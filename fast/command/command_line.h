@@ -13,7 +13,7 @@
 
 namespace touchstone::fast {
 
-/// Options of a verb that takes one scene and leaves one result folder.
+/// Options of a command that takes one scene and writes one result folder.
 struct VerbOptions {
   std::filesystem::path scene_file;
   std::filesystem::path out;  ///< empty: `out/<scene>-<verb>`

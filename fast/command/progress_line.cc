@@ -47,7 +47,7 @@ ProgressLine::ProgressLine(bool quiet, int file_descriptor, std::chrono::steady_
 ProgressLine::~ProgressLine() { finish(); }
 
 void ProgressLine::write(const std::string& text) const {
-  // What cannot be shown is no reason to end the work.
+  // A failure to show progress does not end the work.
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t written = ::write(file_descriptor_, text.data() + done, text.size() - done);
     if (written < 0 && errno == EINTR) continue;
@@ -69,11 +69,11 @@ void ProgressLine::show(const std::string& text, bool marked) {
     write(text + '\n');
     return;
   }
-  // The last column stays free: some terminals go on to the next line when it is written.
+  // The last column stays empty: some terminals begin a new line when it is written.
   const std::size_t columns = std::max<std::size_t>(columns_of(file_descriptor_), 2) - 1;
   const std::string line = cut_to_width(text, columns);
   const std::size_t width = width_of(line);
-  // Blank out what a longer line left behind.
+  // Overwrites the rest of a longer line with blanks.
   const std::size_t left_behind = std::min(width_, columns);
   write('\r' + line + std::string(left_behind > width ? left_behind - width : 0, ' '));
   width_ = width;

@@ -8,7 +8,7 @@
 
 namespace touchstone::fast {
 
-/// While it lives, these signals set a flag and do nothing else, and a reader that has gone (SIGPIPE) ends nothing. A
+/// While it exists, these signals only set a flag, and a closed output (SIGPIPE) does not end the program. A
 /// process that was started to outlive its terminal (nohup) goes on.
 class StopSignals {
  public:

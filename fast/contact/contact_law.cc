@@ -43,15 +43,15 @@ double DuffingLaw::depth_m(double force_n) const noexcept {
 
 double contact_radius_m(double area_m2) noexcept { return std::sqrt(area_m2 / std::numbers::pi); }
 
-ContactLaw::ContactLaw(const scene::Contact& contact) noexcept : k3_n_per_m3_(contact.k3_n_per_m3) {
-  switch (contact.law) {
+DuffingLaw ContactLaw::at(double contact_radius_m) const noexcept {
+  const scene::Contact& c = contact_;
+  switch (c.law) {
     case scene::ContactLaw::duffing:
-      k1_n_per_m_ = contact.k1_n_per_m;
-      break;
+      return {c.k1_n_per_m, c.k3_n_per_m3};
     case scene::ContactLaw::area_aware:
-      k1_per_radius_n_per_m2_ = contact.k1_per_radius_n_per_m2;
-      break;
+      return {c.k1_per_radius_n_per_m2 * contact_radius_m, c.k3_n_per_m3};
   }
+  return {0.0, 0.0};
 }
 
 }  // namespace touchstone::fast

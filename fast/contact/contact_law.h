@@ -53,15 +53,12 @@ class DuffingLaw {
 ///   is no part of the paper. The size is that of the tick, so the force has no potential in D alone.
 class ContactLaw {
  public:
-  explicit ContactLaw(const scene::Contact& contact) noexcept;
+  explicit ContactLaw(const scene::Contact& contact) noexcept : contact_(contact) {}
   /// @param contact_radius_m >= 0
-  [[nodiscard]] DuffingLaw at(double contact_radius_m) const noexcept {
-    return {k1_n_per_m_ + k1_per_radius_n_per_m2_ * contact_radius_m, k3_n_per_m3_};
-  }
+  [[nodiscard]] DuffingLaw at(double contact_radius_m) const noexcept;
 
  private:
-  double k1_n_per_m_ = 0.0, k1_per_radius_n_per_m2_ = 0.0;
-  double k3_n_per_m3_;
+  scene::Contact contact_;
 };
 
 }  // namespace touchstone::fast

@@ -10,8 +10,6 @@
 namespace touchstone::live {
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
-
 void breathe() noexcept {
 #if defined(__SSE2__)
   _mm_pause();

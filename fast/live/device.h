@@ -51,7 +51,7 @@ class Device {
   /// The newest sample. May leave any number in it; the loop trusts none.
   /// @returns false where there is none: the tick counts as one with a bad pose
   [[nodiscard]] virtual bool read(const Tick& tick, DeviceSample& sample) noexcept = 0;
-  /// To be held until the next call; limited already (safety.h).
+  /// Valid until the next call; within the limits already (safety.h).
   virtual void write(const Wrench& wrench) noexcept = 0;
 
  protected:

@@ -26,7 +26,7 @@ void publish_shape(const TickRecord& record, std::int64_t now_ns, const fast::Su
   shapes.publish();
 }
 
-/// One tick. @param begin_ns when it woke
+/// One tick. @param begin_ns time at which the loop woke
 void do_tick(const Tick& tick, std::int64_t begin_ns, std::int64_t lateness_ns, const LoopPorts& ports,
              Ledger& ledger) noexcept {
   TickRecord record;
@@ -45,7 +45,7 @@ void do_tick(const Tick& tick, std::int64_t begin_ns, std::int64_t lateness_ns, 
   const std::int64_t published_ns = ports.clock.now_ns();
 
   if (good) status |= ports.engine.step_shape();
-  // Also where nothing moved: it is of this tick all the same.
+  // Published in every tick, even if nothing moved, so that the shape's age is that of its tick.
   if (ports.shapes != nullptr) publish_shape(record, ports.clock.now_ns(), ports.engine.field(), *ports.shapes);
   const std::int64_t shaped_ns = ports.clock.now_ns();
 
@@ -78,9 +78,8 @@ void do_tick(const Tick& tick, std::int64_t begin_ns, std::int64_t lateness_ns, 
   ledger.step.add(ports.clock.now_ns() - begin_ns);
 }
 
-/// The newest grid point.
+/// Index of the last grid point that has passed.
 std::int64_t newest_grid_point(const LoopTime& time, std::int64_t since_start_ns) noexcept {
-  constexpr std::int64_t second_ns = 1'000'000'000;
   const std::int64_t seconds = since_start_ns / second_ns, rest_ns = since_start_ns % second_ns;
   std::int64_t index = seconds * time.rate_hz + rest_ns * time.rate_hz / second_ns;
   // Grid points are whole nanoseconds, rounded down.
@@ -88,7 +87,7 @@ std::int64_t newest_grid_point(const LoopTime& time, std::int64_t since_start_ns
   return index;
 }
 
-/// Lets go of the hand: the wrench never jumps, at the end neither.
+/// Fades the force out at the end of the run, at the limited rate: the wrench has no jump.
 void fade_out(const LoopTime& time, const LoopPorts& ports) noexcept {
   constexpr double longest_s = 10.0;
   const std::int64_t begin_ns = ports.clock.now_ns();
@@ -106,7 +105,7 @@ void fade_out(const LoopTime& time, const LoopPorts& ports) noexcept {
 void run_device_loop(const LoopTime& time, const LoopPorts& ports, Ledger& ledger) noexcept {
   [[maybe_unused]] const fast::FlushTinyNumbers flush;
   ports.engine.time_stages(true);
-  // One period to be on time for the first.
+  // Start one period ahead, so that the first tick is on time.
   const std::int64_t start_ns = ports.clock.now_ns() + time.time_ns(1);
   for (std::int64_t index = 0; index < time.grid_points && ledger.ticks < time.ticks;) {
     if (ports.stop != nullptr && ports.stop->load(std::memory_order_relaxed)) break;

@@ -21,7 +21,7 @@ HandDevice::HandDevice(std::vector<scene::Waypoint> track, const scene::LiveSett
       stiffness_n_per_m_(settings.hand_stiffness_n_per_m),
       period_s_(period_s),
       position_m_(track_.front().pose.position_m) {
-  // The roots of z^2 - (2 - a - b) z + (1 - b) leave the unit circle.
+  // Unstable if a root of z^2 - (2 - a - b) z + (1 - b) is outside the unit circle.
   const double a = stiffness_n_per_m_ * period_s_ * period_s_ / mass_kg_, b = damping_n_s_per_m_ * period_s_ / mass_kg_;
   if (!(a + 2.0 * b < 4.0) || !(b < 2.0)) {
     throw scene::InputError(fmt::format(

@@ -24,11 +24,11 @@ using std::chrono::milliseconds;
 constexpr int default_rate_hz = 1000, rate_max_hz = 10000;
 constexpr double hand_default_s = 10.0, seconds_max = 7 * 86400.0;
 
-/// The device with what is asked of the loop for it.
+/// The device and the settings of the loop that it needs.
 struct Setup {
   LoopTime time;
   std::unique_ptr<Device> device;
-  ReplayDevice* replay = nullptr;  ///< the device, where it is one
+  ReplayDevice* replay = nullptr;  ///< the device, if it is a replay
   std::int64_t replay_rows = 0;
 };
 
@@ -50,7 +50,7 @@ Setup set_up(const scene::Scene& scene, const LiveOptions& options) {
   switch (options.device) {
     case DeviceKind::scripted: {
       const double length_s = scene.track.back().time_s - scene.track.front().time_s;
-      // The end of the track with it.
+      // The end of the track is included.
       setup.time.grid_points = options.seconds ? points_in(*options.seconds, setup.time.rate_hz)
                                                : points_in(length_s, setup.time.rate_hz) + 1;
       setup.device = std::make_unique<ScriptedDevice>(scene.track, setup.time.period_s());
@@ -71,7 +71,7 @@ Setup set_up(const scene::Scene& scene, const LiveOptions& options) {
       if (options.seconds) {
         setup.replay_rows = std::min(setup.replay_rows, points_in(*options.seconds, setup.time.rate_hz));
       }
-      // Every row is played, however many grid points that takes.
+      // Every row is replayed, however many grid points that takes.
       setup.time.grid_points = std::numeric_limits<std::int64_t>::max() / (2 * setup.time.rate_hz);
       setup.time.ticks = setup.replay_rows;
       auto device = std::make_unique<ReplayDevice>(std::move(log.ticks));
@@ -84,7 +84,8 @@ Setup set_up(const scene::Scene& scene, const LiveOptions& options) {
   return setup;
 }
 
-/// Writes records down as they come and keeps their history; the file has its name only when complete.
+/// Writes the records to the file as they come and keeps their history. The file gets its final name only when
+/// complete.
 class Recorder {
  public:
   explicit Recorder(const std::filesystem::path& file) : file_(file) { file_.append(log_header()); }
@@ -96,11 +97,11 @@ class Recorder {
     }
     if (!file_.append(text_)) good_.store(false, std::memory_order_relaxed);
   }
-  /// Any thread.
+  /// May be called from any thread.
   [[nodiscard]] bool good() const noexcept { return good_.load(std::memory_order_relaxed); }
   /// @throws std::filesystem::filesystem_error with the reason, such as a full disk
   void finish() {
-    if (!file_.finish()) throw scene::InputError("live.csv: somebody removed it while it was written");
+    if (!file_.finish()) throw scene::InputError("live.csv: the file was removed while it was being written");
   }
 
  private:
@@ -109,7 +110,7 @@ class Recorder {
   std::atomic<bool> good_{true};
 };
 
-/// Stands where a window will: takes the newest shape at its own pace and looks at all of it.
+/// Reads shapes as a viewer would: takes the newest shape at its own rate and reads all of it.
 void read_shapes(const std::stop_token& stop, TripleBuffer<ShapeFrame>& shapes, LiveResult& result) {
   WallClock clock(0);
   while (!stop.stop_requested()) {
@@ -159,7 +160,7 @@ LiveResult run_live(const scene::Scene& scene, const LiveOptions& options, const
   TripleBuffer<ShapeFrame> shapes(ShapeFrame{-1, 0, engine.field()});
   RecordRing<TickRecord> ring(options.ring_records);
   Recorder recorder(folder / "live.csv");
-  // Less spinning than half of the period, or the kernel takes the loop for a runaway.
+  // Spin for less than half of the period, or the kernel's real-time limit stops the thread.
   WallClock clock(std::min<std::int64_t>(150'000, setup.time.time_ns(1) / 2));
   LoopProgress progress;
   std::atomic<bool> stop_loop{false}, scheduled{false}, ended{false};
@@ -169,7 +170,7 @@ LiveResult run_live(const scene::Scene& scene, const LiveOptions& options, const
   give_threads_small_stacks();
   result.planned_s = setup.time.time_s(setup.replay != nullptr ? setup.replay_rows : setup.time.grid_points);
   {
-    // Each ends and is joined on the way out, also of an exception. The recorder is the last to end.
+    // All threads are stopped and joined at the end, also after an exception; the recorder last.
     std::jthread recorder_thread([&](const std::stop_token& end) {
       block_signals();
       while (!end.stop_requested()) {

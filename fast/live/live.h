@@ -24,7 +24,7 @@ struct LiveOptions {
   std::optional<int> rate_hz;     ///< 1 to 10000; absent: the log's, or 1000
   std::filesystem::path log;      ///< replay: live.csv of an earlier run
   SchedulingWish scheduling;
-  std::size_t ring_records = 16384;  ///< room between the loop and the recorder
+  std::size_t ring_records = 16384;  ///< capacity of the ring between loop and recorder
 };
 
 /// How a replay compares to its log.
@@ -52,7 +52,7 @@ struct LiveResult {
   std::optional<ReplayAnswer> replay;
 };
 
-/// Runs the loop in the wall clock and writes live.csv as it goes.
+/// Runs the loop in real time and writes live.csv meanwhile.
 /// @param stop     ends the run early, with all written; polled
 /// @param tell     called a few times a second from the calling thread with a line of progress; may be empty
 /// @param warn     called once per refused wish, before the first line of progress; may be empty

@@ -36,7 +36,7 @@ constexpr std::array<std::string_view, column_count> column_names = {
   "buttons", "status", "flags", "lateness_us", "force_us", "shape_us"};
 // clang-format on
 
-constexpr std::int64_t counters_max = std::int64_t{1} << 53;  // whole in a double
+constexpr std::int64_t counters_max = std::int64_t{1} << 53;  // exact in a double
 
 void append(double value, std::string& text) {
   char number[32];
@@ -55,7 +55,7 @@ void append(const Vec3& v, std::string& text) {
   }
 }
 
-/// Where reading stands, for the one error.
+/// Position in the file, for error messages.
 struct Place {
   const std::filesystem::path& file;
   int line = 0;

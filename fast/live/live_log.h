@@ -1,4 +1,4 @@
-// The log of a live run: what `--device replay` plays again, and a table for pandas.
+// The log of a live run: input of `--device replay`, and a table for pandas.
 #pragma once
 
 #include "fast/live/tick_record.h"

@@ -14,7 +14,7 @@
 namespace touchstone::live {
 namespace {
 
-/// What to type for this run again.
+/// The command that repeats this run.
 std::string command_line(const fast::VerbOptions& options, const LiveOptions& live, const std::string& command) {
   std::string text =
       fmt::format("{} {} --device {}", command, fast::shell_word(options.scene_file.string()), name_of(live.device));
@@ -40,9 +40,9 @@ int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const s
 
   const scene::Stopwatch watch;
   fast::ProgressLine progress(options.quiet);
-  // More of them ask for no more: `timeout` and some shells send two.
+  // Further signals have no effect: `timeout` and some shells send two.
   const fast::StopSignals signals(fast::StopSignals::Again::nothing);
-  // Its histograms are more than a small stack holds.
+  // On the heap: its histograms are too large for a small stack.
   const std::unique_ptr<const LiveResult> kept(new LiveResult(run_live(
       scene, live, folder, fast::StopSignals::asked(), [&](const std::string& text) { progress.show(text); },
       [](const std::string& warning) { std::cerr << "warning: " << warning << '\n'; })));
@@ -59,7 +59,7 @@ int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const s
 }
 
 void add_live_verb(fast::Command& program, fast::VerbOptions& options, LiveOptions& live, const WritePage& page) {
-  fast::Command verb = fast::add_verb(program, "live", "the real-time pipeline in the wall clock, driven by a device",
+  fast::Command verb = fast::add_verb(program, "live", "the fast model in real time, driven by a device",
                                       "meshes/scenes/ball-on-cube-press.toml --device hand --seconds 10", options,
                                       [&options, &live, name = program.program_name(), page] {
                                         return live_verb(options, live, name + " live", page);

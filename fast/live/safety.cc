@@ -6,17 +6,17 @@
 namespace touchstone::live {
 namespace {
 
-/// Room for the rounding of the norms, so that the limits hold as printed.
+/// Margin for the rounding of norms, so that the printed limits hold.
 constexpr double below = 1.0 - 1e-12;
 
 bool finite(const Wrench& w) noexcept { return w.force_n.allFinite() && w.torque_nm.allFinite(); }
 
-/// Norm in newtons; infinite only where it is beyond a double.
+/// Norm in newtons; infinite only if it exceeds the range of doubles.
 double size_n(const Wrench& w, double lever_m) noexcept {
   return std::max(w.force_n.stableNorm(), w.torque_nm.stableNorm() / lever_m);
 }
 
-/// Wrench of at most this size, along w.
+/// The wrench reduced to at most this norm, direction kept.
 Wrench saturated(const Wrench& w, double lever_m, double largest_n) noexcept {
   // Scaled down first, so that no norm overflows.
   const double peak = std::max(w.force_n.cwiseAbs().maxCoeff(), w.torque_nm.cwiseAbs().maxCoeff() / lever_m);
@@ -49,7 +49,7 @@ const Wrench& WrenchLimiter::next(const Wrench& asked, bool good) noexcept {
     sent_ = wanted;
   } else {
     const Wrench step = saturated(change, limits_.lever_m, step_n_);
-    // Both ends lie within the limit, and so does all between, but for rounding.
+    // Both ends are within the limit, and so is every wrench between them up to rounding.
     sent_ = saturated({sent_.force_n + step.force_n, sent_.torque_nm + step.torque_nm}, limits_.lever_m, largest_n_);
   }
   limited_ = !good || sent_.force_n != asked.force_n || sent_.torque_nm != asked.torque_nm;

@@ -18,14 +18,14 @@ namespace {
 
 constexpr std::uint64_t locked_max = std::uint64_t{2} << 30, stack_size = std::uint64_t{2} << 20;
 
-/// Of the process, in bytes; zero where the kernel does not tell.
+/// Address space of the process in bytes; zero if the kernel does not tell.
 std::uint64_t address_space() {
   std::uint64_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-/// The last processor of the set; -1 where it is empty.
+/// The last processor of the set; -1 if it is empty.
 int last_of(const cpu_set_t& set) {
   for (int cpu = CPU_SETSIZE - 1; cpu >= 0; --cpu) {
     if (CPU_ISSET(static_cast<std::size_t>(cpu), &set)) return cpu;
@@ -72,17 +72,17 @@ Scheduling schedule_this_thread(const SchedulingWish& wish) {
     granted.fifo = true;
     granted.priority = wish.priority;
   } else {
-    // Ordinary threads are woken up to 50 us late on purpose, to wake several at once.
+    // The kernel wakes ordinary threads up to 50 us late on purpose, to wake several at once; turn this off.
     prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
     refused("SCHED_FIFO", error, "other work will delay ticks; raise the rtprio limit");
   }
 
-  // An ordinary thread is better off where it can go out of the way of others.
+  // An ordinary thread may move to another processor when its own is busy, so it is not bound.
   if (granted.fifo || wish.processor) {
     cpu_set_t allowed;
     CPU_ZERO(&allowed);
     if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) {
-      // Interrupts and the kernel's own work prefer the first.
+      // Interrupts and the kernel's own threads mostly run on the first processor.
       const int processor = wish.processor.value_or(last_of(allowed));
       cpu_set_t one;
       CPU_ZERO(&one);

@@ -1,4 +1,4 @@
-// What a tick leaves behind, of fixed size.
+// The record of a tick, of fixed size.
 #pragma once
 
 #include "fast/live/device.h"

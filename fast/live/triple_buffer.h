@@ -7,7 +7,7 @@
 
 namespace touchstone::live {
 
-/// One writer, one reader. Of three slots the writer owns one, the reader one, and the third is handed to and fro by a
+/// One writer, one reader. Of three slots the writer owns one, the reader one, and the third is exchanged by a
 /// single exchange: both sides are wait-free, and values that were not read are overwritten by newer ones.
 template <class T>
 class TripleBuffer {

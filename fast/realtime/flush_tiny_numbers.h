@@ -7,7 +7,7 @@
 
 namespace touchstone::fast {
 
-/// Takes numbers too small for full precision as zero while it lives: they cost a hundred times a normal one, and a
+/// Sets numbers too small for full precision to zero while it exists: they cost a hundred times a normal one, and a
 /// surface at rest in some direction is full of them.
 class FlushTinyNumbers {
  public:

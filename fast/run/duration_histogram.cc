@@ -9,7 +9,7 @@ namespace touchstone::fast {
 std::size_t DurationHistogram::bin_of(std::int64_t duration_ns) noexcept {
   const auto value = static_cast<std::uint64_t>(std::clamp<std::int64_t>(duration_ns, 0, longest_ns));
   const int octave = std::max(0, static_cast<int>(std::bit_width(value)) - sub_bits - 1);
-  // The leading bit of value >> octave counts the octave, the bits below it the place within.
+  // The leading bit of value >> octave gives the octave, the bits below it the position within the octave.
   return (static_cast<std::size_t>(octave) << sub_bits) + static_cast<std::size_t>(value >> octave);
 }
 

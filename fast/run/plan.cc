@@ -12,7 +12,7 @@
 namespace touchstone::fast {
 namespace {
 
-/// What a tick costs at the track's deepest instant, by the clock.
+/// Measured time of a tick at the deepest instant of the track.
 struct Measured {
   std::array<double, stage_count> stage_us{};  ///< medians
   double step_us = 0.0;
@@ -31,7 +31,7 @@ Measured measure(const scene::Scene& scene, Engine& engine) {
   const std::vector<double> times_s = scene::instants_s(scene);
   const scene::RestDepth depth(*engine.model().body, scene.tool);
   const FastState& state = engine.state();
-  // Up to there along the track, so that regions and friction are those of the scene.
+  // Runs the track up to that instant, so that regions and friction are as in the scene.
   double deepest_s = times_s.front();
   Measured measured;
   for (const double time_s : times_s) {
@@ -63,7 +63,7 @@ Measured measure(const scene::Scene& scene, Engine& engine) {
   return measured;
 }
 
-/// "8 vertices, 4 on a circle": how many anchor points there are for each reason.
+/// "8 vertices, 4 on a circle": the number of anchor points for each reason.
 std::string anchors_text(const AnchorPoints& anchors) {
   std::string out;
   std::vector<AnchorReason> told;
@@ -82,7 +82,7 @@ std::string one_region_text(const scene::Tool& tool) {
   if (!tool.mesh) return touch;
   const scene::Bounds bounds = tool.mesh->bounds();
   const double dent_m = scene::convex_tolerance_rel * (bounds.upper_m - bounds.lower_m).norm();
-  return touch + fmt::format("; the tool's mesh has no dent deeper than {:.2g} mm", dent_m * 1e3);
+  return touch + fmt::format("; the tool's mesh has no concavity deeper than {:.2g} mm", dent_m * 1e3);
 }
 
 }  // namespace
@@ -109,36 +109,36 @@ scene::Plan plan(const scene::Scene& scene) {
                   model.tool.count(), elements, model.tool.spacing_m * 1e3,
                   published ? "" : ", and smaller ones where few are inside", measured.points) +
           (measured.deepest_m > 0.0 && !measured.contact
-               ? fmt::format("; CONTACT MISSED: the tool is {:.3g} mm deep there, so the force is missing; raise "
+               ? fmt::format("; CONTACT MISSED: the tool is {:.3g} mm deep there but the force is zero; raise "
                              "fast.tool_samples",
                              measured.deepest_m * 1e3)
                : ""),
       measured.cost({Stage::detection}));
   if (model.max_regions > 1) {
-    models("several regions",
-           fmt::format(
-               "the tool's mesh is not convex: up to {}, {} at the track's instants, told apart at {:.3g} mm; each "
-               "meets the body as the earlier ones left it",
-               model.max_regions, measured.regions, scene.contact.r_th_m * 1e3) +
-               (scene.contact.r_th_m < 2.0 * model.tool.spacing_m
-                    ? "; ONE CONTACT MAY FALL INTO SEVERAL: contact.r_th_m is less than twice the distance between " +
-                          elements + "; raise fast.tool_samples"
-                    : ""),
-           measured.cost({Stage::regions}));
+    models(
+        "several regions",
+        fmt::format("the tool's mesh is not convex: up to {}, {} at the track's instants, separated at {:.3g} mm; each "
+                    "is evaluated on the body deformed by the earlier ones",
+                    model.max_regions, measured.regions, scene.contact.r_th_m * 1e3) +
+            (scene.contact.r_th_m < 2.0 * model.tool.spacing_m
+                 ? "; ONE CONTACT MAY SPLIT INTO SEVERAL: contact.r_th_m is less than twice the distance between " +
+                       elements + "; raise fast.tool_samples"
+                 : ""),
+        measured.cost({Stage::regions}));
   } else {
     leaves_out("several regions", one_region_text(scene.tool));
   }
   models("contact force",
-         std::string(scene.contact.law == scene::ContactLaw::duffing ? "Duffing law" : "area-aware law") +
-             " along the direction of deformation, masses " + printed + ", torque about the tool's mass centre",
+         std::string(scene::name_of(scene.contact.law).title) + " law along the direction of deformation, masses " +
+             printed + ", torque about the tool's mass centre",
          measured.cost({Stage::force}));
   if (model.friction) {
     models("friction",
-           fmt::format("stuck up to {:.3g} F_n^{:.3g}, sliding at {:.3g} F_n, ", scene.contact.friction->K,
+           fmt::format("sticking up to {:.3g} F_n^{:.3g}, slipping at {:.3g} F_n, ", scene.contact.friction->K,
                        scene.contact.friction->beta, scene.contact.friction->mu_D) +
                (published
                     ? "C1 to C4 as printed"
-                    : fmt::format("{:.3g} times as stiff along the surface while stuck as into it, by return mapping",
+                    : fmt::format("tangential stiffness {:.3g} times the normal one while sticking, by return mapping",
                                   scene.contact.friction->stiffness_ratio)),
            measured.cost({Stage::friction}));
   } else {
@@ -168,7 +168,7 @@ scene::Plan plan(const scene::Scene& scene) {
     leaves_out("local factor", "C_n = 0");
   }
   models("normals", "of the deformed surface", measured.cost({Stage::normals}));
-  models("whole step", "all of it", fmt::format("{:.1f} us a tick, measured", measured.step_us));
+  models("whole step", "all stages", fmt::format("{:.1f} us a tick, measured", measured.step_us));
   models("memory", "model and state, taken before the first tick",
          fmt::format("{:.1f} MB", static_cast<double>(engine.memory_bytes()) / 1e6));
   leaves_out("time dependence", "the paper's law is the static force; the track's speed does not enter");

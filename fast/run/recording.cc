@@ -13,7 +13,7 @@ namespace {
 
 using scene::Vec3;
 
-/// More than the rounding of a law and its inverse.
+/// A factor above the rounding error of a law and its inverse.
 constexpr double rounding = 1.0 + 1e-6;
 
 /// Columns of RecordedTick::numbers, in that order.
@@ -39,13 +39,13 @@ RecordedTick record(const FastState& state, int instant) {
   return tick;
 }
 
-/// Whether a tool that may have several regions has one, whatever the constants.
+/// Whether a tool that may have several regions has only one, for any value of the constants.
 class OneRegion {
  public:
   explicit OneRegion(const FastModel& model)
       : model_(model), cells_(model.tool.count()), scratch_(*model.clusters, model.max_points()), was_(samples(), 0) {}
 
-  /// Asks about the tick whose points, if any, are in the state's region, found but not measured.
+  /// For a tick whose points, if any, are in the state's region, before their depths are measured.
   [[nodiscard]] bool holds(FastState& state) {
     RegionPoints reach = state.probe.window();
     find_points(model_, state.motion.at, bulge_m_, reach, cells_);
@@ -64,12 +64,12 @@ class OneRegion {
     for (const std::int32_t sample : last_) nth(was_, sample) = 0;
     for (const std::int32_t sample : inside) nth(was_, sample) = 1;
     last_ = std::move(inside);
-    // One cluster leaves its points in their order.
+    // A single cluster keeps the order of its points.
     std::array<Cluster, 2> found;
     return kept && cluster(*model_.clusters, state.regions[0].points, scratch_, found).count == 1;
   }
 
-  /// Remembers how far out of its rest shape the surface may stand after the tick.
+  /// Stores how far the surface may extend outside the rest shape after the tick.
   void remember(const FastState& state) noexcept {
     bulge_m_ = 0.0;
     if (state.region_count == 0) return;
@@ -90,8 +90,8 @@ class OneRegion {
   const FastModel& model_;
   CellScratch cells_;
   ClusterScratch scratch_;
-  std::vector<char> was_;           ///< per sample, inside in the last tick
-  std::vector<std::int32_t> last_;  ///< those samples
+  std::vector<char> was_;           ///< per sample: inside in the last tick
+  std::vector<std::int32_t> last_;  ///< the samples inside in the last tick
   double bulge_m_ = 0.0;
 };
 
@@ -139,7 +139,7 @@ void recall(const RecordedTick& tick, FastState& state) noexcept {
   region.points = {};
   region.points.count = tick.points;
   region.points.spread = tick.spread;
-  // Only read from here on.
+  // The points are only read from here on.
   auto* numbers = const_cast<double*>(tick.numbers.data());
   for (double** column : columns_of(region.points)) {
     *column = numbers;

@@ -29,7 +29,7 @@ struct RecordedTick {
 /// Nothing where the constants might decide which samples make up which region: a tool that may have several regions
 /// has one at every tick, whatever the constants, if
 /// - it has no friction, so that no anchor point moves further than the tick's deepest sample is deep and the surface
-///   stands out of the rest one by no more than that;
+///   extends outside the rest surface by at most that;
 /// - at every tick the samples inside are one cluster, and every sample outside but within reach of the last tick's
 ///   surface is nearer than r_th to one inside, so that it joins them or is left out;
 /// - from tick to tick it keeps a sample, and once it has left the body nothing is within reach.

@@ -13,7 +13,7 @@ Replay::Replay(const scene::Scene& scene, std::size_t bytes_max)
 std::vector<scene::Vec3> Replay::forces_n(const scene::Scene& scene) {
   engine_.set_constants(scene);
   std::vector<scene::Vec3> force_n;
-  // Which samples belong together hangs on r_th.
+  // The grouping of samples depends on r_th.
   if (recorded_ && scene.contact.r_th_m != r_th_m_) recorded_.reset();
   if (!recorded_) {
     engine_.restart();

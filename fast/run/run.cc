@@ -18,7 +18,7 @@ void add_beams(const FastModel& model, const FastState& state, double time_s, st
   for (std::size_t k = 0; k < static_cast<std::size_t>(state.region_count); ++k) {
     const ContactRegion& region = state.regions[k];
     if (!region.pressing()) continue;
-    // The first region meets the body at rest; only what later ones do to the others is kept.
+    // The first region is evaluated on the body at rest; only the stress by later regions is recorded.
     if (state.several == nullptr || state.several->order[0] == static_cast<int>(k)) {
       beam_stresses(model.skeleton, region.ends, stress);
     } else {
@@ -31,7 +31,7 @@ void add_beams(const FastModel& model, const FastState& state, double time_s, st
   }
 }
 
-/// A depth that counts as contact, of the body's size: the depth is known better than that.
+/// Depth relative to the body's size that counts as contact; larger than the error of the depth.
 constexpr double missed_depth_rel = 1e-6;
 
 }  // namespace

@@ -37,8 +37,8 @@ struct Run : scene::Answer {
   std::int64_t ticks = 0;
   int regions_max = 0;
   std::optional<double> first_contact_s;  ///< by Separation; absent where the tool stays apart
-  /// What the paper leaves open about several regions (errata E18), worst over the instants; see OrderSpread. Absent
-  /// where no instant had several.
+  /// Effect of the order of several regions, which the paper leaves open (errata E18), worst over the instants; see
+  /// OrderSpread. Absent where no instant had several.
   std::optional<double> order_spread_rel, equilibrium_rel;
   std::uint32_t status = 0;      ///< OR of all StepStatus bits
   std::uint64_t state_hash = 0;  ///< Engine::answer_hash(); equal on replay

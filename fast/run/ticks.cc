@@ -16,7 +16,7 @@ bool Ticks::instant_is_due() const {
 
 std::optional<Tick> Ticks::next() {
   for (; k_ <= last_; ++k_, taken_ = false) {
-    // Instants closer together than the ticks each get one of their own.
+    // If instants are closer than the ticks, each instant gets a tick of its own.
     if (instant_is_due()) {
       taken_ = true;
       const std::size_t instant = instant_++;

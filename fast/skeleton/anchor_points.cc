@@ -13,18 +13,18 @@ namespace {
 
 using scene::Vec3;
 
-/// The one of the found anchor points that lies at a patch's corner.
+/// The found anchor point at a patch's corner.
 const FoundAnchor& nearest(const std::vector<FoundAnchor>& found, const Vec3& corner_m) {
   return *std::min_element(found.begin(), found.end(), [&](const FoundAnchor& a, const FoundAnchor& b) {
     return (a.point_m - corner_m).squaredNorm() < (b.point_m - corner_m).squaredNorm();
   });
 }
 
-/// The way along the chord of a quarter circle, seen from its centre in direction (c, s).
+/// Position along the chord of a quarter circle, seen from its centre in direction (c, s).
 double chord_part(double c, double s) noexcept { return c + s > 0.0 ? s / (c + s) : 0.0; }
 
-/// Where an ellipse with these semi-axes is divided into equal lengths between its two vertices: the parameter's
-/// cosine and sine.
+/// Cosine and sine of the parameter at which a quarter of the ellipse with these semi-axes is divided into equal
+/// lengths.
 Eigen::Vector2d middle_of_quarter(double a, double b) {
   if (a == b) return Eigen::Vector2d::Constant(std::numbers::sqrt2 / 2.0);
   constexpr int steps = 20000;
@@ -51,7 +51,7 @@ FaceAxes face_axes(int patch) noexcept {
   return {(axis + 1) % 3, (axis + 2) % 3};
 }
 
-/// Bilinear places on a face. @param free 1 for every corner that can move, else 0
+/// Bilinear coordinates on a face. @param free 1 for every corner that can move, else 0
 TOUCHSTONE_WIDE_LOOPS
 void face_places(std::span<const double> u_m, std::span<const double> v_m, const Eigen::Vector2d& center_m,
                  const Eigen::Vector2d& half_m, const std::array<float, patch_corners_max>& free,
@@ -163,7 +163,7 @@ EllipsoidAnchors::EllipsoidAnchors(const scene::Shape& shape, const Vec3& center
   for (int i = 0; i < 6; ++i) {
     Vec3 out = Vec3::Zero();
     out[i / 2] = i % 2 == 0 ? semi_axes_m[i / 2] : -semi_axes_m[i / 2];
-    // The lowest point is held even where the support has no height.
+    // The lowest point is fixed even if the support has no height.
     add(center_m + out, i == 5, nearest(found, center_m + out).reason);
   }
   for (int patch = 0; patch < shape.patch_count(); ++patch) {
@@ -178,7 +178,7 @@ std::vector<int> EllipsoidAnchors::around(int patch) const {
 }
 
 Vec3 EllipsoidAnchors::halfway_m(int, int i, int j) const {
-  // The section through both is a plane of symmetry, so its ellipse is the shortest curve.
+  // The section through both points is a plane of symmetry, so its ellipse is the shortest curve.
   const int a = i / 2, b = j / 2;
   const Eigen::Vector2d middle = middle_of_quarter(semi_axes_m_[a], semi_axes_m_[b]);
   Vec3 out = Vec3::Zero();
@@ -201,7 +201,7 @@ PatchPlace EllipsoidAnchors::at(int patch, const Vec3& p_m) const noexcept {
 
 RevolutionAnchors::RevolutionAnchors(const scene::Revolution& revolution, double support_height_m)
     : revolution_(revolution),
-      // A flat bottom is held as a face, not by its height.
+      // A flat bottom is fixed as a face, whatever its height.
       support_height_m_(revolution.flat_bottom() ? -std::numeric_limits<double>::infinity() : support_height_m) {
   const int pieces = revolution.piece_count();
   parts_.resize(static_cast<std::size_t>(pieces));
@@ -209,7 +209,7 @@ RevolutionAnchors::RevolutionAnchors(const scene::Revolution& revolution, double
     nth(parts_, k).arc_begin_m = length_m_;
     length_m_ += revolution.piece(k).length_m;
   }
-  // Corner k of the profile is the lower end of piece k, the last one the upper pole.
+  // Corner k of the profile is the lower end of piece k; the last corner is the upper pole.
   std::vector<bool> circle(static_cast<std::size_t>(pieces) + 1, false);
   std::vector<AnchorReason> reason(circle.size(), AnchorReason::sphere_axis);
   find_circles(circle, reason);
@@ -258,7 +258,7 @@ void RevolutionAnchors::find_circles(std::vector<bool>& circle, std::vector<Anch
   bool any = false;
   reason.front() = AnchorReason::support;
   for (const CurveAnchor& found : profile_anchors(revolution_)) {
-    // Pieces are lines and arcs: what the rule finds lies at their ends.
+    // Pieces are lines and arcs, so the rule's points lie at their ends.
     const auto corner = static_cast<std::size_t>(found.piece) + (found.s > 0.5 ? 1 : 0);
     reason[corner] = found.reason;
     if (corner > 0 && corner < poles) any = circle[corner] = true;
@@ -274,7 +274,7 @@ double RevolutionAnchors::height_m(int corner) const noexcept {
 }
 
 bool RevolutionAnchors::at_or_below_support(double height_m) const noexcept {
-  // A circle at the support's height up to rounding is on it.
+  // Up to rounding, a circle at the support's height belongs to the support.
   return height_m <= support_height_m_ + 1e-9 * length_m_;
 }
 
@@ -368,7 +368,7 @@ Vec3 RevolutionAnchors::halfway_m(int patch, int i, int j) const {
   const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
   const int qi = anchor_quarter_[a], qj = anchor_quarter_[b];
   if (part.kind == Kind::cap) {
-    // Opposite points are joined over the axis, neighbours by what lies above their chord.
+    // Opposite points are joined across the axis, neighbours by the surface above their chord.
     if ((qi - qj) % 2 == 0) return on_surface_m(part.low < 0 ? 0.0 : length_m_, 0.0);
     return revolution_.query(0.5 * (points_m_[a] + points_m_[b])).point_m;
   }
@@ -387,16 +387,16 @@ PatchPlace RevolutionAnchors::at(int patch, const Vec3& p_m) const noexcept {
   const double over_support_m = p_m.z() - support_height_m_;
   const double x = r_m > 0.0 ? local_m.x() / r_m : 1.0, y = r_m > 0.0 ? local_m.y() / r_m : 0.0;
 
-  // phi' within the quadrant; a whole cap has no quadrant.
+  // phi' within the quadrant; a full cap has no quadrant.
   const double c = quadrant == 0 ? x : quadrant == 1 ? y : quadrant == 2 ? -x : -y;
   const double s = quadrant == 0 ? y : quadrant == 1 ? -x : quadrant == 2 ? -y : x;
   const double phi = chord_part(std::max(c, 0.0), std::max(s, 0.0));
-  // Square coordinates in the diamond of a cap's four points.
+  // Bilinear coordinates in the square of a cap's four points.
   const auto square = [&](double t) {
     const double a = t * x / (std::abs(x) + std::abs(y)), b = t * y / (std::abs(x) + std::abs(y));
     return Eigen::Vector2d(std::clamp(0.5 * (1.0 + a + b), 0.0, 1.0), std::clamp(0.5 * (1.0 - a + b), 0.0, 1.0));
   };
-  // From the cap's pole, at the bottom or at the top.
+  // Distance from the cap's pole, at the bottom or at the top.
   const double from_pole_m = part.low < 0 ? along_m : length_m_ - along_m;
 
   double band = std::clamp((along_m - part.low_m) / (part.high_m - part.low_m), 0.0, 1.0);
@@ -414,7 +414,7 @@ PatchPlace RevolutionAnchors::at(int patch, const Vec3& p_m) const noexcept {
   const Eigen::Vector2d uv = square(std::min(1.0, from_pole_m / part.rim_m));
   const double u = uv.x(), v = uv.y();
   PatchPlace at = place(patch, {u * (1.0 - v), u * v, (1.0 - u) * v, (1.0 - u) * (1.0 - v)});
-  // All its anchor points are held, and yet it gives in the middle.
+  // All anchor points of the cap are fixed, but its middle can move.
   if (part.held_rim_m > 0.0) at.free = std::max(0.0, 1.0 - from_pole_m / part.held_rim_m);
   return at;
 }

@@ -44,7 +44,7 @@ class AnchorPoints {
   /// Per patch of the shape, its anchor points in the order of PatchPlace::weight. A patch with fewer than four
   /// repeats its first at the end, whose repeated weight is 0.
   [[nodiscard]] const std::vector<std::array<int, patch_corners_max>>& patches() const noexcept { return patches_; }
-  /// A patch's anchor points in the order in which they stand around it.
+  /// A patch's anchor points in their order around it.
   [[nodiscard]] virtual std::vector<int> around(int patch) const = 0;
   /// False for a patch that goes on where another one ends, between the same anchor points.
   [[nodiscard]] virtual bool first_between_its_anchors(int patch) const;
@@ -106,7 +106,7 @@ class EllipsoidAnchors final : public AnchorPoints {
 };
 
 /// A surface of revolution: four points per anchor circle, on +x, +y, -x, -y from the axis, from the bottom up, and its
-/// tips. A body that stands on a dome also has its lowest point, which the support holds.
+/// tips. A body whose bottom is a dome also has its lowest point, which is on the support.
 ///
 /// The pieces of the profile between two circles, or a circle and the axis, make a band. s is the arc length along it,
 /// phi' = sin phi / (sin phi + cos phi) the distance along the chord of a quadrant. Displacements are linear in both,

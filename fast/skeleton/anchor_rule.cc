@@ -14,12 +14,12 @@ namespace {
 using Vec2 = Eigen::Vector2d;
 using scene::Vec3;
 
-/// Turn below which a curve counts as smooth [rad], as for the shapes.
+/// Angle below which a curve counts as smooth [rad], as for the shapes.
 constexpr double smooth_turn = 1e-7;
 
-// The rule on a plane curve.
+// The anchor point rule on a plane curve.
 
-/// Curvatures along the whole curve in one scale.
+/// Samples the curvature of the whole curve on one scale.
 class CurveRule {
  public:
   explicit CurveRule(std::span<const CurvePiece> pieces) : pieces_(pieces) {
@@ -48,7 +48,7 @@ class CurveRule {
   static double place(int i) noexcept { return static_cast<double>(i) / samples; }
 
   [[nodiscard]] double curvature(int piece, double s) const { return nth(pieces_, piece).at(s).curvature_per_m; }
-  /// -1, 0 or 1: the sign of a difference of curvatures that is more than rounding.
+  /// Sign of a difference of curvatures: -1 or 1, or 0 if it is round-off.
   [[nodiscard]] int sign(double difference_per_m) const noexcept {
     return std::abs(difference_per_m) <= 1e-10 * largest_per_m_ ? 0 : difference_per_m > 0.0 ? 1 : -1;
   }
@@ -62,7 +62,7 @@ class CurveRule {
       found_.push_back({piece, s, AnchorReason::natural_vertex});
       return;
     }
-    // The mirror image goes on alike, so the curvature is stationary here; it is isolated where it changes.
+    // By mirror symmetry the curvature is stationary here; the extremum is isolated if the curvature changes.
     const int away = sign(end.curvature_per_m - curvature(piece, s == 0.0 ? place(1) : place(samples - 1)));
     if (away != 0) found_.push_back({piece, s, extremum(away)});
   }
@@ -105,7 +105,7 @@ class CurveRule {
     for (int i = 1; i <= samples; ++i) {
       const double here = curvature(k, place(i));
       if (const int now = sign(here - before); now != 0) {
-        // At most two steps without change between rise and fall: otherwise it is no isolated extremum.
+        // At most two steps without change between rise and fall; otherwise the extremum is not isolated.
         if (trend * now < 0 && place(i) - trend_s < 4.5 / samples) {
           found_.push_back({k, sharpest(k, trend_s, place(i), trend), extremum(trend)});
         }
@@ -121,7 +121,7 @@ class CurveRule {
     }
   }
 
-  /// Where the curvature is extreme between two places, by thirds.
+  /// Position of the extremal curvature between two places, by ternary search.
   [[nodiscard]] double sharpest(int k, double low, double high, int direction) const {
     for (int i = 0; i < 80; ++i) {
       const double third = (high - low) / 3.0, a = low + third, b = high - third;
@@ -144,9 +144,9 @@ class CurveRule {
   std::vector<CurveAnchor> found_;
 };
 
-// The rule on a surface by its patches.
+// The anchor point rule on a surface, by its patches.
 
-/// Adds a point that is not there yet.
+/// Adds a point unless it is known already.
 void add(std::vector<FoundAnchor>& found, const FoundAnchor& anchor, double near_m) {
   const bool known = std::any_of(found.begin(), found.end(), [&](const FoundAnchor& other) {
     return (other.point_m - anchor.point_m).norm() < near_m;
@@ -213,10 +213,10 @@ class CurvatureField {
 
   [[nodiscard]] bool flat() const noexcept { return flat_; }
   [[nodiscard]] bool constant() const noexcept { return constant_; }
-  /// Evenly strewn places on the surface, the patches' corners among them.
+  /// Points spread evenly over the surface, including the patches' corners.
   [[nodiscard]] const std::vector<Vec3>& points_m() const noexcept { return points_m_; }
 
-  /// A place on the surface with two directions along it.
+  /// A point of the surface with two tangent directions.
   struct Place {
     Vec3 point_m;
     Vec3 normal, t1, t2;
@@ -250,7 +250,7 @@ class CurvatureField {
     Vec3 point_m;
   };
 
-  /// Curvature at the surface point nearest to a place beside p.
+  /// Curvature at the surface point closest to p + along_t1 t1 + along_t2 t2.
   [[nodiscard]] double at(const Place& p, double along_t1, double along_t2) const {
     const scene::SurfaceQuery query = shape_.query(p.point_m + size_m_ * (along_t1 * p.t1 + along_t2 * p.t2));
     const Start* start = nullptr;
@@ -261,7 +261,7 @@ class CurvatureField {
         start = &other;
       }
     }
-    // The patch's parameters of that point by Gauss and Newton, from the nearest of many starts.
+    // Parameters of that point on the patch by Gauss-Newton, from the nearest of many start points.
     Vec2 uv(start->u, start->v);
     for (int i = 0; i < 12; ++i) {
       constexpr double h = 1e-6;
@@ -287,8 +287,8 @@ class CurvatureField {
   bool flat_ = false, constant_ = false;
 };
 
-/// Where two perpendicular axes through the centre, in a plane, leave the surface: along coordinate axes where the
-/// plane holds two.
+/// Intersections of the surface with two perpendicular axes through the centre in a plane; coordinate axes if the plane
+/// contains two of them.
 std::array<Vec3, 4> on_two_axes(const scene::Shape& shape, const Vec3& center_m, const Vec3& plane_normal,
                                 const Vec3& in_plane, double size_m) {
   Vec3 first = (in_plane - in_plane.dot(plane_normal) * plane_normal).normalized();
@@ -319,7 +319,7 @@ std::vector<FoundAnchor> stationary_points(const scene::Shape& shape, const Curv
       if ((points_m[j] - points_m[i]).norm() < 0.3 * size_m) lowest = steepness[i] <= steepness[j] + 1e-6 * steepest;
     }
     if (!lowest) continue;
-    // Newton's method on the gradient, leaving out a direction in which nothing changes.
+    // Newton's method on the gradient, without a direction along which the curvature is constant.
     CurvatureField::Place p = field.place(points_m[i]);
     Vec2 gradient = field.gradient(p);
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> bend(field.hessian(p));
@@ -345,7 +345,7 @@ std::vector<FoundAnchor> stationary_points(const scene::Shape& shape, const Curv
       const Vec3 along = bend.eigenvectors()(0, small) * p.t1 + bend.eigenvectors()(1, small) * p.t2;
       if (field.gradient(field.place(p.point_m + 0.2 * size_m * along)).norm() <= 1e-2 * steepest) {
         const Vec3 plane_normal = p.normal.cross(along).normalized();
-        // Every point of the curve leads here; it counts once.
+        // All points of the curve lead to the same circle, which counts once.
         const bool known = std::any_of(circles.begin(), circles.end(),
                                        [&](const Vec3& other) { return std::abs(other.dot(plane_normal)) > 0.99; });
         if (known) continue;

@@ -22,7 +22,7 @@ enum class AnchorReason {
   curvature_saddle,  ///< maximum along one principal section, minimum along the other
   inflection,        ///< the profile's curvature changes its sign
   sphere_axis,       ///< the same curvature everywhere: three perpendicular axes through the centre
-  support            ///< none of the paper's: the lowest point, which ends the patches of a body that stands on a dome
+  support            ///< none of the paper's: the lowest point, which ends the patches of a body whose bottom is a dome
 };
 /// In words, after "anchor point:".
 [[nodiscard]] const char* words(AnchorReason reason) noexcept;

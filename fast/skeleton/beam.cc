@@ -5,7 +5,7 @@
 namespace touchstone::fast {
 namespace {
 
-/// Integral of t^2 / (E I) over a segment that begins at t = b: c (b^2 + b c + c^2 / 3), where nothing cancels.
+/// Integral of t^2 / (E I) over a segment that begins at t = b: c (b^2 + b c + c^2 / 3), a form without cancellation.
 double squared_arm(const BeamSegment& segment, double b) noexcept {
   const double c = segment.length_m;
   return c * (b * b + b * c + c * c / 3.0) / (segment.youngs_modulus_pa * segment.second_moment_m4);

@@ -12,7 +12,7 @@ using scene::Vec3;
 
 constexpr double least_share_rel = 1e-6;
 
-/// (18), in place.
+/// (18), in place: normalises the weights to a sum of 1.
 void to_shares(std::span<double> gamma) noexcept {
   const double sum = std::accumulate(gamma.begin(), gamma.end(), 0.0);
   const double mean_m2 = sum / static_cast<double>(gamma.size());

@@ -13,7 +13,7 @@ namespace {
 using scene::Mat3;
 using scene::Vec3;
 
-/// Beam i without its stiffnesses.
+/// Geometry of beam i, without its stiffnesses.
 Beam line_to(const SkeletonView& view, std::size_t i, const Vec3& p0_W_m, const Vec3& force_direction) noexcept {
   const Vec3 along_m = p0_W_m - view.anchor_m[i];
   const double distance_m = along_m.norm();
@@ -23,7 +23,7 @@ Beam line_to(const SkeletonView& view, std::size_t i, const Vec3& p0_W_m, const 
   return beam;
 }
 
-/// Beam i of a contact, in one of the ways below.
+/// Computes beam i of a contact; one of the functions below.
 using BeamTo = Beam (*)(const SkeletonView&, std::size_t i, const Vec3& p0_W_m, const Vec3& force_direction) noexcept;
 
 Beam beam_to(const SkeletonView& view, std::size_t i, const Vec3& p0_W_m, const Vec3& force_direction) noexcept {
@@ -60,7 +60,7 @@ Beam beam_in_parts_corrected(const SkeletonView& view, std::size_t i, const Vec3
   return beam;
 }
 
-/// Sets the anchor point's displacement, no longer than limit_m; held ones stay.
+/// Sets the anchor point's displacement, limited to limit_m; fixed anchor points do not move.
 void move_anchor(const BeamSkeleton& skeleton, std::size_t i, const Vec3& displacement_m, double limit_m,
                  BeamEnds& ends) noexcept {
   if (skeleton.held[i]) return;
@@ -89,7 +89,7 @@ ScaleFactors scale_factors(const Vec3& g, const Vec3& h, const Vec3& F) noexcept
     both = {gF / (gg + hh), hF / (gg + hh)};
   }
   if (both.a >= 0.0 && both.b >= 0.0) return both;
-  // One factor at its bound: the better of the two.
+  // With one factor at its bound: the better of both cases.
   const ScaleFactors only_a{gg > 0.0 ? std::max(0.0, gF / gg) : 0.0, 0.0};
   const ScaleFactors only_b{0.0, hh > 0.0 ? std::max(0.0, hF / hh) : 0.0};
   return (only_a.a * g - F).squaredNorm() <= (only_b.b * h - F).squaredNorm() ? only_a : only_b;
@@ -103,17 +103,17 @@ void split_published(const SkeletonView& view, const Vec3& p0_W_m, const Vec3& f
   if (!(F > 0.0) || !(D > 0.0)) return;
   const double E = view.skeleton.youngs_modulus_pa;
   const std::size_t beams = view.anchor_m.size();
-  // First pass: g and h, the sums (6) would take with a = b = 1.
+  // First pass: g and h are the sums of (6) for a = b = 1.
   Vec3 g = Vec3::Zero(), h = Vec3::Zero();
   for (std::size_t i = 0; i < beams; ++i) {
     const Beam& beam = ends.beam[i] = beam_of(view, i, p0_W_m, force_n / F);
     const double along_m = displacement_m.dot(beam.x);
     const Vec3 across_m = displacement_m - along_m * beam.x;  // y'_i along y_i
-    // E19: delta x = l - l^2 / sqrt(l^2 + y'^2), written without the difference of equals.
+    // E19: delta x = l - l^2 / sqrt(l^2 + y'^2), in a form without cancellation.
     const double l = beam.l_m, bent_m = std::hypot(l, across_m.norm());
     const double delta_x_m = l * across_m.squaredNorm() / (bent_m * (bent_m + l));
     const Vec3 Delta_x_m = (along_m + delta_x_m) * beam.x;
-    // The factors a and b carry E and 3 E, of the body's own material.
+    // The factors a and b contain E and 3 E of the body's own material.
     ends.force_n[i] = Delta_x_m * (beam.axial_n_per_m / E);                  // (4), (13)
     ends.displacement_m[i] = across_m * (beam.bending_n_per_m / (3.0 * E));  // (5), (14)
     g += ends.force_n[i];
@@ -145,7 +145,7 @@ void split_corrected(const SkeletonView& view, const Vec3& p0_W_m, const Vec3& f
     ends.beam[i] = beam_of(view, i, p0_W_m, force_n / F);
     K += K_i(ends.beam[i]);
   }
-  // Solved in units of the mean stiffness and of F, so that no scale of s_c leaves the range of doubles.
+  // Scaled by the mean stiffness and by F, so that no value of s_c leads to overflow.
   const double stiffness_n_per_m = K.trace() / 3.0;
   const Vec3 u = (K / stiffness_n_per_m).ldlt().solve(force_n / F);
   for (std::size_t i = 0; i < beams; ++i) {

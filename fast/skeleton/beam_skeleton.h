@@ -72,7 +72,7 @@ struct BeamEnds {
   std::vector<scene::Vec3> force_n;         ///< F_i, on beam i at the common end
   std::vector<scene::Vec3> displacement_m;  ///< of the anchor point; zero where held
   std::vector<Beam> beam;                   ///< those of the last split with a force
-  bool limited = false;                     ///< an anchor point was held back to the contact's own displacement
+  bool limited = false;                     ///< an anchor point was limited to the contact's own displacement
 };
 
 /// Splits the force F on the body over the beams and moves the anchor points.

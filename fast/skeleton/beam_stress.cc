@@ -8,11 +8,11 @@ namespace {
 using scene::Mat3;
 using scene::Vec3;
 
-/// x, y, z of a beam: y on the side of the force across it, or any where there is none.
+/// Axes x, y, z of a beam: y is towards the transverse force, or arbitrary if there is none.
 Mat3 beam_axes(const Vec3& x, const Vec3& force_n) noexcept {
   Vec3 y = force_n - force_n.dot(x) * x;
   const double length = y.stableNorm();
-  // A rounding error is no direction.
+  // A smaller component is round-off and gives no direction.
   if (length > 1e-12 * force_n.stableNorm()) {
     y /= length;
   } else {
@@ -25,7 +25,7 @@ Mat3 beam_axes(const Vec3& x, const Vec3& force_n) noexcept {
   return axes;
 }
 
-/// The symmetric tensor of six components; @param shear factor on those off the diagonal
+/// Symmetric tensor of six components. @param shear factor of the off-diagonal components
 Mat3 tensor(const SixComponents& c, double shear) noexcept {
   Mat3 t;
   t << c[0], shear * c[3], shear * c[5],  //

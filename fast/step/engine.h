@@ -40,7 +40,7 @@ class Engine {
   /// Of the body on the tool.
   [[nodiscard]] scene::Wrench wrench() const noexcept;
   [[nodiscard]] const SurfaceField& field() const noexcept { return state_.field; }
-  /// The answer at a track instant. The separation is not the step's to know, and zero.
+  /// The answer at a track instant. The step does not compute the separation, which is zero.
   /// @param tool  pose of the last step as it was asked for; @param depth_m  scene::RestDepth there
   [[nodiscard]] scene::InstantRecord record(double time_s, const scene::Pose& tool, double depth_m) const;
   /// Hash over the wrench of every step so far and the shape now: equal when a replay is. Not for the tick.

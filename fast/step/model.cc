@@ -3,10 +3,10 @@
 namespace touchstone::fast {
 namespace {
 
-/// The force is then within about 1 % of its limit, see CellsConverge.
+/// The force is then within about 1 % of the limit of fine cells, see CellsConverge.
 constexpr CellRule corrected_cells{.points = 64, .rim_share = 0.33, .points_per_lever = 50.0};
 
-/// A cell says as much as several samples, and finer ones are made where they are needed.
+/// A cell is as accurate as several samples, and cells are refined where needed.
 constexpr int samples_per_cell = 4;
 
 ToolSamples samples_of(const scene::Scene& scene) {
@@ -29,7 +29,8 @@ Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
                   interpolate_corrected, apply_local_factor_corrected, several_regions_corrected};
       break;
   }
-  // Several regions have several directions, and their normals together say nothing of any.
+  // With several regions the normals of all cells together describe no single region, so the lever does not refine
+  // cells.
   if (formulas.cells && !scene.tool.convex() && fast.max_regions > 1) formulas.cells->points_per_lever = 0.0;
   if (!scene.contact.friction) formulas.resolve_friction = nullptr;
   if (fast.C_n == 0.0) formulas.apply_local_factor = nullptr;

@@ -11,7 +11,7 @@
 namespace touchstone::fast {
 namespace {
 
-/// Every other order of 0 to count - 1, or some of them where there are many.
+/// All other orders of 0 to count - 1, or some of them if there are many.
 std::vector<std::vector<int>> other_orders(std::size_t count) {
   std::vector<int> order(count);
   std::iota(order.begin(), order.end(), 0);
@@ -45,7 +45,7 @@ OrderSpread order_spread(const FastModel& model, FastState& state) {
   state.motion = {motion.pose, motion.at, motion.pose, true};
   for (const std::vector<int>& order : other_orders(static_cast<std::size_t>(state.region_count))) {
     std::copy(order.begin(), order.end(), several.order.begin());
-    // The points as they were found: the regions before them have pulled them back.
+    // The points before the rest-point search, which depends on the earlier regions.
     RegionPoints all = state.store.window();
     find_points(model, motion.at, kept.bulge_m, all, state.cells);
     cluster(*model.clusters, all, several.scratch, several.clusters);

@@ -1,4 +1,4 @@
-// What the paper leaves open about several contact regions (errata E18).
+// Effect of the order of several contact regions, which the paper leaves open (errata E18).
 #pragma once
 
 #include "fast/step/model.h"

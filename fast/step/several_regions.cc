@@ -10,7 +10,8 @@ namespace {
 
 using scene::Vec3;
 
-/// How far a region's centre may travel in a tick without sharing a sample with its last place, in units of r_th.
+/// Distance that a region's centre may move in a tick without sharing a sample with its last position, in units of
+/// r_th.
 constexpr double reach_over_r_th = 2.0;
 
 int smallest_free_id(const FastState& state) noexcept {
@@ -21,7 +22,7 @@ int smallest_free_id(const FastState& state) noexcept {
   }
 }
 
-/// Keeps the points inside the rest surface, in their order.
+/// Keeps only the points inside the rest surface, in their order.
 void keep_inside(RegionPoints& points) noexcept {
   int kept = 0;
   for (int i = 0; i < points.count; ++i) {
@@ -32,7 +33,7 @@ void keep_inside(RegionPoints& points) noexcept {
   points.count = kept;
 }
 
-/// Brings state.regions to what the tracker says, each with its points.
+/// Updates state.regions from the tracker, each region with its points.
 void take_over(const RegionPoints& all, int count, FastState& state) noexcept {
   SeveralRegionsState& several = *state.several;
   const int before = state.region_count;
@@ -44,7 +45,7 @@ void take_over(const RegionPoints& all, int count, FastState& state) noexcept {
   for (int k = 0; k < count; ++k) {
     const TrackedRegion& tracked = nth(several.tracked, k);
     ContactRegion& region = nth(state.regions, k);
-    // Regions that go on stand in their old order, so `was` is never before k.
+    // Continued regions keep their order, so `was` is never before k.
     if (!tracked.created() && tracked.was != k) std::swap(region, nth(state.regions, tracked.was));
     if (tracked.created()) {
       region.clear();
@@ -57,7 +58,7 @@ void take_over(const RegionPoints& all, int count, FastState& state) noexcept {
   state.region_count = count;
 }
 
-/// Shape_i of the regions in the stack.
+/// The surface displaced by the regions in the stack.
 class StackedSurface final : public DisplacedSurface {
  public:
   StackedSurface(const FastModel& model, const LocalConstants* local, ShapeStack& shapes) noexcept
@@ -72,12 +73,12 @@ class StackedSurface final : public DisplacedSurface {
   ShapeStack& shapes_;
 };
 
-/// Null where the scene has no local factor.
+/// Null if the scene has no local factor.
 const LocalConstants* local_constants(const FastModel& model) noexcept {
   return model.formulas.local_factor() ? &model.local : nullptr;
 }
 
-/// A deformation origin on the shape of the regions in the stack.
+/// An origin of deformation, displaced by the regions in the stack.
 Vec3 displaced(const FastModel& model, const DeformationOrigin& origin, const ShapeStack& shapes) noexcept {
   if (shapes.count() == 0) return origin.p0_W_m;
   return origin.p0_W_m + model.formulas.several.displacement_at(model.rest, *model.anchors, shapes,
@@ -120,7 +121,7 @@ StepStatus deform_body(const FastModel& model, std::size_t k, FastState& state) 
   const SkeletonView skeleton = first ? SkeletonView(model.skeleton) : several.ends.view(model.skeleton);
   StepStatus status = StepStatus::ok;
   if (region.pressing()) status = load_beams(model, skeleton, displaced(model, region.origin, shapes), region);
-  // Only earlier regions feel them.
+  // Only earlier regions are affected by them.
   if (!first) beam_stresses(skeleton, region.ends, several.stress_pa[k]);
   RegionShape shape;
   shape.anchor_displacement_m = region.ends.displacement_m;
@@ -146,7 +147,7 @@ void add_later_forces(const FastModel& model, FastState& state) noexcept {
     for (std::size_t j = i + 1; j < order.size(); ++j) {
       const auto& stress = nth(several.stress_pa, order[j]);
       const scene::Mat3 here_pa = interpolated_stress_pa(stress, model.anchors->patches()[patch], place);
-      // The stress pushes the body against the tool, which feels the opposite of what the outside does to the body.
+      // The stress acts from the body on the tool: the reaction to the outside's traction on the body.
       later_n -= stress_force_n(here_pa, region.origin.normal, region.extent.area_m2);
     }
     region.force.force_n += later_n;

@@ -9,7 +9,8 @@ namespace touchstone::fast {
 /// Sorts the points into clusters and follows the regions from the last tick to this one; each has its points then.
 StepStatus track_regions(const FastModel&, RegionPoints&, FastState&) noexcept;
 
-/// Region i meets Shape_{i-1}: its points are pulled back to the rest shape through the displacement of that shape.
+/// Region i is evaluated on Shape_{i-1}: the rest-point search maps its points to the rest shape through the
+/// displacement of that shape.
 void meet_deformed_body(const FastModel&, ContactRegion&, FastState&) noexcept;
 
 /// Beam skeleton of region k on Shape_{i-1}, and Shape_i for the regions after it.

@@ -10,18 +10,18 @@ namespace {
 using scene::Pose;
 using scene::Vec3;
 
-/// Beyond this part of the body's thickness the closest surface says little about where the tool came from, and the
-/// region keeps its direction.
+/// At a depth above this fraction of the body's thickness the closest surface point does not tell where the tool came
+/// from, and the region keeps its direction.
 constexpr double direction_kept_rel = 0.25;
 
-/// Into the body from the surface nearest to the tool's mass centre.
+/// Inward normal at the surface point closest to the tool's mass centre.
 Vec3 direction_to_centre(const FastModel& model, const Motion& motion) noexcept {
   return -model.body->query(motion.pose.position_m).normal;
 }
 
-/// Direction of deformation of a region that has just come into being in a tick that began apart. Where one tick has
-/// brought the tool further in than its samples lie apart, the pose a spacing behind first touch is looked for, or a
-/// fast tool would be taken to have come from the nearest side of the body.
+/// Direction of deformation of a region that begins in this tick. If the tool moved further in than its samples are
+/// apart, the pose one sample spacing after first touch is used. Otherwise a fast tool would seem to have come from the
+/// nearest side of the body.
 Vec3 entry_direction(const FastModel& model, const InsideSummary& inside, FastState& state) noexcept {
   const Motion& motion = state.motion;
   InsideSummary first = inside;
@@ -43,7 +43,8 @@ Vec3 entry_direction(const FastModel& model, const InsideSummary& inside, FastSt
         apart = s;
       }
     }
-    // The sample that is first speaks for one flank of an edge or a tip; a spacing on, all flanks have their say.
+    // The first sample inside sees one side of an edge or tip only. Sample again one spacing deeper, where all sides
+    // are inside.
     const double travel_m =
         std::max(inside.deepest_m, (1.0 - touching) * (motion.pose.position_m - motion.before.position_m).norm());
     RegionPoints points = state.probe.window();
@@ -102,9 +103,9 @@ void find_direction(const FastModel& model, ContactRegion& region, FastState& st
 StepStatus measure_depths(const FastModel& model, ContactRegion& region, FastState& state) noexcept {
   if (region.points.count == 0) return StepStatus::ok;
   region.extent = model.detection.measure_depths(*model.body, state.motion.at.R_WT, region.d, region.points);
-  // Only the tool's back is inside: nothing pushes, but the region lives on with its direction.
+  // Only the rear of the tool is inside: no force, but the region continues with its direction.
   if (region.points.count == 0) return StepStatus::ok;
-  // A tip of no thickness is touched without depth.
+  // A tip of zero thickness touches without depth.
   region.depth_rel = region.extent.thickness_m > 0.0 ? region.extent.deepest_m / region.extent.thickness_m : 0.0;
   region.origin = deformation_origin(*model.body, model.detection.exit_distance_m, region.d, region.extent);
   const bool held = limit_depths(depth_limit_rel * region.extent.thickness_m, region.points);
@@ -134,7 +135,7 @@ void friction_and_point_contact(const FastModel& model, const DuffingLaw& law, C
                                      : material_step_m(placement(motion.before), motion.at, region.force.load_center_m);
   region.displacement_m = model.formulas.resolve_friction(*model.friction, law, motion.at.R_WT, region.d, region.points,
                                                           step_m, region.force, region.friction);
-  // The contact has been dragged from where it began.
+  // Friction has moved the contact away from where it began.
   region.origin = origin_at(*model.body, region.origin.p0_W_m - region.friction.stretch_m);
   state.lap(Stage::friction);
 }

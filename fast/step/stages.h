@@ -22,7 +22,7 @@ void keep_one_region(const RegionPoints& points, const InsideSummary& inside, Fa
 /// Direction of deformation d (section III).
 void find_direction(const FastModel&, ContactRegion&, FastState&) noexcept;
 
-/// Depths along d, held at a part of the body's thickness, and the deformation origin p_0.
+/// Depths along d, limited to a part of the body's thickness, and the origin of deformation p_0.
 StepStatus measure_depths(const FastModel&, ContactRegion&, FastState&) noexcept;
 
 /// Contact force along d (section IV-A). @param law at the region's size

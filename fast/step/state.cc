@@ -17,7 +17,7 @@ std::string status_text(std::uint32_t status) {
   add(StepStatus::not_finite, "pose not finite, last good answer held");
   add(StepStatus::depth_limited, "depth limited to half of the body's thickness");
   add(StepStatus::law_saturated, "contact law saturated at its peak");
-  add(StepStatus::regions_full, "more contact regions than fast.max_regions, the smallest left out");
+  add(StepStatus::regions_full, "more contact regions than fast.max_regions, the smallest dropped");
   add(StepStatus::contact_missed,
       "contact missed: the tool is inside the body, no sample of it is (raise fast.tool_samples)");
   add(StepStatus::anchors_limited, "anchor displacement limited to that of the contact (raise fast.s_c_m2)");
@@ -39,7 +39,7 @@ void ContactRegion::clear() noexcept {
   ends.clear();
 }
 
-/// Clusters beyond the regions are told apart before the smallest are given up.
+/// More clusters than regions are distinguished before the smallest are dropped.
 constexpr int clusters_per_region = 2;
 
 SeveralRegionsState::SeveralRegionsState(const FastModel& model)

@@ -18,13 +18,13 @@ namespace touchstone::fast {
 /// What went other than planned in a step: bits, ok for none. The answer is finite in every case.
 enum class StepStatus : std::uint32_t {
   ok = 0,
-  not_finite = 1u << 0,       ///< the pose was not a finite placement; the last good answer was held
+  not_finite = 1u << 0,       ///< the pose was invalid; the last valid result was kept
   depth_limited = 1u << 1,    ///< deeper than depth_limit_rel of the body's thickness; press less deep
   law_saturated = 1u << 2,    ///< past the peak of a softening law; raise contact.k3_n_per_m3 or press less deep
-  anchors_limited = 1u << 3,  ///< an anchor point outran the contact and was held back; raise fast.s_c_m2
+  anchors_limited = 1u << 3,  ///< an anchor point moved further than the contact and was limited; raise fast.s_c_m2
   regions_full = 1u << 4,     ///< more contact regions than fast.max_regions; the smallest were left out
-  /// Of a run over a track, never of a step, which knows the tool by its samples alone: at a recorded instant the tool
-  /// is inside the body by the exact shapes, and none of its samples is. Raise fast.tool_samples.
+  /// Set for a run over a track, never in a step, which sees the tool by its samples alone: at a recorded instant the
+  /// tool is inside the body by the exact shapes, and none of its samples is. Raise fast.tool_samples.
   contact_missed = 1u << 5
 };
 [[nodiscard]] constexpr StepStatus operator|(StepStatus a, StepStatus b) noexcept {
@@ -81,7 +81,7 @@ struct SeveralRegionsState {
   ShapeStack shapes;                               ///< of the regions pressed so far
   std::vector<std::vector<BeamStress>> stress_pa;  ///< per region
   std::vector<int> order;                          ///< of creation: places in FastState::regions
-  double bulge_m = 0.0;                            ///< how far the last tick's surface may stand out of the rest one
+  double bulge_m = 0.0;  ///< largest distance of the last tick's surface outside the rest surface
 
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };
@@ -99,7 +99,7 @@ struct FastState {
   int region_count = 0;
   SurfaceField field;
   std::unique_ptr<SeveralRegionsState> several;  ///< null where there is but one region
-  StageClock* clock = nullptr;                   ///< laps at the end of every stage, where somebody wants to know
+  StageClock* clock = nullptr;                   ///< times of the stages, if wanted
   bool deformed = false;                         ///< field differs from rest
   bool placed = false;                           ///< `motion` holds a good pose
   Motion motion;                                 ///< to the last good pose

@@ -7,7 +7,7 @@
 namespace touchstone::fast {
 namespace {
 
-/// Nothing touches the body.
+/// No contact: the body returns to its rest shape.
 void return_to_rest(const FastModel& model, FastState& state) noexcept {
   if (!state.deformed) return;
   state.field.reset(model.rest);
@@ -23,7 +23,7 @@ StepStatus step(const FastModel& model, const scene::Pose& pose, FastState& stat
   StepStatus status = StepStatus::ok;
 
   if (has(parts, Parts::find)) {
-    // Pose check: without a placement the last good answer is held.
+    // Pose check: for an invalid pose the last valid result is kept.
     if (!move_to(pose, state)) return StepStatus::not_finite;
 
     // Contact detection: the points of the tool inside the rest shape or, with several regions, near it.
@@ -32,7 +32,7 @@ StepStatus step(const FastModel& model, const scene::Pose& pose, FastState& stat
     const InsideSummary inside = find_points(model, state.motion.at, margin_m, points, state.cells);
     state.lap(Stage::detection);
 
-    // Contact regions: one, or clusters of points that are followed from tick to tick.
+    // Contact regions: one, or clusters of points that are tracked from tick to tick.
     if (several == nullptr) {
       keep_one_region(points, inside, state);
     } else {
@@ -46,14 +46,14 @@ StepStatus step(const FastModel& model, const scene::Pose& pose, FastState& stat
       const std::size_t k = several != nullptr ? static_cast<std::size_t>(several->order[i]) : i;
       ContactRegion& region = state.regions[k];
       if (has(parts, Parts::measure)) {
-        // Section VI: each region meets the body that the earlier ones have deformed.
+        // Section VI: each region is evaluated on the body deformed by the earlier ones.
         if (several != nullptr) meet_deformed_body(model, region, state);
 
-        // Direction of deformation, depths along it from the origin of deformation.
+        // Direction of deformation, and depths along it from the origin of deformation.
         find_direction(model, region, state);
         status |= measure_depths(model, region, state);
 
-        // Mass shares of the points.
+        // Mass weights of the points.
         if (region.pressing())
           formulas.distribute_mass(state.motion.at.R_WT.transpose() * region.d, model.tool.groups, region.points);
       }
@@ -62,10 +62,10 @@ StepStatus step(const FastModel& model, const scene::Pose& pose, FastState& stat
         const DuffingLaw law = model.law.at(contact_radius_m(region.extent.area_m2));
         status |= contact_force(law, region, state);
 
-        // Friction, where the scene has it, and the equivalent point contact that stands for the region.
+        // Friction if the scene has it, and the equivalent point contact that represents the region.
         friction_and_point_contact(model, law, region, state);
 
-        // Section VI: beam skeleton and shape that a later region meets.
+        // Section VI: beam skeleton and deformed shape for the later regions.
         if (several != nullptr) status |= deform_body(model, k, state);
       }
     }
@@ -95,7 +95,7 @@ StepStatus step(const FastModel& model, const scene::Pose& pose, FastState& stat
     }
     state.lap(Stage::interpolation);
 
-    // Local factor around the contact, where the scene has it.
+    // Local factor around the contact, if the scene has it.
     if (formulas.local_factor()) {
       if (several == nullptr) {
         formulas.apply_local_factor(model.rest, model.local, {region.points.count, region.extent.area_m2},

@@ -16,7 +16,7 @@ enum class Parts : unsigned {
   displace = 1u << 3,  ///< beam skeleton, interpolation, local factor
   normals = 1u << 4,
   press = measure | load,
-  force = find | press,        ///< the answer of a device, before the shape is touched
+  force = find | press,        ///< the result for a device, before the shape is updated
   shape = displace | normals,  ///< follows a force part whose pose was good
   all = force | shape
 };

@@ -3,7 +3,8 @@
 namespace touchstone::fast {
 namespace {
 
-/// Least part of a hat that must be a contact point's own. Two of them a part s of the patch apart leave about 4 s.
+/// Smallest independent part of a contact point's kernel function. For two points at distance s, relative to the patch,
+/// it is about 4 s.
 constexpr double pivot_min = 1.0 / 32.0;
 
 }  // namespace

@@ -5,7 +5,7 @@
 namespace touchstone::fast {
 namespace {
 
-/// Patches whose normals have a smaller cosine at every anchor point of both meet in a crease.
+/// Two patches meet at a crease if the cosine between their normals is smaller than this at every common anchor point.
 constexpr double smooth_cosine = 0.99;
 
 std::size_t corner_of(const Patch& patch, int anchor) noexcept {

@@ -14,7 +14,7 @@ using scene::Vec3;
 
 constexpr std::size_t corners = corners_max;
 
-/// Value of a quantity at p0 by the anchor points alone.
+/// Value of a quantity at p0, interpolated from the anchor points alone.
 template <class Quantity>
 Quantity at_p0(const std::array<Quantity, corners>& corner, const PatchPlace& place, Quantity sum) noexcept {
   for (std::size_t k = 0; k < corners; ++k) sum += place.weight[k] * corner[k];
@@ -25,14 +25,14 @@ const Patch& patch_of(const SurfacePatches& rest, const ContactPoint& contact) n
   return nth(rest.patches, contact.patch);
 }
 
-/// Its hat has a top.
+/// Whether the contact point's kernel function is not zero.
 bool moves(const ContactPoint& contact) noexcept {
   return contact.displacement_m.squaredNorm() > 0.0 && !contact.place.held();
 }
 
 /// Lengths of the displacements at a patch's corners and their angles to the outward normal.
 struct Printed {
-  /// @param contact_m the contact point's displacement as far as its hat reaches the patch
+  /// @param contact_m displacement of the contact point, as far as its kernel function extends over the patch
   Printed(const Patch& patch, const std::vector<Vec3>& anchor_displacement_m, const Vec3& contact_m) noexcept
       : mean_m(contact_m) {
     const std::array<Vec3, corners> u = corner_displacements(patch, anchor_displacement_m);
@@ -43,16 +43,16 @@ struct Printed {
     }
   }
   std::array<double, corners> length_m, angle_rad;
-  Vec3 mean_m;  ///< of the displacements, but for their number; stands in where nothing moves
+  Vec3 mean_m;  ///< sum of the displacements; gives the direction where a corner does not move
 };
 
-/// A corner of a patch that moves.
+/// A corner of a patch whose anchor point moves.
 struct MovingCorner {
   const float* weight;
   float x, y, z;
 };
 
-/// Sum of the displacements of a patch's moving corners by weight, all axes in one pass.
+/// Weighted sum of the displacements of a patch's moving corners, all axes in one pass.
 template <std::size_t count>
 TOUCHSTONE_INLINE void weigh(const MovingCorner* corner, std::size_t begin, std::size_t end, float* x, float* y,
                              float* z) noexcept {
@@ -93,7 +93,7 @@ void interpolate_corrected(const SurfacePatches& rest, const std::vector<Vec3>& 
   for (const Patch& patch : rest.patches) {
     const std::array<Vec3, corners> u = corner_displacements(patch, anchor_displacement_m);
     const auto begin = static_cast<std::size_t>(patch.begin), end = static_cast<std::size_t>(patch.end);
-    // Held corners are most of a body's, and a patch with three repeats one: what adds nothing is not read.
+    // Most corners are fixed, and a patch with three corners repeats one: zero terms are skipped.
     MovingCorner moving[corners];
     std::size_t count = 0;
     for (std::size_t k = 0; k < patch.corners; ++k) {

@@ -10,7 +10,7 @@ namespace touchstone::fast {
 
 /// The contact point that takes part in the interpolation.
 struct ContactPoint {
-  scene::Vec3 displacement_m = scene::Vec3::Zero();  ///< D d; zero on held surface, which does not give
+  scene::Vec3 displacement_m = scene::Vec3::Zero();  ///< D d; zero on the held surface, which does not move
   scene::Vec3 normal = scene::Vec3::UnitZ();         ///< of the rest surface at p0
   int patch = 0;                                     ///< that holds p0
   PatchPlace place;                                  ///< of p0 in it

@@ -14,7 +14,7 @@ double point_factor(const LocalConstants& c, double r_m) noexcept {
   return 1.0 + c.C_n * std::log((r_m + c.C_r_m) / (c.r_R_m + c.C_r_m));
 }
 
-/// Of a disc of the region's area: nearer points are in contact.
+/// Radius of the disc with the region's area: points nearer than that are in contact.
 double contact_radius_m(const RegionSize& size) noexcept { return std::sqrt(size.area_m2 / std::numbers::pi); }
 
 /// 0 below 0, 1 above 1, flat at both ends.
@@ -23,7 +23,7 @@ double smoothstep(double t) noexcept {
   return x * x * (3.0 - 2.0 * x);
 }
 
-/// Share of the displacement that a region this many times as large as a point contact leaves.
+/// Factor on the displacement of a region that is this many times as large as a point contact.
 double area_part(double points) noexcept { return 1.0 / (1.0 + std::log(std::max(1.0, points))); }
 
 double point_areas(const LocalConstants& c, const RegionSize& size) noexcept {

@@ -23,23 +23,23 @@ std::vector<Ring> rings_of(const scene::Surface& surface) {
   return rings;
 }
 
-/// Area below which a vertex's surroundings count as crushed to a line [m^2].
+/// Area below which a vertex's neighbourhood counts as degenerate, crushed to a line [m^2].
 constexpr float crushed_m2 = 1e-16f;
-/// The same for the vertices of a run, in parts of their area at rest.
+/// The same for the vertices of a run, relative to their area at rest.
 constexpr float crushed_rel = 1e-9f;
 
-/// Fewer vertices than this are worked off singly.
+/// Shorter runs are computed vertex by vertex.
 constexpr std::int32_t shortest_run = 4;
-/// Single vertices that a loop works off at once.
+/// Single vertices that are computed in one loop.
 constexpr std::size_t singles_at_once = 32;
-/// Vertices that a register holds: a run is rounded up to that.
+/// Vertices in a vector register: the length of a run is rounded up to a multiple.
 constexpr std::int32_t wide = 8;
-/// A run goes on over as many vertices with other neighbours.
+/// A run continues over at most this many vertices with other neighbours.
 constexpr std::int32_t longest_gap = 2;
 
-/// The neighbour that points most nearly along a direction, by its cosine in steps so that a regular mesh answers alike
-/// at every vertex; `self` where none comes near. Of equals the first in the order given, so that the two sides of a
-/// vertex, asked in opposite orders, give opposite neighbours.
+/// The neighbour closest to a direction by its cosine, in steps so that a regular mesh gives the same result at every
+/// vertex; `self` if none is close. Of equal neighbours the first in the given order: the two sides of a vertex, asked
+/// in opposite orders, then give opposite neighbours.
 template <class Iterator>
 std::int32_t neighbour_along(const scene::Surface& surface, Iterator begin, Iterator end, std::int32_t self,
                              const Vec3& direction) {
@@ -57,7 +57,7 @@ std::int32_t neighbour_along(const scene::Surface& surface, Iterator begin, Iter
   return best;
 }
 
-/// One chord per axis of a run's vertices, from a column or, of a flat run, the first.
+/// One chord per axis of a run's vertices: from a column or, for a flat run, the first value.
 template <bool flat>
 class Chord {
  public:
@@ -93,7 +93,7 @@ TOUCHSTONE_INLINE void update_run(const NormalStencils::Run& run, const NormalSt
   for (std::int32_t v = 0; v < count; ++v) {
     const float px = t1x[v] + (xa[v] - xb[v]), py = t1y[v] + (ya[v] - yb[v]), pz = t1z[v] + (za[v] - zb[v]);
     const float qx = t2x[v] + (xc[v] - xd[v]), qy = t2y[v] + (yc[v] - yd[v]), qz = t2z[v] + (zc[v] - zd[v]);
-    // The part of the normal at rest is far below rounding, unless there is nothing else.
+    // The contribution of the rest normal is far below rounding unless the area vanishes.
     const float cx = (py * qz - pz * qy) + crushed_rel * (t1y[v] * t2z[v] - t1z[v] * t2y[v]);
     const float cy = (pz * qx - px * qz) + crushed_rel * (t1z[v] * t2x[v] - t1x[v] * t2z[v]);
     const float cz = (px * qy - py * qx) + crushed_rel * (t1x[v] * t2y[v] - t1y[v] * t2x[v]);
@@ -104,7 +104,7 @@ TOUCHSTONE_INLINE void update_run(const NormalStencils::Run& run, const NormalSt
   }
 }
 
-/// The single vertices: their surroundings are brought together a batch at a time.
+/// Single vertices: their neighbourhoods are gathered in batches.
 TOUCHSTONE_INLINE void update_singles(const NormalStencils& stencils, SurfaceField& field) noexcept {
   constexpr std::size_t batch = singles_at_once;
   float p[3][batch] = {}, q[3][batch] = {}, n[3][batch];
@@ -130,7 +130,7 @@ TOUCHSTONE_INLINE void update_singles(const NormalStencils& stencils, SurfaceFie
     const float *t1x = t1[0].data() + begin, *t1y = t1[1].data() + begin, *t1z = t1[2].data() + begin;
     const float *t2x = t2[0].data() + begin, *t2y = t2[1].data() + begin, *t2z = t2[2].data() + begin;
     const float *rx = r[0].data() + begin, *ry = r[1].data() + begin, *rz = r[2].data() + begin;
-    // The columns of the singles go on to the end of a batch.
+    // The columns of the single vertices are padded to a full batch.
     for (std::size_t i = 0; i < batch; ++i) {
       const float px = t1x[i] + p[0][i], py = t1y[i] + p[1][i], pz = t1z[i] + p[2][i];
       const float qx = t2x[i] + q[0][i], qy = t2y[i] + q[1][i], qz = t2z[i] + q[2][i];
@@ -165,7 +165,7 @@ void find_runs(const scene::Surface& surface, const std::vector<std::array<std::
     for (std::int32_t& to : out) to -= v;
     return out;
   };
-  // Neighbours on one line say nothing about the normal; only a single keeps that of the rest shape.
+  // Neighbours on one line do not determine the normal; only a single vertex keeps the rest shape's normal.
   const auto spans = [&](std::int32_t v) {
     return t1_m(v).cross(t2_m(v)).norm() > 0.01 * (t1_m(v).squaredNorm() + t2_m(v).squaredNorm());
   };
@@ -191,7 +191,7 @@ void find_runs(const scene::Surface& surface, const std::vector<std::array<std::
         continue;
       }
       for (const std::int32_t single : passed_over) add_single(single);
-      // What is written behind its end is written over by the runs that follow, or by the singles.
+      // Values written past a run's end are overwritten by later runs or by the single vertices.
       const std::int32_t lanes = (run.end - run.begin + wide - 1) / wide * wide;
       const bool in_memory = run.begin + lanes + std::max(*highest, 0) <= surface.vertex_count();
       run.lanes = in_memory ? lanes : run.end - run.begin;
@@ -210,7 +210,7 @@ NormalStencils normal_stencils(const scene::Surface& surface) {
   for (std::int32_t v = 0; v < surface.vertex_count(); ++v) {
     const Ring& ring = nth(rings, v);
     const Vec3 n = surface.normals.col(v);
-    // The first direction is the vertex order's own, so that neighbours lie side by side in memory.
+    // The first direction follows the vertex order, so that neighbours are adjacent in memory.
     const std::int32_t a = ring.count(v + 1) ? v + 1 : v;
     std::int32_t b = ring.count(v - 1) ? v - 1 : v;
     if (a == b) b = *ring.begin();

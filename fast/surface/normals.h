@@ -17,8 +17,8 @@ namespace touchstone::fast {
 /// per side; on the border of a patch the vertex itself replaces the missing neighbour.
 ///
 /// Most vertices have their neighbours at the same offsets as the vertex before and are worked off in runs. A run goes
-/// on over a vertex or two with other neighbours, as from one row of a mesh to the next; what it leaves there is
-/// written over by the pass over the single vertices. So is what it leaves behind its end, or by the runs that follow.
+/// on over a vertex or two with other neighbours, as from one row of a mesh to the next; what it writes there is
+/// overwritten by the pass over the single vertices. So is what it writes past its end, or by the runs that follow.
 struct NormalStencils {
   /// Consecutive vertices whose neighbours lie at the same offsets in the vertex order.
   struct Run {

@@ -28,7 +28,7 @@ TOUCHSTONE_INLINE void apply_factors(const SurfacePatches& rest, const LocalCons
   const auto r_R_m = static_cast<float>(local.r_R_m);
   for (std::size_t p = 0; p < rest.patches.size(); ++p) {
     const Patch& patch = rest.patches[p];
-    // Never beyond the capacity it was given.
+    // Never exceeds the reserved capacity.
     stack.scratch.near.clear();
     for (std::size_t i = 0; i < stack.count(); ++i) {
       if (patch.all.distance2_m2(stack.reach[i].p0_W_m) < r_R_m * r_R_m) stack.scratch.near.push_back(i);
@@ -68,7 +68,7 @@ void interpolate_several_published(const SurfacePatches& rest, ShapeStack& stack
 
 TOUCHSTONE_WIDE_LOOPS
 void interpolate_several_corrected(const SurfacePatches& rest, ShapeStack& stack, SurfaceField& field) noexcept {
-  // Without a contact point: that of the whole stack has a hat per region.
+  // Without a contact point: in a stack every region has its own kernel function.
   interpolate_corrected(rest, stack.anchor_total_m, ContactPoint{}, field);
   float *x = field.displacement_m[0].data(), *y = field.displacement_m[1].data(), *z = field.displacement_m[2].data();
   for (std::size_t k = 0; k < stack.count(); ++k) {

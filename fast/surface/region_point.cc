@@ -30,7 +30,7 @@ Vec3 displacement_at(const SurfacePatches& rest, const AnchorPoints& anchors, co
   return u_m;
 }
 
-/// Lays the points on the stack's block of vertices.
+/// Computes patch coordinates of the points in the stack's block of vertices.
 TOUCHSTONE_INLINE void take_points(const AnchorPoints& anchors, int patch, const PointLanes& lanes,
                                    SurfacePatches& points) noexcept {
   PlaceColumns places;

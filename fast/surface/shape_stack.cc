@@ -10,7 +10,7 @@ namespace {
 
 using scene::Vec3;
 
-/// What both forms keep of a region.
+/// Adds the parts of a region that both formulations use.
 template <class Factor>
 void add_region(const SurfacePatches& rest, const LocalConstants* local, const RegionShape& region,
                 decltype(hat_part)* part_of, ShapeStack& stack) noexcept {

@@ -19,14 +19,14 @@ constexpr double mm = 1e-3, pi = std::numbers::pi;
 /// Points of a curve in a half plane (r, z), in millimetres.
 using Curve = std::vector<Eigen::Vector2d>;
 
-/// Straight on from the last point, in steps of about `step`.
+/// A straight line from the last point, in steps of about `step`.
 void line_to(Curve& curve, const Eigen::Vector2d& end, double step) {
   const Eigen::Vector2d start = curve.back();
   const int n = std::max(1, static_cast<int>(std::lround((end - start).norm() / step)));
   for (int k = 1; k <= n; ++k) curve.push_back(start + (end - start) * k / n);
 }
 
-/// Along a circle from one angle to another.
+/// A circular arc from one angle to another.
 void arc(Curve& curve, const Eigen::Vector2d& center, double radius, double from, double to, double step) {
   const int n = std::max(2, static_cast<int>(std::lround(radius * std::abs(to - from) / step)));
   for (int k = 1; k <= n; ++k) {
@@ -35,7 +35,7 @@ void arc(Curve& curve, const Eigen::Vector2d& center, double radius, double from
   }
 }
 
-/// Rings of vertices one above the other; a ring of no segments is a single vertex.
+/// Rings of vertices above each other; a ring of no segments is a single vertex.
 struct Rings {
   TriangleMesh mesh;
   std::vector<Vec3> points;
@@ -73,7 +73,7 @@ int quarter_segments(double radius, double step) {
   return radius < 1e-9 ? 0 : std::max(1, static_cast<int>(std::lround(0.5 * pi * radius / step)));
 }
 
-/// A profile turned about z.
+/// A surface of revolution about z.
 /// @param step_at  length of the facets along the circle at a height
 template <class Step>
 TriangleMesh turned(const Curve& curve, const Step& step_at) {
@@ -91,7 +91,7 @@ TriangleMesh turned(const Curve& curve, const Step& step_at) {
   return rings.finish();
 }
 
-/// A disc-like head at the bottom, face down, and a round handle up to the tail: one profile turned about z.
+/// A disc-shaped head at the bottom, face down, and a round handle up to the tail: one surface of revolution.
 TriangleMesh mallet() {
   constexpr double step = 1.2, tail_step = 0.4;
   constexpr double head_radius = 12.0, head_length = 25.0, head_edge = 3.0;
@@ -104,13 +104,13 @@ TriangleMesh mallet() {
   arc(curve, {head_radius - head_edge, head_length - head_edge}, head_edge, 0.0, 0.5 * pi, step);
   line_to(curve, {handle_radius + neck, head_length}, step);
   arc(curve, {handle_radius + neck, head_length + neck}, neck, 1.5 * pi, pi, step);
-  // The tail is round: half a ball.
+  // The tail is a half ball.
   line_to(curve, {handle_radius, top - handle_radius}, step);
   arc(curve, {0.0, top - handle_radius}, handle_radius, 0.0, 0.5 * pi, tail_step);
   return turned(curve, [=](double z) { return z < top - handle_radius ? step : tail_step; });
 }
 
-/// A straight rod with half a ball at either end, upright, its lower tip at z = 0.
+/// A straight rod with a half ball at either end, upright, its lower tip at z = 0.
 TriangleMesh stylus() {
   constexpr double step = 2.0, tip_step = 0.8, radius = 5.0, length = 30.0;
   Curve curve{{0.0, 0.0}};
@@ -120,10 +120,10 @@ TriangleMesh stylus() {
   return turned(curve, [=](double z) { return z <= radius ? tip_step : step; });
 }
 
-/// Two parallel pins, tips down at z = 0, joined by half a ring: a round tube along a U with half a ball at either end.
+/// Two parallel pins, tips down at z = 0, joined by half a ring: a round tube along a U with a half ball at either end.
 TriangleMesh compass() {
   constexpr double step = 1.0, tip_step = 0.25, radius = 2.5, half_apart = 12.0, pin_length = 30.0;
-  // Along the U: way from the first tip's ball centre, up, around, down.
+  // Arc length along the U: from the first tip's ball centre up, around and down.
   const double straight = pin_length - radius, around = pi * half_apart, length = 2.0 * straight + around;
   const auto frame = [&](double way, Vec3& center, Vec3& along) {
     if (way <= straight) {
@@ -138,7 +138,7 @@ TriangleMesh compass() {
       along = Vec3(-std::sin(angle), 0.0, std::cos(angle));
     }
   };
-  // The profile over the way: half a ball, the tube, half a ball.
+  // The profile over the arc length: half ball, tube, half ball.
   Curve curve{{0.0, -radius}};
   arc(curve, {0.0, 0.0}, radius, -0.5 * pi, 0.0, tip_step);
   line_to(curve, {radius, straight}, step);

@@ -22,8 +22,8 @@ namespace {
 using scene::Scene;
 using scene::Vec3;
 
-/// Nodes of a cell that the serendipity element keeps: places in lexicographic order, in CalculiX's order (corners,
-/// then the middles of the edges).
+/// Nodes of a cell that the serendipity element has: indices in lexicographic order, in CalculiX's order (corners, then
+/// edge midpoints).
 template <int dim>
 struct Kept;
 template <>
@@ -34,7 +34,7 @@ template <>
 struct Kept<3> {
   static constexpr std::array places{0, 2, 8, 6, 18, 20, 26, 24, 1, 5, 7, 3, 19, 23, 25, 21, 9, 11, 17, 15};
 };
-/// Middles of a cell's sides in CalculiX's order of faces.
+/// Centres of a cell's faces in CalculiX's order.
 template <int dim>
 constexpr auto side_middles() {
   if constexpr (dim == 2) {
@@ -48,7 +48,7 @@ constexpr auto side_middles() {
 template <int dim>
 class ReducedMesh {
  public:
-  /// A displacement as the weighted sum of others, which are free.
+  /// A displacement as a weighted sum of free ones.
   using Sum = std::map<int, double>;
 
   explicit ReducedMesh(Mesh<dim> mesh) : mesh_(std::move(mesh)), kept_(mesh_.node_count()) {
@@ -71,12 +71,12 @@ class ReducedMesh {
 
   [[nodiscard]] const Mesh<dim>& mesh() const { return mesh_; }
   [[nodiscard]] bool kept(int node) const { return kept_[node] != 0; }
-  /// Kept, and not the weighted sum of others.
+  /// A node of the deck that is not tied to others.
   [[nodiscard]] bool free(int node) const { return kept_[node] && !ties_.contains(node); }
   [[nodiscard]] const std::map<int, Sum>& ties() const { return ties_; }
 
  private:
-  /// The eight nodes around the middle of every side, corners first.
+  /// The eight nodes around the centre of every face, corners first.
   void find_side_middles() {
     for (const auto& cell : mesh_.cells) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -87,8 +87,8 @@ class ReducedMesh {
             const int place[3] = {a % 3, a / 3 % 3, a / 9};
             if (place[axis] == layer) side[next++] = cell[a];
           }
-          // Kept only as the corner of smaller cells on the other side, and otherwise needed as a hanging node's
-          // master.
+          // A node that is in the deck only as a corner of smaller cells on the other side, or as the master of a
+          // hanging node.
           if (!hanging_.contains(side[4])) {
             around_[side[4]] = {side[0], side[2], side[6], side[8], side[1], side[3], side[5], side[7]};
           }
@@ -97,7 +97,8 @@ class ReducedMesh {
     }
   }
 
-  /// The trace of a serendipity element is the nine-node one whose middle has the value of the former.
+  /// The trace of a serendipity element equals that of the nine-node element whose centre node has the interpolated
+  /// value.
   void add(int node, double weight, Sum& sum) const {
     if (const auto found = hanging_.find(node); found != hanging_.end()) {
       for (const auto& [master, share] : found->second->masters) add(master, weight * share, sum);
@@ -117,7 +118,7 @@ class ReducedMesh {
 
 constexpr const char* support_set = "SUPPORT";
 
-/// Instants of the deck: from the first that touches, and the pose before it.
+/// Instants of the deck: from the first one in contact, and the pose before it.
 struct Path {
   scene::Pose start;
   std::vector<int> instants;
@@ -126,7 +127,7 @@ struct Path {
 };
 
 Path path_of(const Scene& scene) {
-  constexpr double shallowest_share = 1e-6;  // of the largest depth: less is rounding
+  constexpr double shallowest_share = 1e-6;  // of the largest depth; smaller ones are round-off
   const auto body = scene::body_shape(scene.body);
   std::vector<double> depths_m;
   Path path;
@@ -138,7 +139,7 @@ Path path_of(const Scene& scene) {
   path.deepest_m = *std::max_element(depths_m.begin(), depths_m.end());
   const auto touches = [&](double depth_m) { return depth_m > shallowest_share * path.deepest_m; };
   const auto first = std::find_if(depths_m.begin(), depths_m.end(), touches) - depths_m.begin();
-  // A scene begins with the tool apart.
+  // A scene begins without contact.
   path.start = path.poses[std::max<std::ptrdiff_t>(first - 1, 0)];
   path.poses.erase(path.poses.begin(), path.poses.begin() + first);
   path.instants.resize(path.poses.size());
@@ -146,7 +147,7 @@ Path path_of(const Scene& scene) {
   return path;
 }
 
-/// Pressure over overclosure. Hertz's mean pressure 4 E* d / (3 pi a) over it is the depth lost.
+/// Pressure over overclosure. The depth lost is Hertz's mean pressure 4 E* d / (3 pi a) divided by this.
 double contact_stiffness_pa_per_m(const Scene& scene, const ModelChoice& choice) {
   constexpr double share = 1000.0;
   return share * scene.body.material.contact_modulus_pa() / choice.half_width_m;
@@ -164,7 +165,8 @@ class Writer {
         path_(path_of(scene)),
         body_(level_mesh<dim>(scene, choice, options.level)),
         small_(scene.reference.kinematics == scene::Kinematics::small),
-        // Seen with 2.20: a face that the axis shrinks to an edge carries no contact, and its nodes enter the tool.
+        // Observed with version 2.20: a face that the axis reduces to an edge carries no contact, and its nodes
+        // penetrate the tool.
         bore_m_(1e-3 * element_size_m(scene, choice, options.level)) {
     text_ << std::setprecision(12);
   }
@@ -174,7 +176,7 @@ class Writer {
                   (small_ ? "small strain" : "finite strain");
     deck_.axisymmetric = dim == 2;
     deck_.instants = path_.instants;
-    // CalculiX turns the meridian plane into a sector of two degrees.
+    // CalculiX models the meridian plane as a sector of two degrees.
     constexpr double sectors = 180.0;
     const double images = dim == 2 ? sectors : (choice_.mirror_x ? 2.0 : 1.0) * (choice_.mirror_y ? 2.0 : 1.0);
     deck_.whole_body = Vec3::Constant(images);
@@ -199,8 +201,8 @@ class Writer {
   void header(double images) {
     text_ << "** " << (scene_.title.empty() ? scene_.name : scene_.title) << "\n"
           << "** " << deck_.model << ", SI units, written by touchstone export\n**\n"
-          << "** Run it as: ccx -i NAME, where this file is NAME.inp. The answers stand in NAME.dat.\n"
-          << "** Step k ends at the time its comment says. \"total force ... for set " << deck_tool_set
+          << "** Run it as: ccx -i NAME, where this file is NAME.inp. The results are in NAME.dat.\n"
+          << "** Step k ends at the time in its comment. \"total force ... for set " << deck_tool_set
           << "\" holds the tool in its place\n"
           << "** in this model; minus " << images
           << " times as much acts on the tool from the whole body. (The sum of the "
@@ -212,7 +214,7 @@ class Writer {
     if (choice_.dim == 3 && (choice_.mirror_x || choice_.mirror_y)) {
       text_ << "** (Components across a symmetry plane cancel in the whole body.)\n";
     }
-    if (!scene_.body.inclusions.empty()) text_ << "** Every element is of the material at its middle.\n";
+    if (!scene_.body.inclusions.empty()) text_ << "** Every element has the material at its centre.\n";
     if (scene_.contact.friction) {
       text_
           << "** Friction is Coulomb's with the scene's mu_D alone; the static limit K F_n^beta has no counterpart.\n";
@@ -234,7 +236,7 @@ class Writer {
     text_ << '\n';
   }
 
-  /// @param bore_m  no node of a meridian is nearer to the axis
+  /// @param bore_m  smallest distance of a meridian's node from the axis
   void node(int number, Point place_m, double bore_m) {
     if (dim == 2) place_m[0] = std::max(place_m[0], bore_m);
     text_ << number;
@@ -301,7 +303,7 @@ class Writer {
     list(nodes);
   }
 
-  /// Whether the tool ever comes as near to a place of the body at rest as it goes deep.
+  /// Whether the tool ever comes as close to a point of the body at rest as its largest depth.
   [[nodiscard]] bool reached(const Vec3& place_m) const {
     return std::any_of(path_.poses.begin(), path_.poses.end(), [&](const scene::Pose& pose) {
       return choice_.tool->at(pose.orientation.conjugate() * (place_m - pose.position_m)).value_m < path_.deepest_m;
@@ -309,7 +311,7 @@ class Writer {
   }
 
   void contact_faces(const Mesh<dim>& mesh) {
-    std::map<int, std::pair<int, int>> sides;  // by the middle: element and its side, from 1
+    std::map<int, std::pair<int, int>> sides;  // by the face's centre: element and its face, counted from 1
     for (int c = 0; c < mesh.cell_count(); ++c) {
       constexpr auto middles = side_middles<dim>();
       for (std::size_t side = 0; side < middles.size(); ++side) {
@@ -328,7 +330,7 @@ class Writer {
     }
   }
 
-  /// The tool at its first place.
+  /// The tool at its first pose.
   void tool_elements() {
     first_tool_node_ = body_.mesh().node_count() + 1;
     const scene::Pose& start = path_.start;
@@ -379,7 +381,7 @@ class Writer {
     const Mesh<dim>& mesh = body_.mesh();
     std::vector<std::vector<int>> cells(mesh.inclusion_materials.size() + 1);
     for (int c = 0; c < mesh.cell_count(); ++c) {
-      // The middle Gauss point is the cell's middle.
+      // The middle Gauss point is the cell's centre.
       const auto* materials = mesh.materials_of(c);
       cells[materials ? (*materials)[Mesh<dim>::nodes_per_cell / 2] : 0].push_back(c + 1);
     }

@@ -25,7 +25,7 @@ double side_m(const ModelChoice& choice) {
   return side_m;
 }
 
-/// Of the zero set of the distance, the point that its gradient leads to.
+/// The point on the zero set of the distance that its gradient leads to.
 Vec3 onto_surface_m(const ToolDistance& distance, Vec3 p_T_m) {
   for (int step = 0; step < 3; ++step) {
     const Gap<3> gap = distance.at(p_T_m);
@@ -34,13 +34,13 @@ Vec3 onto_surface_m(const ToolDistance& distance, Vec3 p_T_m) {
   return p_T_m;
 }
 
-/// A disc of core_radius_m, its rim rounded by round_m, on a cylinder: what sphere, capsule and cylinder are from
-/// below.
+/// A disc of core_radius_m, its rim rounded by round_m, on a cylinder: the shape of sphere, capsule and cylinder as
+/// seen from below.
 struct Meridian {
   double core_radius_m, round_m, straight_m;  ///< straight_m: length of the cylinder's side
   double lowest_m;                            ///< over the mass centre
   [[nodiscard]] double arc_m() const { return 0.5 * std::numbers::pi * round_m; }
-  /// At a distance along the profile from the axis, moved in by inset_m.
+  /// Point at an arc length from the axis along the profile, moved inwards by inset_m.
   [[nodiscard]] Vec2 at(double s_m, double inset_m) const {
     if (s_m <= core_radius_m) return {s_m, lowest_m + inset_m};
     const double angle = std::min(s_m - core_radius_m, arc_m()) / round_m;
@@ -68,14 +68,14 @@ Meridian meridian(const scene::Tool& tool, const Eigen::Quaterniond& orientation
 ToolCoat<2> meridian_coat(const scene::Tool& tool, const Eigen::Quaterniond& orientation, const ModelChoice& choice) {
   const Meridian profile = meridian(tool, orientation);
   const double longest_m = side_m(choice), thickness_m = 0.25 * profile.round_m;
-  // Cut where the curvature jumps.
+  // The profile is divided where its curvature jumps.
   std::vector<double> cuts_m{0.0};
   for (const double length_m : {profile.core_radius_m, profile.arc_m(), profile.straight_m}) {
     const int pieces = static_cast<int>(std::ceil(length_m / longest_m));
     const double begin_m = cuts_m.back();
     for (int piece = 1; piece <= pieces; ++piece) cuts_m.push_back(begin_m + length_m * piece / pieces);
   }
-  // Per cut, from outside in: corner, middle, corner; per piece the middles of its outer and its inner side.
+  // Per division, from outside inwards: corner, middle, corner; per piece the middles of its outer and its inner side.
   const int pieces = static_cast<int>(cuts_m.size()) - 1;
   ToolCoat<2> coat;
   coat.points_m.resize(2, 5 * pieces + 3);
@@ -96,7 +96,7 @@ ToolCoat<2> meridian_coat(const scene::Tool& tool, const Eigen::Quaterniond& ori
 ToolCoat<3> surface_coat(const scene::Tool& tool, const ModelChoice& choice,
                          const std::function<bool(const Vec3& p_T_m)>& meets) {
   const bool flat = tool.shape == ToolShape::mesh;
-  // A shape's patches have corners of their own along their common edges.
+  // The patches of a shape do not share the corners along their common edges.
   scene::RawMesh mesh;
   if (flat) {
     const scene::TriangleMesh given = scene::tool_mesh(tool);
@@ -122,7 +122,7 @@ ToolCoat<3> surface_coat(const scene::Tool& tool, const ModelChoice& choice,
     points_m.push_back(point_m);
     return static_cast<int>(points_m.size()) - 1;
   };
-  std::map<std::pair<int, int>, int> corners_and_middles;  // of the surface: neighbours share them
+  std::map<std::pair<int, int>, int> corners_and_middles;  // of the surface; neighbours share them
   const auto surface_node = [&](int v, int w) {
     const auto [place, fresh] = corners_and_middles.try_emplace(std::minmax(v, w), -1);
     if (fresh) {
@@ -135,7 +135,7 @@ ToolCoat<3> surface_coat(const scene::Tool& tool, const ModelChoice& choice,
     if (!near[t[0]] && !near[t[1]] && !near[t[2]]) continue;
     const Vec3& corner_m = mesh.points[t[0]];
     const Vec3 across = (mesh.points[t[1]] - corner_m).cross(mesh.points[t[2]] - corner_m);
-    // Every triangle's back is its own, straight behind it, so that no edge of the tool is too sharp for it.
+    // Every triangle has its own inner nodes, straight behind it, so that sharp edges of the tool are no problem.
     const Vec3 inward_m = -0.5 * across / std::sqrt(across.norm());
     std::array<int, ToolCoat<3>::nodes_per_element> element;
     for (int k = 0; k < 3; ++k) {

@@ -16,7 +16,7 @@ Function* loaded_function(const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
 }
 
-/// What OpenBLAS maps for a thread, with something to spare. It does not give up where it cannot.
+/// Memory that OpenBLAS maps per thread, with a margin. OpenBLAS does not give up if it cannot map it.
 constexpr std::size_t bytes_per_thread = std::size_t{129} << 20;
 
 bool can_be_mapped(int threads) {
@@ -35,7 +35,7 @@ int blas_threads() {
   return threads ? threads() : 1;
 }
 
-/// A call that makes OpenBLAS map what the calling thread needs; it is kept for those that follow.
+/// A call that makes OpenBLAS map the calling thread's memory, which it keeps.
 void take_memory() {
   auto* factorise =
       loaded_function<void(const char*, const std::int64_t*, double*, const std::int64_t*, std::int64_t*)>("dpotrf_");

@@ -9,8 +9,8 @@
 namespace touchstone::reference {
 namespace {
 
-/// A factorisation multiplies blocks in the cache, a solve streams the factor from memory. Operations per second of the
-/// one over the other, measured on factors of 0.1 to 0.3 GB with one thread: 4 to 6.
+/// A factorisation multiplies blocks in the cache; a solve streams the factor from memory. Ratio of their operations
+/// per second, measured on factors of 0.1 to 0.3 GB with one thread: 4 to 6.
 constexpr double factor_speed_over_solve_speed = 5.0;
 
 }  // namespace
@@ -60,7 +60,7 @@ CholmodSolver::CholmodSolver(int threads) : state_(std::make_unique<State>()) {
   cholmod_l_start(&state_->common);
   state_->common.supernodal = CHOLMOD_SUPERNODAL;
   state_->common.print = 0;
-  // Two candidates, the one with the sparser factor wins.
+  // Two orderings are tried; the one with the sparser factor is used.
   state_->common.nmethods = 2;
   state_->common.method[0].ordering = CHOLMOD_METIS;
   state_->common.method[1].ordering = CHOLMOD_AMD;

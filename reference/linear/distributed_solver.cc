@@ -10,7 +10,7 @@
 namespace touchstone::reference {
 namespace {
 
-constexpr int use_all_ranks = -987654;  // MUMPS' name for MPI_COMM_WORLD, which so needs no MPI here
+constexpr int use_all_ranks = -987654;  // MUMPS' constant for MPI_COMM_WORLD; no MPI header is needed here
 enum Job { initialise = -1, end = -2, analysis = 1, factorisation = 2, solution = 3 };
 
 // INFOG(1) of a factorisation.
@@ -30,9 +30,9 @@ struct DistributedSolver::State {
   DMUMPS_STRUC_C mumps{};
   const ranks::Lead* lead;
   int threads;
-  std::vector<MUMPS_INT> row, column;  // one-based, as MUMPS has them
+  std::vector<MUMPS_INT> row, column;  // counted from one, as in MUMPS
 
-  // With the numbers of the manual.
+  // Indexed as in the manual.
   MUMPS_INT& icntl(int k) { return mumps.icntl[k - 1]; }
   [[nodiscard]] int infog(int k) const { return mumps.infog[k - 1]; }
 
@@ -65,7 +65,7 @@ struct DistributedSolver::State {
   void factorise_share(const SymmetricMatrix& part) {
     mumps.a_loc = const_cast<double*>(part.value.data());  // read only
     call(factorisation);
-    // Pivoting may need more than the analysis could know. All ranks see the same INFOG and so do the same.
+    // Pivoting may need more memory than the analysis estimated. All ranks see the same INFOG and so decide alike.
     while (workspace_was_too_small(infog(1)) && icntl(14) < 1000) {
       icntl(14) *= 2;
       call(factorisation);
@@ -85,10 +85,10 @@ DistributedSolver::DistributedSolver(const ranks::Lead* lead, int threads) : sta
   set_blas_threads(threads);
   state_->mumps.comm_fortran = use_all_ranks;
   state_->mumps.par = 1;  // the first rank works too
-  state_->mumps.sym = 2;  // symmetric, of either sign
+  state_->mumps.sym = 2;  // symmetric indefinite
   state_->call(initialise);
-  for (const int channel : {1, 2, 3, 4}) state_->icntl(channel) = 0;  // silent
-  state_->icntl(18) = 3;   // every rank gives its entries; equal places are summed
+  for (const int channel : {1, 2, 3, 4}) state_->icntl(channel) = 0;  // no output
+  state_->icntl(18) = 3;   // every rank gives its entries; equal entries are summed
   state_->icntl(28) = 1;   // the ordering is made on the first rank,
   state_->icntl(7) = 5;    // by METIS
   state_->icntl(13) = 1;   // pivots are not counted in a last block given to ScaLAPACK

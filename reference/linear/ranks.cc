@@ -23,14 +23,14 @@ struct World {
 };
 World world;
 
-/// What the first rank says between two pieces of common work.
+/// The first rank's order to the others between collective operations.
 struct Message {
   enum Kind { make, order, drop, end } kind;
   int part;
   int what;  ///< make: the kind of part; order: which
 };
 
-/// MPI counts in int, and what is sent may be larger than 2 GB.
+/// MPI counts in int, and a message may be larger than 2 GB.
 template <class Piece>
 void in_pieces(std::size_t size, const Piece& piece) {
   constexpr std::size_t most = std::size_t{1} << 28;
@@ -45,7 +45,7 @@ void say(Message message) {
   MPI_Wait(&request, MPI_STATUS_IGNORE);
 }
 
-/// Waits asleep: the first rank may be busy for long with what only it does, and may need this processor.
+/// Waits asleep: the first rank may compute alone for long and may need this processor.
 Message hear() {
   Message message{};
   MPI_Request request;
@@ -60,11 +60,11 @@ Message hear() {
   }
 }
 
-/// By these, Open MPI's mpirun and PMIx launchers such as srun tell a process that it is one of several. Looking at
-/// them first keeps a plain start free of MPI.
+/// Open MPI's mpirun and PMIx launchers such as srun set these for every process. Checking them first keeps an ordinary
+/// start free of MPI.
 bool launched_with_others() { return std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMIX_RANK"); }
 
-/// A processor that n ranks may run on counts as 1 / n for each of them.
+/// A processor that n ranks may use counts as 1 / n for each of them.
 int fair_threads(MPI_Comm machine, int ranks_there) {
   if (std::getenv("OMP_NUM_THREADS")) return threads_to_use();
   cpu_set_t own;
@@ -95,7 +95,7 @@ Session::Session() {
   world.threads = fair_threads(machine, world.on_this_machine);
   MPI_Comm_free(&machine);
   if (first()) return;
-  // Such a signal reaches every rank. The first one ends its step and then lets the others go.
+  // Such a signal reaches every rank. The first one ends its step and then stops the others.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);
 }
 
@@ -137,7 +137,7 @@ double largest_on_first(double value) {
 }
 
 void end_all(const char* message) {
-  std::fprintf(stderr, "rank %d of %d cannot go on: %s\n", own() + 1, count(), message);
+  std::fprintf(stderr, "rank %d of %d cannot continue: %s\n", own() + 1, count(), message);
   std::fflush(stderr);
   MPI_Abort(MPI_COMM_WORLD, EXIT_FAILURE);
   std::abort();

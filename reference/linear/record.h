@@ -1,4 +1,4 @@
-// Plain numbers as bytes, for files and messages. What is kept of a type stands in one list, which serves both
+// Plain numbers as bytes, for files and messages. The stored members of a type are in one list, used for both
 // directions: `template <class Archive> void serialize(Archive& archive, auto& step) { archive(step.time_s, ...); }`.
 #pragma once
 

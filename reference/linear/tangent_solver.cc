@@ -12,7 +12,7 @@
 namespace touchstone::reference {
 namespace {
 
-/// Ends conjugate gradients from within a product.
+/// Ends conjugate gradients from within a matrix-vector product.
 struct NegativeCurvature {};
 
 class Tangent;
@@ -28,8 +28,9 @@ struct traits<touchstone::reference::Tangent> : traits<SparseMatrix<double>> {};
 namespace touchstone::reference {
 namespace {
 
-/// L^-1 P K P' L^-T as Eigen's iterative solvers want it, P' L L' P an older K: nearly the identity. A residual's
-/// length is then an energy, which weighs stiff and soft directions alike.
+/// The preconditioned matrix L^-1 P K P' L^-T in the form that Eigen's iterative solvers need. P' L L' P is an earlier
+/// K, so it is close to the identity. The square of a residual's norm is an energy, which weights stiff and soft
+/// directions alike.
 class Tangent : public Eigen::EigenBase<Tangent> {
  public:
   using Scalar = double;
@@ -108,7 +109,7 @@ void TangentSolver::solve(Eigen::VectorXd& x) {
 }
 
 bool TangentSolver::worth_keeping(double tolerance_rel) const {
-  // The mean cost of a solve falls as long as one costs less than the mean so far.
+  // Refactorise when a solve costs more than the mean cost so far.
   const double cost = cholesky_.factor_cost_in_solves();
   const double expected = -std::log10(tolerance_rel) / decades_per_iteration_;
   return has_factor_ && cost > cheap_factor && expected < (cost + iterations_) / solves_;
@@ -148,7 +149,7 @@ bool TangentSolver::iterate(const SymmetricMatrix& K, double tolerance_rel, Eige
 bool TangentSolver::positive_definite(const SymmetricMatrix& K) {
   if (factor_is_current_) return true;
   if (has_factor_) {
-    // Signs from the bits of a generator that is the same everywhere.
+    // Random signs, from a generator that gives the same bits on every machine.
     std::mt19937 bits(1);
     Eigen::VectorXd x = Eigen::VectorXd::NullaryExpr(K.size(), [&] { return bits() & 1U ? 1.0 : -1.0; });
     if (iterate(K, probe_tolerance_rel, x)) return true;

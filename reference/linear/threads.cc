@@ -24,7 +24,7 @@ int threads_to_use() {
 
 int idle_processors() {
   const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  // The least of some looks: what runs for a moment only is no load.
+  // The smallest of several readings: a process that runs only for a moment is no load.
   int others = processors;
   for (int look = 0; look < 8 && others > 0; ++look) {
     if (look > 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -36,7 +36,7 @@ int idle_processors() {
 }
 
 int runnable_threads(std::string_view loadavg) noexcept {
-  // "0.00 0.01 0.05 1/123 4567": three means over time, running threads/all threads, the last process
+  // "0.00 0.01 0.05 1/123 4567": three load averages, running threads/all threads, the last process
   for (int word = 0; word < 3; ++word) loadavg.remove_prefix(std::min(loadavg.find(' ') + 1, loadavg.size()));
   int count = 0;
   std::from_chars(loadavg.data(), loadavg.data() + loadavg.size(), count);

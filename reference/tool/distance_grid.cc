@@ -13,7 +13,7 @@ using scene::Vec3;
 /// Grid points beyond the mesh's bounding box on every side; the spline is defined up to the last but one.
 constexpr int margin = 4;
 
-/// The nearest point of a triangle: on which corner (0 to 2), edge from corner k - 3 (3 to 5), or the inside (6).
+/// The closest feature of a triangle: corner (0 to 2), edge from corner k - 3 (3 to 5), or the interior (6).
 struct Foot {
   Vec3 point_m;
   int feature;
@@ -40,7 +40,7 @@ Foot foot_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c
   return {a + vb / all * ab + vc / all * ac, 6};
 }
 
-/// A mesh with what the sign of a distance needs.
+/// A mesh with the normals that give the sign of a distance.
 class SignedTriangles {
  public:
   explicit SignedTriangles(const TriangleMesh& mesh) : mesh_(mesh), corner_normals_(vertex_normals(mesh)) {
@@ -64,7 +64,7 @@ class SignedTriangles {
     return foot_on_triangle(p, point(t[0]), point(t[1]), point(t[2]));
   }
   [[nodiscard]] double distance_m(int triangle, const Vec3& p) const { return (p - foot(triangle, p).point_m).norm(); }
-  /// Right when this triangle is the nearest one.
+  /// Valid if this triangle is the closest one.
   [[nodiscard]] bool inside(int triangle, const Vec3& p) const {
     const Foot nearest = foot(triangle, p);
     const Vec3 normal = nearest.feature < 3   ? Vec3(corner_normals_.col(mesh_.triangles[triangle][nearest.feature]))
@@ -80,8 +80,8 @@ class SignedTriangles {
   std::vector<std::array<Vec3, 3>> edge_normals_;
 };
 
-/// Values at equal steps along a line become coefficients of the cubic B-splines through them, without bend at the
-/// ends.
+/// Converts values at equal steps along a line to coefficients of the interpolating cubic B-splines, with zero second
+/// derivative at the ends.
 void to_spline(std::vector<double>& line, std::vector<double>& scratch) {
   // Thomas algorithm for (c[i-1] + 4 c[i] + c[i+1]) / 6 = f[i] between the ends, where c = f.
   const int n = static_cast<int>(line.size());
@@ -94,7 +94,7 @@ void to_spline(std::vector<double>& line, std::vector<double>& scratch) {
   for (int i = n - 2; i > 0; --i) line[i] -= scratch[i] * line[i + 1];
 }
 
-/// The four B-splines that reach a place t in [0, 1) of an interval, with two derivatives by t.
+/// The four B-splines that are not zero at t in [0, 1) of an interval, with two derivatives by t.
 struct Weights {
   explicit Weights(double t) {
     const double s = 1.0 - t;
@@ -165,7 +165,7 @@ double grid_spacing_m(const TriangleMesh& mesh) {
 }
 
 DistanceGrid::DistanceGrid(const TriangleMesh& mesh, double spacing_m) : spacing_m_(spacing_m), bounds_(mesh.bounds()) {
-  // Centred on the mesh, so that a mesh's mirror planes are the grid's.
+  // Centred on the mesh, so that the mesh's symmetry planes are the grid's.
   const Vec3 extent_m = bounds_.upper_m - bounds_.lower_m;
   for (int axis = 0; axis < 3; ++axis) {
     count_[axis] = static_cast<int>(std::ceil(extent_m[axis] / spacing_m - 1e-9)) + 1 + 2 * margin;
@@ -213,8 +213,8 @@ void DistanceGrid::sample(const TriangleMesh& mesh) {
   std::vector<char> exact(points), inside(points, -1);
   for (std::size_t at = 0; at < points; ++at) exact[at] = distance_m[at] <= exact_spacings * spacing_m_;
 
-  // Eight sweeps, one towards each corner of the grid: every point learns from the seven behind it. A point farther off
-  // than a spacing is on its neighbours' side of the surface.
+  // Fast sweeping: eight sweeps, one towards each corner of the grid; every point is updated from its seven
+  // predecessors. A point more than a spacing away has the sign of its neighbours.
   for (int sweep = 0; sweep < 8; ++sweep) {
     const std::array<int, 3> step = {sweep & 1 ? -1 : 1, sweep & 2 ? -1 : 1, sweep & 4 ? -1 : 1};
     const auto range = [&](int axis, int n) { return step[axis] > 0 ? n : count_[axis] - 1 - n; };
@@ -272,7 +272,7 @@ Gap<3> DistanceGrid::at(const Vec3& p_T_m) const {
   }
   const std::array<Weights, 3> w = {Weights(place[0] - cell[0]), Weights(place[1] - cell[1]),
                                     Weights(place[2] - cell[2])};
-  // Sums along x, then y, then z; xx means twice differentiated by x.
+  // Sums along x, then y, then z; xx is the second derivative by x.
   double value = 0.0;
   Vec3 slope = Vec3::Zero();
   double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, xz = 0.0, yz = 0.0;

@@ -26,7 +26,7 @@ inline constexpr double grid_points_max = 4e6;
 /// forces are lambda grad g with the gradient as it is, and nothing needs its length. Within two spacings of the
 /// surface the samples are exact: distance to the nearest triangle, sign by the angle-weighted normal of the nearest
 /// feature (J. A. Baerentzen, H. Aanaes, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243-253). Farther off the nearest
-/// triangle is handed on from point to point (R. Bridson, fast sweeping), which may miss it by a hair. Beyond the grid
+/// triangle is handed on from point to point (R. Bridson, fast sweeping), which may miss it slightly. Beyond the grid
 /// the gap is infinite.
 class DistanceGrid final : public ToolDistance {
  public:

@@ -14,7 +14,7 @@ using scene::Bounds;
 using scene::Mat3;
 using scene::Vec3;
 
-/// Curvatures near a centre of curvature stay below this many over the half width.
+/// Curvatures near a centre of curvature are limited to this many over the half width.
 constexpr double steepest = 1e3;
 
 class Ball final : public ToolDistance {
@@ -23,7 +23,7 @@ class Ball final : public ToolDistance {
   [[nodiscard]] Gap<3> at(const Vec3& p_T_m) const override {
     const Vec3 from_center_m = p_T_m - center_m_;
     const double distance_m = from_center_m.norm();
-    // At the very centre every direction is as good; the tool's lowest point is below it.
+    // At the centre all directions are equivalent; take the tool's lowest point.
     const Vec3 n = distance_m > 0.0 ? Vec3(from_center_m / distance_m) : Vec3(-Vec3::UnitZ());
     return {distance_m - radius_m_, n,
             (Mat3::Identity() - n * n.transpose()) / std::max(distance_m, radius_m_ / steepest)};
@@ -38,7 +38,7 @@ class Ball final : public ToolDistance {
   double radius_m_;
 };
 
-/// All points within round_m of a core: a cylinder about z, for a capsule without radius.
+/// Distance to all points within round_m of a core: a cylinder about z, or a segment for a capsule.
 class RoundCylinder final : public ToolDistance {
  public:
   RoundCylinder(const Vec3& center_m, double core_radius_m, double core_half_m, double round_m)
@@ -80,7 +80,7 @@ class RoundCylinder final : public ToolDistance {
   double core_radius_m_, core_half_m_, round_m_;
 };
 
-/// All points within round_m of a core box.
+/// Distance to all points within round_m of a core box.
 class RoundBox final : public ToolDistance {
  public:
   RoundBox(const Vec3& center_m, const Vec3& core_half_m, double round_m)
@@ -112,8 +112,8 @@ class RoundBox final : public ToolDistance {
   double round_m_;
 };
 
-/// The mesh's grid, the last one where it is of the same mesh: it takes seconds, and a scene's model, its errors and
-/// the next contact of a study all ask for it.
+/// The grid of the mesh, kept from the last call. It takes seconds, and a scene's model, its errors and the next
+/// contact of a study ask for the same mesh.
 std::shared_ptr<const ToolDistance> distance_grid(const scene::TriangleMesh& mesh) {
   static std::mutex one_at_a_time;
   static scene::TriangleMesh last;

@@ -10,7 +10,8 @@ namespace {
 
 using scene::Vec3;
 
-/// First place of the line p + s direction on the surface, coming from s = -infinity; infinite when it passes by.
+/// First intersection of the line p + s direction with the surface, coming from s = -infinity; infinite if there is
+/// none.
 double first_hit_m(const ToolDistance& distance, const Vec3& p_m, const Vec3& direction) {
   const scene::Bounds bounds = distance.bounds();
   double s_m = -std::numeric_limits<double>::infinity(), end_m = std::numeric_limits<double>::infinity();
@@ -24,7 +25,8 @@ double first_hit_m(const ToolDistance& distance, const Vec3& p_m, const Vec3& di
     s_m = std::max(s_m, std::min(one_m, other_m));
     end_m = std::min(end_m, std::max(one_m, other_m));
   }
-  // A step as long as the distance never jumps over the surface; close to it Newton's is as safe and much longer.
+  // Sphere tracing: a step of the distance never passes the surface. Close to it Newton's step is as safe and much
+  // longer.
   const double close_m = 1e-2 * distance.half_width_m(), there_m = 1e-13 * distance.half_width_m();
   for (int step = 0; step < 500 && s_m <= end_m; ++step) {
     const Gap<3> here = distance.at(p_m + s_m * direction);
@@ -91,7 +93,8 @@ Gap<dim> RigidTool<dim>::gap_along(const Point& X_m, const Point& N, const Point
   Gap<dim> g;
   const Vec3 X_T_m = in_tool_frame(X_m);
   double along_m = first_hit_m(*distance_, X_T_m, turned_into_tool_frame(N));
-  // A tool that lies behind the place and does not hold it is seen through the body, from another side of it.
+  // If the tool lies behind the point without containing it, the line meets the tool through the body, from another
+  // side; this does not count.
   if (along_m < 0.0 && distance_->at(X_T_m).value_m > 0.0) along_m = std::numeric_limits<double>::infinity();
   g.value_m = along_m - N.dot(u_m);
   g.gradient = -N;

@@ -1,4 +1,4 @@
-// Closed forms that the solvers are held against, each with its range and source. SI units; the tool is rigid.
+// Closed forms that the solvers are compared with, each with its range and source. SI units; the tool is rigid.
 #pragma once
 
 #include "scene/model/scene.h"

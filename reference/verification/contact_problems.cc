@@ -32,7 +32,7 @@ constexpr double E_pa = 3e6, R_m = 0.01;
 
 double E_star_pa(double nu) { return contact_modulus_pa(E_pa, nu); }
 
-/// The answers on successive meshes, coarsest first.
+/// Results on successive meshes, coarsest first.
 std::vector<HalfSpaceAnswer> on_meshes(HalfSpaceProblem problem, int meshes, const Effort& effort,
                                        const std::string& what) {
   std::vector<HalfSpaceAnswer> answers;
@@ -53,7 +53,7 @@ double force_of(const HalfSpaceAnswer& answer) { return answer.force_n; }
 double radius_of(const HalfSpaceAnswer& answer) { return answer.contact_radius_m; }
 double peak_of(const HalfSpaceAnswer& answer) { return answer.peak_pressure_pa; }
 
-/// What the cylinder's end adds to the force: half of what it adds at half the size, on the second mesh.
+/// Effect of the cylinder's end on the force: half of the effect at half the size, on the second mesh.
 double domain_part(HalfSpaceProblem problem) {
   problem.level = 1;
   const double whole_n = indent_half_space(problem).force_n;
@@ -67,7 +67,7 @@ void check(Findings& findings, const std::string& what, const char* unit, double
   findings.checks.push_back(from_levels(what, unit, exact, limit, values_of(answers, value_of)));
 }
 
-/// Checks the force and the radius of the contact's edge.
+/// Checks the force and the contact radius.
 void check_indentation(Findings& findings, const std::string& at, const Indentation& exact, double limit_of_force,
                        double limit_of_radius, const std::vector<HalfSpaceAnswer>& answers) {
   check(findings, "force, " + at, "N", exact.force_n, limit_of_force, answers, force_of);
@@ -112,7 +112,7 @@ Findings contact_patch(const Effort& effort) {
       body.set_tool({distance, {Vec3(0.0, 0.0, side_m * (5.0 - share * squeeze)), Eigen::Quaterniond::Identity()}});
     });
     const std::string at = fmt::format(", nu = {:.3g}", nu);
-    // The quarter stands for the whole: four times its area.
+    // Symmetry: one quarter is solved, the whole has four times its area.
     findings.checks.push_back({"force over area" + at,
                                "Pa",
                                -neo_hookean_bar_pa(material, 1.0 - squeeze),
@@ -221,8 +221,7 @@ Findings flat(const Effort& effort) {
     }
     findings.notes.push_back(domain_note(problem, effort, at));
   }
-  findings.notes.emplace_back(
-      "What the end takes from the surface's settlement is that share of the depth, everywhere.");
+  findings.notes.emplace_back("The end reduces the surface's settlement by that fraction of the depth everywhere.");
   findings.notes.push_back(mesh_note(meshes) + " At the sharp rim, where the pressure is unbounded, 16 times finer.");
   return findings;
 }
@@ -313,8 +312,8 @@ Findings pressed_ball(const Effort& effort) {
   const Material material{20e9, 0.3};
   const double E_star = material.contact_modulus_pa();
   const int meshes = effort.quick ? 3 : 4;
-  // At the printed depth a/R is 0.2, at the others half and a quarter of it. Hertz is the limit of small load: that of
-  // the parabola in a/R through the three.
+  // At the printed depth a/R is 0.2; at the others half and a quarter of it. Hertz holds in the limit of small load:
+  // that of the parabola in a/R through the three values.
   std::array<std::vector<double>, 3> peak, radius;
   Findings findings;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -328,11 +327,11 @@ Findings pressed_ball(const Effort& effort) {
       radius[k].push_back(finest.contact_radius_m / exact.contact_radius_m);
     }
     const Indentation of_force = hertz(E_star, radius_m, d_m * std::pow(finest.force_n / exact.force_n, 2.0 / 3.0));
-    findings.notes.push_back(
-        fmt::format("a/R = {:.3g}: peak pressure {:.5g} MPa, {:.3g} % over Hertz at this depth; {:.3g} % over Hertz at "
-                    "this force, which leaves the half ball's give out.",
-                    exact.contact_radius_m / radius_m, 1e-6 * finest.peak_pa, 100.0 * (peak[k].back() - 1.0),
-                    100.0 * (finest.peak_pa / hertz_peak_pressure_pa(of_force) - 1.0)));
+    findings.notes.push_back(fmt::format(
+        "a/R = {:.3g}: peak pressure {:.5g} MPa, {:.3g} % above Hertz at this depth; {:.3g} % above Hertz at "
+        "this force, which leaves the half ball's give out.",
+        exact.contact_radius_m / radius_m, 1e-6 * finest.peak_pa, 100.0 * (peak[k].back() - 1.0),
+        100.0 * (finest.peak_pa / hertz_peak_pressure_pa(of_force) - 1.0)));
   }
   for (const auto& [what, shares, limit] :
        {std::tuple("peak pressure over Hertz, to small load", &peak, limit_of_table),
@@ -343,7 +342,7 @@ Findings pressed_ball(const Effort& effort) {
     }
     findings.checks.push_back(from_levels(what, "", 1.0, limit, limits));
   }
-  // Both kinematics have one limit; in small strain the gap is taken along the ball's own normals.
+  // Both kinematics have the same limit; in small strain the gap is measured along the ball's own normals.
   const double d_m = depth_m / 16.0;
   effort.tell("small strain");
   findings.checks.push_back({"force in small over finite strain, a/R = 0.05",
@@ -357,12 +356,12 @@ Findings pressed_ball(const Effort& effort) {
                              {}});
   findings.notes.emplace_back(
       "The printed 2798.3 MPa at 2 mm is Hertz's half space in small strain; the half ball of "
-      "the same test is neither. Its share goes to zero with a/R.");
+      "the same test is neither. The difference vanishes with a/R.");
   return findings;
 }
 
-/// A ball moved along the half space on which it was pressed: Cattaneo's and Mindlin's partial slip. Their solution
-/// takes pressure and friction not to disturb each other, which beside a rigid tool is so at nu = 0.5 only.
+/// A ball moved along the half space on which it is pressed: partial slip of Cattaneo and Mindlin. Their solution
+/// assumes that pressure and friction do not affect each other, which holds under a rigid tool at nu = 0.5 only.
 Findings cattaneo(const Effort& effort) {
   Findings findings;
   reference::ShiftedBall problem{{E_pa, 0.5}, R_m, 1e-6, 0.3};
@@ -387,11 +386,11 @@ Findings cattaneo(const Effort& effort) {
       "nu = 0.5, in space, on one half of a block of 300 contact radii to each side, two cells to the contact's "
       "radius. At smaller nu pressure and "
       "friction "
-      "disturb each other, and the closed form is another model's.");
+      "affect each other, and the closed form is one of another model.");
   return findings;
 }
 
-/// The half space above z = 0 of its own frame.
+/// A half space that occupies z > 0 of its own frame.
 class FlatTool final : public reference::ToolDistance {
  public:
   [[nodiscard]] reference::Gap<3> at(const Vec3& p_T_m) const override {
@@ -401,7 +400,7 @@ class FlatTool final : public reference::ToolDistance {
   [[nodiscard]] double half_width_m() const override { return 0.01; }
 };
 
-/// A rigid wedge drawn along the block it presses on: horizontal over vertical force once all of it slips.
+/// A rigid wedge drawn along the block it presses on: horizontal over vertical force once it slips everywhere.
 Findings wedge(const Effort& effort) {
   effort.tell("a slope of 0.1 drawn along a block");
   constexpr double slope = 0.1, mu = 0.3;
@@ -424,7 +423,7 @@ Findings wedge(const Effort& effort) {
       {}};
 }
 
-/// Hertz as a scene, through the call that `touchstone reference` makes: the force at every instant and its own band.
+/// Hertz as a scene, through the call of `touchstone reference`: the force at every instant and its uncertainty.
 Findings scene_problem(const Effort& effort) {
   constexpr double nu = 0.3, deepest_m = 2e-4 * R_m, half_space_m = 3000.0 * 0.0141421 * R_m;
   scene::Scene scene;
@@ -477,7 +476,7 @@ std::vector<Problem> contact_problems() {
       {"hertz-finite", "Ball on a half space at small load, finite strain", "Hertz; Johnson, Contact Mechanics, 4.2",
        hertz_finite},
       {"pressed-ball", "Half ball on rollers under a rigid flat", "Code_Aster SSNV104", pressed_ball},
-      {"hertz-scene", "The same as a scene, with the band that the solver itself reports",
+      {"hertz-scene", "The same as a scene, with the uncertainty that the solver reports",
        "Hertz; Johnson, Contact Mechanics, 4.2", scene_problem},
       {"flat-punch", "Flat punch with a sharp rim on a half space, small strain", sneddons, flat},
       {"rounded-punch", "Flat punch with a fillet on a half space, small strain", sneddons, rounded},

@@ -17,7 +17,7 @@ namespace {
 
 using scene::Vec3;
 
-/// The distance of a convex profile turned about z. Without a Hessian: for small kinematics, which need none.
+/// Distance of a convex surface of revolution about z. Without a Hessian, which small kinematics do not need.
 class TurnedTool final : public reference::ToolDistance {
  public:
   explicit TurnedTool(const scene::Profile& profile) : shape_(profile) {}
@@ -25,7 +25,7 @@ class TurnedTool final : public reference::ToolDistance {
     const scene::SurfaceQuery foot = shape_.query(p_T_m);
     const Vec3 from_m = p_T_m - foot.point_m;
     const double length_m = from_m.norm();
-    // Off an edge or a tip the distance grows away from the foot, not along a normal there.
+    // Outside an edge or a tip the gradient points from the closest point, not along a normal there.
     const bool off = foot.signed_distance_m > 1e-9 * half_width_m();
     return {foot.signed_distance_m, off ? Vec3(from_m / length_m) : foot.normal, scene::Mat3::Zero()};
   }
@@ -71,7 +71,7 @@ Punch rounded_punch(double radius_m, double edge_radius_m, double depth_m) {
 
 Punch cone_punch(double half_angle, double tip_radius_m, double depth_m) {
   const double patch_m = 0.5 * depth_m * std::tan(half_angle);
-  // Three times as wide as it is needed; the tip, or the ball in it, at z = 0.
+  // Three times as wide as needed; the tip, or the ball in it, is at z = 0.
   const double wide_m = 6.0 * patch_m, slope = 1.0 / std::tan(half_angle);
   scene::Profile profile;
   const double top_m = 2.0 * wide_m * slope;

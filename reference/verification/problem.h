@@ -8,7 +8,7 @@
 
 namespace touchstone::verification {
 
-/// One number held against its target.
+/// One number compared with its target.
 struct Check {
   std::string what;  ///< "force, nu = 0.3"
   std::string unit;  ///< of target and value; "" for a ratio
@@ -16,7 +16,7 @@ struct Check {
   double value = 0.0;
   double limit = 0.0;               ///< of the size of error()
   double scale = 0.0;               ///< what the error is relative to; 0: the target's size
-  std::optional<double> mesh_band;  ///< half width of what the mesh may be off by, relative like error()
+  std::optional<double> mesh_band;  ///< uncertainty due to the mesh, relative like error()
   std::optional<double> order;      ///< in the cell size, as observed on the finest meshes
 
   [[nodiscard]] double error() const noexcept;
@@ -43,14 +43,14 @@ inline constexpr double limit_of_edge = 0.005;
 
 /// How much is solved, and who receives reports.
 struct Effort {
-  bool quick = false;                                    ///< one mesh fewer, and the dearest cases left out
+  bool quick = false;                                    ///< one mesh fewer, without the most expensive cases
   std::function<void(const std::string& text)> working;  ///< called before every solve; may be empty, may throw to stop
   void tell(const std::string& text) const {
     if (working) working(text);
   }
 };
 
-/// What a problem answers.
+/// The results of a problem.
 struct Findings {
   std::vector<Check> checks;
   std::vector<std::string> notes;  ///< what meshes, and which part of an error is whose, as measured in this run

@@ -1,4 +1,4 @@
-// Solids under given displacements and dead loads.
+// Solids under prescribed displacements and dead loads.
 #include "reference/mesh/inclusions.h"
 #include "reference/verification/closed_forms.h"
 #include "reference/verification/problem.h"
@@ -52,7 +52,7 @@ Findings uniaxial(const Effort& effort) {
   return findings;
 }
 
-/// A block of uniform stress under a dead force on its top, held in y: the displacement of the top over the height.
+/// A block under uniform stress by a dead force on its top, fixed in y: displacement of the top over the height.
 double plane_strain_top(double mu_pa, double pressure_pa) {
   const Mesh<3> mesh = lattice_mesh<3>({2, 1, 2}, [](const Vec3& x) { return x; });
   ContactProblem<3> body(mesh, {3.0 * mu_pa, 0.5}, Kinematics::finite, false, false);
@@ -195,8 +195,8 @@ Findings cook(const Effort& effort) {
            "and to second order in the volume change."}};
 }
 
-/// Tip deflection over the beam formula, in small strain: a square cantilever with another material in its middle
-/// third.
+/// Tip deflection over that of the beam formula, in small strain: a square cantilever with another material in its
+/// middle third.
 double cantilever_over_beam(double length_m, double height_m, double ratio, int cells_along, int cells_high) {
   constexpr double E_pa = 3e6, nu = 0.3, force_n = 1e-6;
   // The half y >= 0 of the beam, its axis along x.
@@ -241,11 +241,11 @@ Findings cantilever(const Effort& effort) {
     for (const int cells_high : {1, 2, 4}) tips.push_back(tip(slender, cells_high));
     findings.checks.push_back(from_levels("tip over the beam formula, " + at, "", 1.0, limit_of_closed_form, tips));
     const double shorter = tip(0.5 * slender, 4);
-    findings.notes.push_back(
-        fmt::format("{}: off by {:.3g} % with a length of {:.3g} heights and by {:.3g} % with {:.3g} on like cells: "
-                    "ends and joints, where a solid is no beam. Without them, {:.3g} %.",
-                    at, 100.0 * (tips.back() - 1.0), slender, 100.0 * (shorter - 1.0), 0.5 * slender,
-                    100.0 * (2.0 * tips.back() - shorter - 1.0)));
+    findings.notes.push_back(fmt::format(
+        "{}: off by {:.3g} % with a length of {:.3g} heights and by {:.3g} % with {:.3g} on cells of equal size: "
+        "ends and joints, where a solid differs from a beam. Without them, {:.3g} %.",
+        at, 100.0 * (tips.back() - 1.0), slender, 100.0 * (shorter - 1.0), 0.5 * slender,
+        100.0 * (2.0 * tips.back() - shorter - 1.0)));
   }
   return findings;
 }

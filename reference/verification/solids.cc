@@ -21,7 +21,7 @@ using reference::State;
 template <int dim>
 Mesh<dim> lattice_mesh(const std::array<int, dim>& cells, const std::function<Place<dim>(const Place<dim>&)>& place_m) {
   using Index = Eigen::Matrix<int, dim, 1>;
-  // Of a lattice with so many points a side, the first coordinate fastest.
+  // Indices of a lattice with so many points per side, the first coordinate fastest.
   const auto coordinates = [](int number, const Index& sides) {
     Index at;
     for (int d = 0; d < dim; ++d) {

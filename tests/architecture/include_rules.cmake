@@ -1,5 +1,5 @@
 # cmake -DSOURCE_DIR=... -P include_rules.cmake
-# The arrows of the design, read from the includes: meshes <- fast, meshes <- reference, all <- compare.
+# The dependencies between modules, checked in the includes: meshes <- fast, meshes <- reference, all <- compare.
 
 set(forbidden_meshes    "fast/|reference/|compare/|deal.II/|vtk|mpi|fcl/|ceres/|cholmod|CLI/")
 set(forbidden_fast      "reference/|compare/|deal.II/|vtk|mpi|ceres/|cholmod|toml")
@@ -15,8 +15,8 @@ foreach(folder meshes fast reference compare)
   foreach(file ${files})
     file(STRINGS "${file}" includes REGEX "^[ \t]*#[ \t]*include")
     foreach(line ${includes})
-      # Two files may see TOML: the reader of scenes, and what it shares with those of studies and gates. One may ask
-      # FCL, which allocates: a tick never includes it. One may speak MPI.
+      # Two files may include TOML: the reader of scenes, and its common part with studies and gates. One may include
+      # FCL, which allocates and is never used in a tick. One may include MPI.
       if(line MATCHES "[<\"](${forbidden_${folder}})" OR
          (folder STREQUAL meshes AND line MATCHES "[<\"]toml" AND NOT file MATCHES "/(scene_io\\.cc|toml_reader\\.h)$") OR
          (folder STREQUAL reference AND line MATCHES "[<\"]mpi" AND NOT file MATCHES "/ranks\\.cc$") OR
@@ -27,7 +27,7 @@ foreach(folder meshes fast reference compare)
   endforeach()
 endforeach()
 
-# The folder list is the design: nothing else at the top but root-level files.
+# No other folders at the top level.
 file(GLOB entries RELATIVE "${SOURCE_DIR}" "${SOURCE_DIR}/*" "${SOURCE_DIR}/.*")
 foreach(entry ${entries})
   if(IS_DIRECTORY "${SOURCE_DIR}/${entry}" AND

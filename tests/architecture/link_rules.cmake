@@ -1,5 +1,5 @@
 # cmake -DBINARY=... -DFORBIDDEN=regex -DEXPECTED=regex -P link_rules.cmake
-# What a binary loads, all the way down. EXPECTED proves that the listing was read.
+# The libraries that a binary loads, also indirectly. EXPECTED shows that the list was read.
 execute_process(COMMAND ldd "${BINARY}" OUTPUT_VARIABLE libraries RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "ldd could not read ${BINARY}")

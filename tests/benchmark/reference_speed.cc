@@ -1,5 +1,5 @@
-// Where the processor time of a reference solve goes: reference_speed SCENE LEVEL INSTANTS
-// LEVEL counts from 1; of the track's instants the first INSTANTS in which the tool is in the body at rest are solved.
+// Processor time of a reference solve by parts: reference_speed SCENE LEVEL INSTANTS
+// LEVEL counts from 1; the first INSTANTS in which the tool is inside the body at rest are solved.
 #include "reference/contact/contact_problem.h"
 #include "reference/contact/load_path.h"
 #include "reference/run/model_choice.h"

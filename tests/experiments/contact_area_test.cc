@@ -31,7 +31,7 @@ class ContactArea : public Experiment {
   const scene::Scene head_scene_ = scene("mallet-head-on-cube"), tail_scene_ = scene("mallet-tail-on-cube");
   const std::vector<InstantRecord> head_ = in_contact(head_scene_), tail_ = in_contact(tail_scene_);
 
-  /// The head's face, flat up to 9 mm and rounded by 3 mm.
+  /// The head's face, flat up to 9 mm, with a fillet of 3 mm.
   [[nodiscard]] RoundContact head_contact(double depth_m) const {
     const double flat_m = 0.009, edge_m = 0.003;
     return {flat_m + std::sqrt(edge_m * edge_m - (edge_m - depth_m) * (edge_m - depth_m)), [=](double r_m) {
@@ -69,7 +69,7 @@ TEST_P(ContactArea, SameDepthMakesTheHeadsForceLarger) {
 }
 
 TEST_P(ContactArea, ForceIsThatOfTheContactsOwnRadius) {
-  // k1 grows with the radius of the contact, the mean is over its depths. The mesh is a little inside the half ball.
+  // k1 grows with the contact radius; the mean is taken over its depths. The mesh is slightly inside the half ball.
   for (const auto& [instant, contact] : {std::pair(head_.back(), head_contact(head_.back().depth_m)),
                                          std::pair(tail_.back(), tail_contact(tail_.back().depth_m))}) {
     const double k1_n_per_m = head_scene_.contact.k1_per_radius_n_per_m2 * contact.radius_m;
@@ -79,15 +79,15 @@ TEST_P(ContactArea, ForceIsThatOfTheContactsOwnRadius) {
   }
 }
 
-/// Balls of 10, 20 and 40 mm, 2 mm deep in the cube of ball-on-cube-press: the depths are spread alike, the area
-/// doubles.
+/// Balls of 10, 20 and 40 mm, 2 mm deep in the cube of ball-on-cube-press: the depths have the same distribution, the
+/// area doubles.
 std::vector<InstantRecord> growing_balls(const scene::Scene& press, const scene::Contact& contact) {
   std::vector<InstantRecord> out;
   for (const int times : {1, 2, 4}) {
     scene::Scene scene = press;
     scene.contact = contact;
     scene.tool.radius_m *= times;
-    scene.fast.tool_samples *= times;  // as many on the contact
+    scene.fast.tool_samples *= times;  // the same number on the contact
     const double top_m = scene.body.size_m.z();
     scene.track.front().pose.position_m.z() = top_m + scene.tool.radius_m + 1e-4;
     scene.track.back().pose.position_m.z() = top_m + scene.tool.radius_m - 2e-3;
@@ -97,14 +97,14 @@ std::vector<InstantRecord> growing_balls(const scene::Scene& press, const scene:
 }
 
 TEST_P(ContactArea, PlainLawDoesNotSeeTheArea) {
-  // Errata E7: the shares of appendix III sum to one, so that the force is a mean of the law over the region.
+  // Errata E7: the weights of appendix III sum to one, so that the force is a mean of the law over the region.
   const scene::Scene press = scene("ball-on-cube-press");
   const std::vector<InstantRecord> balls = growing_balls(press, press.contact);
   EXPECT_NEAR(balls[1].regions[0].area_m2, 2.0 * balls[0].regions[0].area_m2, 0.15 * balls[0].regions[0].area_m2);
   EXPECT_NEAR(balls[2].regions[0].area_m2, 4.0 * balls[0].regions[0].area_m2, 0.5 * balls[0].regions[0].area_m2);
   EXPECT_NEAR(balls[1].force_n().z(), balls[0].force_n().z(), 0.1 * balls[0].force_n().z());
   EXPECT_NEAR(balls[2].force_n().z(), balls[0].force_n().z(), 0.1 * balls[0].force_n().z());
-  // The head's contact is 12 times the tail's, and yet neither reaches the law at its own depth.
+  // The head's contact is 12 times the tail's, but neither reaches the law's force at its own depth.
   for (scene::Scene scene : {head_scene_, tail_scene_}) {
     scene.contact = press.contact;
     const InstantRecord last = in_contact(scene).back();

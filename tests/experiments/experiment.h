@@ -17,14 +17,14 @@ class Experiment : public testing::TestWithParam<scene::Formulation> {
  protected:
   [[nodiscard]] static bool published() { return GetParam() == scene::Formulation::published; }
   [[nodiscard]] static scene::Scene scene(const std::string& name) { return shipped_scene(name, GetParam()); }
-  /// The instants at which the tool pushes on the body.
+  /// The instants at which the tool presses on the body.
   [[nodiscard]] static std::vector<scene::InstantRecord> in_contact(const scene::Scene& scene) {
     std::vector<scene::InstantRecord> instants = fast::run(scene).instants;
-    // First touch, of a depth that is rounding, is not meant.
+    // First touch, whose depth is round-off, is not included.
     std::erase_if(instants, [](const scene::InstantRecord& instant) { return instant.depth_m < 1e-12; });
     return instants;
   }
-  /// A number for reports/experiments.md, into the file of --gtest_output.
+  /// Writes a number for reports/experiments.md to the file of --gtest_output.
   static void record(const std::string& name, double number) { RecordProperty(name, std::to_string(number)); }
 };
 

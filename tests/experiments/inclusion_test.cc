@@ -1,4 +1,4 @@
-// Fig. 18: under the same force an ellipsoid with a PVC ball inside its left side gives way more on that side.
+// Fig. 18: under the same force an ellipsoid with a PVC ball inside its left side deforms more on that side.
 #include "experiments/experiment.h"
 
 #include <cmath>
@@ -8,8 +8,8 @@ namespace {
 
 using scene::InstantRecord;
 
-/// How far the surface has moved along the upper side's outline, y = 0, as the figure shows it from the side. By
-/// distance from the middle, nearest first.
+/// Displacement along the outline of the upper side, y = 0, as the figure shows it from the side; sorted by distance
+/// from the middle.
 struct Outline {
   std::vector<double> x_m, left_m, right_m;
 };
@@ -24,7 +24,7 @@ Outline outline(const fast::Run& run) {
     points.emplace_back(rest_m(0, v), u_m.col(v).norm());
   }
   std::sort(points.begin(), points.end());
-  // A point on the edge between patches stands there once for each.
+  // A point on an edge between patches occurs once per patch.
   points.erase(std::unique(points.begin(), points.end(),
                            [](const auto& a, const auto& b) { return std::abs(a.first - b.first) < 1e-9; }),
                points.end());
@@ -74,8 +74,8 @@ TEST_P(InclusionExperiment, HardlySofterInclusionChangesLittleOnlyWhereCorrected
   const Outline soft = outline(fast::run(scene));
   record("hardly_softer_left_mm", 1e3 * soft.left_m.back());
   if (published()) {
-    // Errata E8: on the rubber the contact is symmetric and leaves the ratio of a and b open, which the least norm then
-    // settles; the least difference between two beams makes it definite, and another one altogether.
+    // Errata E8: on the rubber the contact is symmetric and does not determine the ratio of a and b, which the minimum
+    // norm then selects. The smallest difference between two beams determines it, with a very different value.
     EXPECT_GT(soft.left_m.back(), 10.0 * rubber_.left_m.back());
     EXPECT_GT(soft.left_m.back(), pvc_.left_m.back());
   } else {

@@ -1,5 +1,5 @@
-// Fig. 16: along an ellipsoid F_x changes its sign and the upward force is largest at the top. The figure has the
-// normal force and the friction apart, and so have the tests; the paper's y is z here and its z is -y.
+// Fig. 16: along an ellipsoid F_x changes its sign and the upward force is largest at the top. The figure shows normal
+// force and friction separately, and so do the tests; the paper's y is z here and its z is -y.
 #include "experiments/experiment.h"
 
 #include <cmath>
@@ -14,7 +14,7 @@ class MalletAlongEllipsoid : public Experiment {
  protected:
   void SetUp() override {
     for (const InstantRecord& instant : in_contact(scene_)) {
-      if (instant.time_s > 0.33 + 1e-9) along_.push_back(instant);  // after the rest on the left slope
+      if (instant.time_s > 0.33 + 1e-9) along_.push_back(instant);  // after the pause on the left slope
     }
     ASSERT_GT(along_.size(), 45u);
   }
@@ -36,7 +36,7 @@ class MalletAlongEllipsoid : public Experiment {
     }
     return sum_n / count;
   }
-  /// Where a quantity turns from negative to positive, along x [m]. It does so once.
+  /// The place where a quantity changes from negative to positive, along x [m]; it does so once.
   template <class Quantity>
   [[nodiscard]] double rises_through_zero_m(Quantity quantity) const {
     double where_m = NAN;
@@ -90,7 +90,7 @@ TEST_P(MalletAlongEllipsoid, FrictionOpposesTheMotion) {
     EXPECT_LT(friction_n(along_[k]).x(), 0.0);
     EXPECT_LT(std::abs(friction_n(along_[k]).y()), 0.1 * friction_n(along_[k]).norm());
   }
-  // Down while the mallet goes up, up while it goes down.
+  // Downwards while the mallet moves up, upwards while it moves down.
   EXPECT_NEAR(rises_through_zero_m([](const InstantRecord& instant) { return friction_n(instant).z(); }), 0.0, 2e-3);
 }
 

@@ -27,7 +27,7 @@ TEST_P(Press, ForceAndStiffnessRise) {
 }
 
 TEST_P(Press, TwiceAsDeepIsMoreThanTwiceTheForce) {
-  // By the law's linear term alone it would be 2, by the cubic one 8, and a little more as the ball's cap fills out.
+  // The linear term alone gives 2, the cubic term 8; slightly more because the contact area of the ball grows.
   double ratio = 0.0;
   for (std::size_t k = 0; 2 * k + 1 < instants_.size(); ++k) {
     const scene::InstantRecord &once = instants_[k], &twice = instants_[2 * k + 1];

@@ -1,5 +1,5 @@
-// What the model's force should be under a tool of revolution that is pressed along its axis onto a flat face: the
-// contact as a disc, by quadrature, without samples.
+// The model's expected force under an axisymmetric tool pressed along its axis onto a flat face: the contact is a disc,
+// integrated by quadrature, without samples.
 #pragma once
 
 #include "scene/model/scene.h"
@@ -24,8 +24,8 @@ inline RoundContact ball_contact(double ball_radius_m, double depth_m) {
           [=](double r_m) { return depth_m - (R - std::sqrt(R * R - r_m * r_m)); }};
 }
 
-/// F of appendix III, the mean of the law over the contact: weighted by the lever arm r as printed, by 1 / r where
-/// corrected (errata E6). Projected along d the tool's area times cos(theta) is the disc's.
+/// F of appendix III, the mean of the law over the contact: weighted by the lever arm r as printed, by 1 / r if
+/// corrected (errata E6). Projected along d, the tool's area times cos(theta) is the disc's.
 inline double mean_force_n(scene::Formulation formulation, const std::function<double(double)>& law_n,
                            const RoundContact& contact) {
   constexpr int rings = 2000;

@@ -1,4 +1,4 @@
-// Fig. 14: moved along the cube, the ball sticks first and slides then, friction against the motion, F_n constant.
+// Fig. 14: moved along the cube, the ball first sticks and then slips; friction opposes the motion, F_n is constant.
 #include "experiments/experiment.h"
 
 #include <cmath>
@@ -6,12 +6,12 @@
 namespace touchstone::test {
 namespace {
 
-constexpr double begins_s = 0.4, ends_s = 1.4;  ///< the way along x
+constexpr double begins_s = 0.4, ends_s = 1.4;  ///< the motion along x
 
 class Slide : public Experiment {
  protected:
   void SetUp() override {
-    scene_.compare.instants = 301;  // every 0.1 mm of the way
+    scene_.compare.instants = 301;  // every 0.1 mm of the motion
     for (scene::InstantRecord& instant : in_contact(scene_)) {
       if (instant.time_s <= begins_s + 1e-9) {
         before_.push_back(instant);
@@ -57,7 +57,7 @@ TEST_P(Slide, SticksUntilTheLimitIsReached) {
 }
 
 TEST_P(Slide, StuckForceLeansAsItsStretch) {
-  // The force is along the skewed deformation, so F_t / F_n grows in proportion to the way the ball has been dragged.
+  // The force is along the direction of deformation, so F_t / F_n grows in proportion to the displacement along x.
   const double way_m = stuck_.front().tool.position_m.x() - before_.back().tool.position_m.x();
   const double lean = friction_n(stuck_.front()) / stuck_.front().force_n().z();
   for (const scene::InstantRecord& instant : stuck_) {

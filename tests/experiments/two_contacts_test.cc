@@ -13,7 +13,7 @@ class TwoContacts : public Experiment {
   const scene::Scene scene_ = scene("compass-two-pins");
   const fast::Run run_ = fast::run(scene_);
 
-  /// The region's force is on the right pin: it turns the compass towards -y.
+  /// The region's force is on the right pin: its torque is towards -y.
   [[nodiscard]] static bool right(const scene::RegionRecord& region) { return region.torque_nm.y() < 0.0; }
 };
 
@@ -40,8 +40,8 @@ TEST_P(TwoContacts, EachPinHasItsOwnRegion) {
 }
 
 TEST_P(TwoContacts, SecondPinMeetsTheBodyThatTheFirstHasDeformed) {
-  // Upright both pins are equally deep at rest. The first region is pressed on the body at rest, the second on what the
-  // first has left of it: the order of creation decides which pin carries more (errata E18).
+  // When upright, both pins are equally deep at rest. The first region is evaluated on the body at rest, the second on
+  // the body deformed by the first: the order of creation decides which pin carries more (errata E18).
   int upright = 0;
   for (const InstantRecord& instant : run_.instants) {
     if (instant.time_s < 0.9 || instant.time_s > 1.1) continue;
@@ -71,7 +71,7 @@ TEST_P(TwoContacts, WhatThePaperLeavesOpenIsMeasured) {
   EXPECT_LT(*run_.equilibrium_rel, 0.01);
   for (const InstantRecord& instant : run_.instants) {
     if (instant.regions.size() != 1) continue;
-    // One contact is in balance: exactly where corrected, as nearly as least squares come where published (errata E8).
+    // One contact is in equilibrium: exactly if corrected, as closely as least squares allow if published (errata E8).
     const double residual_n = (instant.support_force_n - instant.force_n()).norm();
     EXPECT_LT(residual_n, (published() ? 1e-5 : 1e-12) * instant.force_n().norm()) << instant.time_s;
   }

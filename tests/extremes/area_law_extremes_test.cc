@@ -24,8 +24,8 @@ double force_n(const scene::Scene& scene, const scene::Pose& pose) {
   return rig.force_n().norm();
 }
 
-// A constant from 1e-6 to 1e12 N/m2: the force goes with it to 1e-9.
-// As printed: There is no such law: k1 and k3 stand for one contact (E7).
+// A constant from 1e-6 to 1e12 N/m2: the force is proportional to it, to 1e-9. As printed: There is no such law: k1 and
+// k3 are valid for one contact (E7).
 TEST(AreaLawExtremes, ConstantOverEighteenDecades) {
   IN_BOTH_FORMULATIONS(formulation) {
     const double usual_n = force_n(with_area_law(extremes::cube(formulation)), test::pressed(0.003));
@@ -36,10 +36,10 @@ TEST(AreaLawExtremes, ConstantOverEighteenDecades) {
   }
 }
 
-// All lengths from 1/100 to 10 times as large: the force goes with their square to 1e-9.
-// As printed: There is no such law; Duffing's constants hold for one size.
+// All lengths from 1/100 to 10 times as large: the force is proportional to their square, to 1e-9. As printed: There is
+// no such law; Duffing's constants are valid for one size.
 TEST(AreaLawExtremes, LengthsOverThreeDecades) {
-  // At this depth no sample is on the face, where rounding would say whether it counts.
+  // At this depth no sample is exactly on the face, where rounding would decide whether it counts.
   IN_BOTH_FORMULATIONS(formulation) {
     const double usual_n = force_n(with_area_law(extremes::cube(formulation)), test::pressed(0.00307));
     for (const double factor : {0.01, 0.1, 10.0}) {
@@ -57,7 +57,7 @@ TEST(AreaLawExtremes, LengthsOverThreeDecades) {
 // A ball with the constant that follows from the material, depths from a fiftieth to a fifth of its radius: Hertz's
 // force within 15 %. As printed: There is no such law. With Table I's constants the force of `ball-on-cube-press` is a
 // fifth of Hertz's.
-TEST(AreaLawExtremes, ABallIsHertzs) {
+TEST(AreaLawExtremes, BallHasHertzsForce) {
   scene::Scene scene = extremes::cube(Formulation::corrected);
   scene.fast.tool_samples = 100000;
   scene.body.material = {3e6, 0.45};
@@ -70,11 +70,11 @@ TEST(AreaLawExtremes, ABallIsHertzs) {
   }
 }
 
-// A flat punch from a hundredth of a millimetre wide to 20 mm, with the constant that follows from the material: the
-// force of a rigid punch, 2 E* a d, a being the radius of a disc as large as the foot. Corrected to 1e-3; the published
-// shares count the flanks, too (E6), within 80 %.
-// As printed: There is no such law: the force is the same for every width (E7).
-TEST(AreaLawExtremes, APunchOfAnyWidth) {
+// A flat punch from a hundredth of a millimetre to 20 mm wide, with the constant that follows from the material: the
+// force of a rigid punch, 2 E* a d, where a is the radius of a disc of the punch's area. Corrected to 1e-3; published
+// within 80 %, since its weights include the flanks (E6). As printed: There is no such law: the force is the same for
+// every width (E7).
+TEST(AreaLawExtremes, PunchOfAnyWidth) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const double side_m : {1e-5, 1e-3, 0.02}) {
       const scene::Scene scene = extremes::punch_on_cube(formulation, side_m);
@@ -87,8 +87,8 @@ TEST(AreaLawExtremes, APunchOfAnyWidth) {
   }
 }
 
-// Led over an edge of the box at constant depth: in a tick the force changes by no more than a twentieth of itself.
-// As printed: There is no such law.
+// Moved over an edge of the box at constant depth: the force changes by at most a twentieth per tick. As printed: There
+// is no such law.
 TEST(AreaLawExtremes, OverAnEdge) {
   Rig rig(with_area_law(extremes::cube(Formulation::corrected)));
   rig.may = StepStatus::anchors_limited;
@@ -105,8 +105,8 @@ TEST(AreaLawExtremes, OverAnEdge) {
   EXPECT_LT(step_n, 0.05 * largest_n);
 }
 
-// A softening cubic term: the force rises to its peak and stays there, and the step says so.
-// As printed: There is no such law; Duffing's falls and rises again (E1).
+// A softening cubic term: the force rises to its peak and stays there, and the status reports it. As printed: There is
+// no such law; Duffing's force falls and rises again (E1).
 TEST(AreaLawExtremes, SofteningSaturates) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = with_area_law(extremes::punch_on_cube(formulation));
@@ -124,9 +124,9 @@ TEST(AreaLawExtremes, SofteningSaturates) {
   }
 }
 
-// A tool that only touches, and one a digit away from it: no force.
-// As printed: There is no such law. A touch is 0 / 0 (E6).
-TEST(AreaLawExtremes, TouchingIsNoForce) {
+// A tool that only touches, and one at the next floating-point number away: no force. As printed: There is no such law.
+// First touch is 0 / 0 (E6).
+TEST(AreaLawExtremes, FirstTouchHasNoForce) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const double depth_m : {0.0, -1e-15, -1e-3}) {
       EXPECT_LT(force_n(with_area_law(extremes::cube(formulation)), test::pressed(depth_m)), 1e-9) << depth_m;
@@ -136,9 +136,9 @@ TEST(AreaLawExtremes, TouchingIsNoForce) {
   }
 }
 
-// Two alike pins far apart: more than one and a half times and at most twice the force of one, since each meets the
-// shape that the other leaves. As printed: There is no such law.
-TEST(AreaLawExtremes, TwoPinsAreTwice) {
+// Two identical pins far apart: between one and a half times and twice the force of one, since each is evaluated on the
+// shape deformed by the other. As printed: There is no such law.
+TEST(AreaLawExtremes, TwoPinsDoubleTheForce) {
   const auto pins_n = [](const std::vector<Vec3>& feet_m) {
     return force_n(with_area_law(extremes::pins_on_cube(Formulation::corrected, feet_m)), extremes::sunk(0.0005));
   };

@@ -1,4 +1,4 @@
-// The report of extremes is the comments of the tests in this program's folder.
+// Compares the report of extremes with the comments of the tests in this program's folder.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace {
 const std::filesystem::path source = touchstone::source_folder();
 const std::filesystem::path folder = source / EXTREMES_FOLDER, report_file = source / EXTREMES_REPORT;
 
-/// What stands over a test: "// extreme: what holds." and, for the fast model, "// As printed: what the published
-/// method does."
+/// The comment above a test: "// extreme: what holds." and, for the fast model, "// As printed: the published method's
+/// result."
 struct Row {
   std::string test, extreme, holds, printed;
 };
@@ -25,7 +25,7 @@ struct Chapter {
   std::vector<Row> rows;
 };
 
-/// Whether the tests are of a method that was printed.
+/// Whether the tests are of the printed method, too.
 const bool with_printed = std::string(EXTREMES_FOLDER) == "tests/extremes";
 
 std::string read(const std::filesystem::path& path) {

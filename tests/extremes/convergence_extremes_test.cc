@@ -9,7 +9,7 @@ using extremes::Rig;
 using scene::Formulation;
 using scene::Vec3;
 
-/// Each value nearer to the last than the one before it, or as near as the last's share `close`.
+/// Each value is closer to the last than the value before, or within `close` times the last.
 void expect_converging(const std::vector<double>& values, double close) {
   for (std::size_t i = 1; i + 1 < values.size(); ++i) {
     const double before = std::abs(values[i - 1] - values.back()), now = std::abs(values[i] - values.back());
@@ -17,9 +17,8 @@ void expect_converging(const std::vector<double>& values, double close) {
   }
 }
 
-// Samples from 500 to 128,000, four times as many each: the force goes to a limit.
-// As printed: The vertices of a mesh, if evenly spread; the force goes to a limit, too, which hangs on how they are
-// spread.
+// Samples from 500 to 128,000, by factors of four: the force converges. As printed: The vertices of a mesh, if evenly
+// distributed; the force converges, but its limit depends on their distribution.
 TEST(ConvergenceExtremes, ForceInTheSamples) {
   IN_BOTH_FORMULATIONS(formulation) {
     std::vector<double> force_n;
@@ -36,8 +35,8 @@ TEST(ConvergenceExtremes, ForceInTheSamples) {
   }
 }
 
-// Triangles from 300 to 19,200: the force does not know them, and the corrected mean displacement goes to a limit.
-// As printed: The force does not know them, either; the anchor points are vertices of the mesh.
+// Triangles from 300 to 19,200: the force does not depend on them, and the corrected mean displacement converges. As
+// printed: The force does not depend on them, either; the anchor points are vertices of the mesh.
 TEST(ConvergenceExtremes, ShapeInTheTriangles) {
   IN_BOTH_FORMULATIONS(formulation) {
     std::vector<double> mean_m, force_n;
@@ -61,8 +60,8 @@ TEST(ConvergenceExtremes, ShapeInTheTriangles) {
   }
 }
 
-// Ticks from 20 Hz to 10 kHz: a straight press without friction has one force at a depth, to 1e-6.
-// As printed: The same: no tick knows of another but by the regions.
+// Ticks from 20 Hz to 10 kHz: in a straight press without friction the force depends on the depth alone, to 1e-6. As
+// printed: The same: ticks depend on each other only through the regions.
 TEST(ConvergenceExtremes, PressInTheTicks) {
   IN_BOTH_FORMULATIONS(formulation) {
     std::vector<double> force_n;
@@ -79,8 +78,8 @@ TEST(ConvergenceExtremes, PressInTheTicks) {
   }
 }
 
-// A stuck drag with friction in ever shorter ticks: the friction at its end goes to a limit.
-// As printed: The same; at the onset of sliding the force jumps, wherever a tick puts it (E5).
+// A sticking drag with friction in shorter and shorter ticks: the friction at its end converges. As printed: The same;
+// at the onset of slip the force jumps, in whatever tick that is (E5).
 TEST(ConvergenceExtremes, DragInTheTicks) {
   IN_BOTH_FORMULATIONS(formulation) {
     std::vector<double> friction_n;
@@ -101,9 +100,9 @@ TEST(ConvergenceExtremes, DragInTheTicks) {
   }
 }
 
-// Recorded instants from 2 to 101: what is recorded does not touch what is computed: the same force to 1e-9.
-// As printed: Nothing is recorded.
-TEST(ConvergenceExtremes, InstantsDoNotEnter) {
+// Recorded instants from 2 to 101: recording does not change the computation: the same force to 1e-9. As printed:
+// Nothing is recorded.
+TEST(ConvergenceExtremes, RecordingHasNoEffect) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::cube(formulation);
     scene.fast.rate_hz = 100.0;
@@ -119,8 +118,8 @@ TEST(ConvergenceExtremes, InstantsDoNotEnter) {
   }
 }
 
-// A depth that goes to a picometre by halves, thirty times over: the force goes with it, never rises and has no step.
-// As printed: The same, but for the 0 / 0 of the shares (E6).
+// A depth halved thirty times, down to a picometre: the force decreases with it without a jump. As printed: The same,
+// except the weights, which become 0 / 0 (E6).
 TEST(ConvergenceExtremes, DepthToNothing) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig rig(extremes::punch_on_cube(formulation));

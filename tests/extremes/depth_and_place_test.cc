@@ -10,12 +10,12 @@ using extremes::has;
 using extremes::Rig;
 using scene::Vec3;
 
-/// What the smallest cells of a curved tool bulge counts as contact [N].
+/// Largest force counted as none: the smallest cells of a curved tool bulge out of it [N].
 constexpr double touch_n = 1e-7;
 
-// A tool that only touches: no force, and the force goes to zero with the depth.
-// As printed: The force is shared by lever arms whose sum may be 0, so a touch is 0 / 0 (E6).
-TEST(DepthAndPlace, TouchingIsNoForce) {
+// A tool that only touches: no force, and the force goes to zero with the depth. As printed: The force is distributed
+// by lever arms whose sum may be 0, so first touch is 0 / 0 (E6).
+TEST(DepthAndPlace, FirstTouchHasNoForce) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : {extremes::cube(formulation), extremes::ball(formulation)}) {
       Rig rig(scene);
@@ -34,24 +34,23 @@ TEST(DepthAndPlace, TouchingIsNoForce) {
   }
 }
 
-// All samples of a punch flush with the face: no force, and 1e-15 m further the law's.
-// As printed: Contact is where two meshes meet, and flush triangles meet nowhere or everywhere.
-TEST(DepthAndPlace, FlushPunchIsNoForceAndTheNextDigitIsTheLaw) {
+// All samples of a punch flush with the face: no force, and 1e-15 m deeper the law's force. As printed: Contact is
+// where two meshes intersect, and flush triangles intersect nowhere or everywhere.
+TEST(DepthAndPlace, FlushPunchHasNoForce) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig rig(extremes::punch_on_cube(formulation));
     rig.to(extremes::punched(-1e-15));
     EXPECT_EQ(rig.force_n(), Vec3::Zero());
     rig.to(extremes::punched(1e-15));
     ASSERT_TRUE(rig.state.in_contact());
-    EXPECT_NEAR(rig.force_n().z() / (40.0 * 1e-15), 1.0, 0.05);  // a digit of the coordinate is 1.4e-17 m
+    EXPECT_NEAR(rig.force_n().z() / (40.0 * 1e-15), 1.0, 0.05);  // numbers are 1.4e-17 m apart here
     rig.to(extremes::punched(1e-9));
     EXPECT_NEAR(rig.force_n().z() / (40.0 * 1e-9), 1.0, 1e-6);
   }
 }
 
-// Pressed as deep as the body is thick: the force rises to what the depth limit gives and stays there, and the step
-// says so.
-// As printed: Nothing bounds the depth: the cubic term goes on.
+// Pressed as deep as the body is thick: the force rises up to the depth limit and stays constant, and the status
+// reports it. As printed: Nothing bounds the depth: the cubic term continues.
 TEST(DepthAndPlace, DepthOfTheWholeBodyIsLimited) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig rig(extremes::punch_on_cube(formulation));
@@ -68,9 +67,9 @@ TEST(DepthAndPlace, DepthOfTheWholeBodyIsLimited) {
   }
 }
 
-// Driven through the body and out at the far side: the force never turns round, and in the end there is no force, no
-// region and a surface at rest.
-// As printed: The direction is not said; the closest side changes half way, and would throw the tool out.
+// Moved through the body and out at the far side: the force never reverses, and in the end there is no force, no region
+// and a surface at rest. As printed: The direction is not specified; the closest side changes half way, and would push
+// the tool out there.
 TEST(DepthAndPlace, ThroughTheBodyAndOutLeavesNothing) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : {extremes::cube(formulation), extremes::ball(formulation)}) {
@@ -78,7 +77,7 @@ TEST(DepthAndPlace, ThroughTheBodyAndOutLeavesNothing) {
       rig.may = StepStatus::depth_limited | StepStatus::anchors_limited;
       for (int i = 0; i <= 100; ++i) {
         rig.to(test::at(0.003, 0.0, 0.08 - 0.001 * i));
-        // Never turned round, as long as something pushes.
+        // Never reversed, as long as there is a force.
         EXPECT_GE(rig.force_n().z(), 0.0) << i;
       }
       EXPECT_FALSE(rig.state.in_contact());
@@ -88,8 +87,8 @@ TEST(DepthAndPlace, ThroughTheBodyAndOutLeavesNothing) {
   }
 }
 
-// The body wholly inside the tool: no force, and no memory of the way there.
-// As printed: The same: surfaces that do not cut each other are not in contact.
+// The body entirely inside the tool: no force, and none remains from the motion there. As printed: The same: surfaces
+// that do not intersect are not in contact.
 TEST(DepthAndPlace, BodyWhollyInsideTheToolIsNoContact) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::punch_on_cube(formulation);
@@ -103,10 +102,9 @@ TEST(DepthAndPlace, BodyWhollyInsideTheToolIsNoContact) {
   }
 }
 
-// In the middle of the body from the first tick on: a force within the limit, which a step of 1e-12 m changes by no
-// more than slope times step.
-// As printed: With no contact before there is no direction to deform in.
-TEST(DepthAndPlace, ToolWhollyInsideTheBodyIsSteady) {
+// In the middle of the body from the first tick on: a force within the limit, which a step of 1e-12 m changes by at
+// most slope times step. As printed: Without an earlier contact there is no direction of deformation.
+TEST(DepthAndPlace, ToolWhollyInsideTheBodyIsContinuous) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : {extremes::cube(formulation), extremes::ball(formulation)}) {
       Rig rig(scene);
@@ -122,8 +120,8 @@ TEST(DepthAndPlace, ToolWhollyInsideTheBodyIsSteady) {
   }
 }
 
-// A tool larger than the body, lowered over it: the force stays within the law.
-// As printed: The same, as far as its vertices meet the body.
+// A tool larger than the body, lowered over it: the force stays within the law's bound. As printed: The same, as far as
+// its vertices touch the body.
 TEST(DepthAndPlace, ToolLargerThanTheBodyIsBounded) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (scene::Scene scene : {extremes::cube(formulation), extremes::ball(formulation)}) {
@@ -140,9 +138,9 @@ TEST(DepthAndPlace, ToolLargerThanTheBodyIsBounded) {
   }
 }
 
-// 50 mm in one tick: pushed back to where the tool came from, along the direction of a slow press.
-// As printed: The direction is not said; the closest side, at that depth, is any of six.
-TEST(DepthAndPlace, JumpOfFiftyMillimetresKnowsWhereItCameFrom) {
+// 50 mm in one tick: the force points back to where the tool came from, along the direction of a slow press. As
+// printed: The direction is not specified; at that depth the closest side is any of six.
+TEST(DepthAndPlace, JumpOfFiftyMillimetresKeepsItsDirection) {
   IN_BOTH_FORMULATIONS(formulation) {
     const Vec3 middle_m(0.0, 0.0, 0.03);
     for (const Vec3& from : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
@@ -157,9 +155,9 @@ TEST(DepthAndPlace, JumpOfFiftyMillimetresKnowsWhereItCameFrom) {
   }
 }
 
-// 51 mm along the face in one tick: without friction the same as a fresh press there.
-// As printed: The same, once a new submesh has been separated.
-TEST(DepthAndPlace, TangentialJumpIsAFreshPressElsewhere) {
+// 51 mm along the face in one tick: without friction the same as a new press there. As printed: The same, once a new
+// submesh has been separated.
+TEST(DepthAndPlace, TangentialJumpIsANewPress) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig jumped(extremes::cube(formulation)), fresh(extremes::cube(formulation));
     jumped.to(test::pressed(0.002, -0.018, -0.018));
@@ -172,9 +170,8 @@ TEST(DepthAndPlace, TangentialJumpIsAFreshPressElsewhere) {
   }
 }
 
-// From far off towards the middle over corners, edges, faces and the support, in steps and at once: finite and within
-// the law throughout.
-// As printed: A beam of length 0 at a corner, which is an anchor point, is NaN (E9).
+// From far away towards the centre over corners, edges, faces and the support, in steps and at once: finite and within
+// the law's bound. As printed: The beam to a corner, which is an anchor point, has length 0 and is NaN (E9).
 TEST(DepthAndPlace, EveryCornerEdgeAndFaceIsBounded) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : {extremes::cube(formulation), extremes::ball(formulation)}) {
@@ -194,9 +191,9 @@ TEST(DepthAndPlace, EveryCornerEdgeAndFaceIsBounded) {
   }
 }
 
-// On a corner, along the diagonal: the force looks back along it, and all four upper corners feel the same.
-// As printed: NaN, as above (E9).
-TEST(DepthAndPlace, CornersAreAlike) {
+// On a corner, along the diagonal: the force points back along it and is equal on all four upper corners. As printed:
+// NaN, as above (E9).
+TEST(DepthAndPlace, CornersHaveEqualForces) {
   IN_BOTH_FORMULATIONS(formulation) {
     std::vector<double> size_n;
     for (const Vec3& out : {Vec3(1, 1, 1), Vec3(-1, 1, 1), Vec3(1, -1, 1), Vec3(-1, -1, 1)}) {
@@ -216,9 +213,8 @@ TEST(DepthAndPlace, CornersAreAlike) {
   }
 }
 
-// Exactly over an anchor point, an edge, the bottom rim and the middle of the support: a force within the law, and a
-// surface at rest when it goes.
-// As printed: Over an anchor point l_i = 0 and the split is NaN (E9).
+// Exactly over an anchor point, an edge, the bottom rim and the middle of the support: a force within the law's bound,
+// and a surface at rest after release. As printed: Over an anchor point l_i = 0 and the force split is NaN (E9).
 TEST(DepthAndPlace, ExactlyOverAnAnchorAnEdgeAndTheRim) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig rig(extremes::cube(formulation));
@@ -237,9 +233,9 @@ TEST(DepthAndPlace, ExactlyOverAnAnchorAnEdgeAndTheRim) {
   }
 }
 
-// Pressed on the support from below: it answers with force and does not move.
-// As printed: Anchor points of the bottom move like any other; what holds them is not said.
-TEST(DepthAndPlace, SupportFaceStaysPutWhenPressed) {
+// Pressed on the support from below: a contact force without displacement. As printed: Anchor points of the bottom move
+// like any other; the support is not specified.
+TEST(DepthAndPlace, SupportFaceDoesNotMove) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : {extremes::cube(formulation), extremes::ball(formulation)}) {
       Rig rig(scene);
@@ -256,9 +252,9 @@ TEST(DepthAndPlace, SupportFaceStaysPutWhenPressed) {
   }
 }
 
-// A ball led around every free edge of the box at constant depth: in a tick the force changes by at most 4 times slope
-// times step.
-// As printed: The direction is not said; the normal of a mesh jumps at an edge by up to a right angle.
+// A ball moved around every free edge of the box at constant depth: the force changes by at most 4 times slope times
+// step per tick. As printed: The direction is not specified; the normal of a mesh jumps at an edge by up to a right
+// angle.
 TEST(DepthAndPlace, ForceIsContinuousOverEveryEdgeOfABox) {
   IN_BOTH_FORMULATIONS(formulation) {
     struct Edge {
@@ -276,7 +272,7 @@ TEST(DepthAndPlace, ForceIsContinuousOverEveryEdgeOfABox) {
       Rig rig(scene);
       rig.may = StepStatus::anchors_limited;
       constexpr double out_m = 0.010 - 0.002;
-      // In along the first face, a quarter turn about the edge, off along the second.
+      // Along the first face, a quarter turn about the edge, then along the second face.
       const auto pose_at = [&](int i) {
         constexpr int flat = 25, turn = 60;
         Vec3 p_m;
@@ -296,8 +292,8 @@ TEST(DepthAndPlace, ForceIsContinuousOverEveryEdgeOfABox) {
   }
 }
 
-// Led over the anchor points of an ellipsoid: in a tick the force changes by at most 4 times slope times step.
-// As printed: NaN at the anchor point itself (E9); x_i turns round there.
+// Moved over the anchor points of an ellipsoid: the force changes by at most 4 times slope times step per tick. As
+// printed: NaN at the anchor point itself (E9); x_i reverses there.
 TEST(DepthAndPlace, ForceIsContinuousOverAnEllipsoidsAnchor) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::ellipsoid(formulation, Vec3(0.05, 0.03, 0.02), 0.004);

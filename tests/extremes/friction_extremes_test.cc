@@ -1,4 +1,4 @@
-// The extremes: friction that never slips, always slips or is none, and what it may take or give.
+// The extremes: friction that never slips, always slips or is zero, and the work of friction.
 #include "extremes/rig.h"
 
 #include <numbers>
@@ -16,14 +16,14 @@ scene::Scene rubbing(scene::Scene scene, const scene::Friction& friction) {
   return scene;
 }
 
-/// Pressed in and dragged along x.
+/// Pressed in and moved along x.
 void drag(Rig& rig, double depth_m, double way_m, int ticks = 20) {
   rig.to(test::pressed(-0.001));
   for (int i = 0; i <= ticks && !rig.broken(); ++i) rig.to(test::pressed(depth_m, way_m * i / ticks));
 }
 
-// K = 0: no friction to 1e-12, and the stretch is 0 in every tick.
-// As printed: f_max = 0 makes the "impossible case" F_n = f_max / mu_D = 0: the tool falls through the face (E5).
+// K = 0: no friction to 1e-12, and the stretch is 0 in every tick. As printed: f_max = 0 makes the "impossible case"
+// F_n = f_max / mu_D = 0: the tool falls through the face (E5).
 TEST(FrictionExtremes, KOfZeroIsFrictionless) {
   IN_BOTH_FORMULATIONS(formulation) {
     const scene::Scene plain = extremes::cube(formulation);
@@ -41,9 +41,9 @@ TEST(FrictionExtremes, KOfZeroIsFrictionless) {
   }
 }
 
-// mu_D = 0: once it slips it slides without friction, the normal force that of no friction.
-// As printed: F_n keeps the depths as stretched at the onset (E5).
-TEST(FrictionExtremes, MuOfZeroSlidesWithoutFriction) {
+// mu_D = 0: once it slips there is no friction, and the normal force is that without friction. As printed: F_n keeps
+// the depths as stretched at the onset (E5).
+TEST(FrictionExtremes, MuOfZeroSlipsWithoutFriction) {
   IN_BOTH_FORMULATIONS(formulation) {
     const scene::Scene plain = extremes::cube(formulation);
     Rig without(plain), with(rubbing(plain, {0.2, 0.75, 0.0}));
@@ -61,9 +61,9 @@ TEST(FrictionExtremes, MuOfZeroSlidesWithoutFriction) {
   }
 }
 
-// f_max going to 0: the force goes to that without friction, by no more than what f_max leaves.
-// As printed: The normal force goes to 0 with f_max, since F_n = f_max / mu_D (E5).
-TEST(FrictionExtremes, VanishingLimitGoesToTheFrictionlessForce) {
+// f_max going to 0: the force goes to that without friction; the difference is at most what f_max allows. As printed:
+// The normal force goes to 0 with f_max, since F_n = f_max / mu_D (E5).
+TEST(FrictionExtremes, VanishingLimitConvergesToTheFrictionlessForce) {
   IN_BOTH_FORMULATIONS(formulation) {
     const scene::Scene plain = extremes::cube(formulation);
     Rig without(plain);
@@ -84,8 +84,8 @@ TEST(FrictionExtremes, VanishingLimitGoesToTheFrictionlessForce) {
   }
 }
 
-// K as large as a scene may have it: never slips, and 1e3 ticks to and fro end where they began to 1e-12.
-// As printed: The same: Table I's K alone puts f_max at 4 to 13 times F_n (E5).
+// The largest K that a scene may have: never slips, and 1e3 ticks back and forth end where they began to 1e-12. As
+// printed: The same: with Table I's K alone, f_max is 4 to 13 times F_n (E5).
 TEST(FrictionExtremes, HugeKNeverSlips) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig rig(rubbing(extremes::cube(formulation), {1e6, 0.75, 0.4}));
@@ -102,9 +102,8 @@ TEST(FrictionExtremes, HugeKNeverSlips) {
   }
 }
 
-// A stuck contact a thousand times softer or stiffer along the surface than into it: slips late or at once, and slides
-// with mu_D F_n all the same.
-// As printed: There is no such constant.
+// A sticking contact a thousand times softer or stiffer along the surface than normal to it: slips late or at once,
+// always with friction mu_D F_n. As printed: There is no such constant.
 TEST(FrictionExtremes, StiffnessRatioOverSixDecades) {
   for (const double kappa : {1e-3, 1.0, 1e3}) {
     Rig rig(rubbing(extremes::cube(Formulation::corrected), {1.0, 1.0, 0.4, kappa}));
@@ -123,8 +122,8 @@ TEST(FrictionExtremes, StiffnessRatioOverSixDecades) {
   }
 }
 
-// A limit far below mu_D F_n: the friction is cut to f_max, and the normal force stays.
-// As printed: The "impossible case": F_n is thrown away for f_max / mu_D, and the next f_max with it (E5).
+// A limit far below mu_D F_n: the friction is limited to f_max, and the normal force is unchanged. As printed: The
+// "impossible case": F_n is replaced by f_max / mu_D, which changes the next f_max (E5).
 TEST(FrictionExtremes, DynamicFrictionAboveTheStaticLimit) {
   IN_BOTH_FORMULATIONS(formulation) {
     const scene::Scene plain = extremes::cube(formulation);
@@ -144,8 +143,8 @@ TEST(FrictionExtremes, DynamicFrictionAboveTheStaticLimit) {
   }
 }
 
-/// Work of the tool on the body along a closed path over the face, all of it in contact [J], and the force times way
-/// it is made of.
+/// Work of the tool on the body along a closed path over the face, always in contact [J]; and the sum of force times
+/// path, for comparison.
 struct Work {
   double net_j = 0.0, turned_over_j = 0.0;
 };
@@ -165,7 +164,7 @@ Work closed_path(Rig& rig, unsigned seed, double swell_m) {
     }
     return scene::Pose{p_m, Eigen::Quaterniond::Identity()};
   };
-  // Once round before, so that the state is closed too.
+  // One round in advance, so that the state is periodic, too.
   rig.to({pose_at(0).position_m + Vec3(0, 0, 0.02), Eigen::Quaterniond::Identity()});
   for (int i = 0; i <= ticks; ++i) step_force(rig.model, pose_at(i), rig.state);
   Work work;
@@ -183,9 +182,9 @@ Work closed_path(Rig& rig, unsigned seed, double swell_m) {
   return work;
 }
 
-// Random closed paths over the face at one depth, round and round: no work comes out, at any strength of friction.
-// As printed: Sliding is against the motion, so it takes; at the onset the force jumps (E5).
-TEST(FrictionExtremes, ClosedPathsAtOneDepthOnlyTake) {
+// Random closed paths over the face at one depth, several rounds: friction never gives work back, whatever its
+// constants. As printed: Slip is opposite to the motion, so friction takes work; at the onset the force jumps (E5).
+TEST(FrictionExtremes, ClosedPathsAtOneDepthDissipate) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const double K : {1e-3, 0.3, 1e6}) {
       scene::Scene scene = rubbing(extremes::cube(formulation), {K, 0.75, std::min(0.4, K)});
@@ -203,10 +202,9 @@ TEST(FrictionExtremes, ClosedPathsAtOneDepthOnlyTake) {
   }
 }
 
-// Random closed paths over the face, the depth swelling on the way: a flat punch gets no work out; a ball that never
-// slips gets less than 1 % of what it turns over, since its equivalent depth is a mean.
-// As printed: The same.
-TEST(FrictionExtremes, ClosedPathsWithSwellingDepth) {
+// Random closed paths over the face with a varying depth: a flat punch gains no work; a ball that never slips gains
+// less than 1 % of the exchanged work, since its equivalent depth is a mean. As printed: The same.
+TEST(FrictionExtremes, ClosedPathsWithVaryingDepth) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const bool flat : {true, false}) {
       for (const double K : {1e-3, 0.3, 1e6}) {
@@ -225,9 +223,9 @@ TEST(FrictionExtremes, ClosedPathsWithSwellingDepth) {
   }
 }
 
-// Turning back after a slip: the contact sticks, and the force changes by no more than the law's slope times the step.
-// As printed: The friction changes its sign at once (E5).
-TEST(FrictionExtremes, TurningBackIsContinuous) {
+// Reversal after a slip: the contact sticks, and the force changes by at most the law's slope times the step. As
+// printed: The friction changes its sign at once (E5).
+TEST(FrictionExtremes, ReversalIsContinuous) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig rig(rubbing(extremes::cube(formulation), {3.0, 0.75, 0.4}));
     rig.may = StepStatus::anchors_limited;
@@ -250,8 +248,8 @@ TEST(FrictionExtremes, TurningBackIsContinuous) {
   }
 }
 
-// A step of no way, and one of 1e-300 m: the same force and stretch, stuck or sliding.
-// As printed: A step of zero has no direction (E5); here it keeps the last one.
+// A step of length zero, and one of 1e-300 m: the same force and stretch, sticking or slipping. As printed: A step of
+// zero has no direction (E5); here it keeps the last one.
 TEST(FrictionExtremes, StepOfZeroChangesNothing) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const double K : {0.2, 1e6}) {
@@ -269,8 +267,9 @@ TEST(FrictionExtremes, StepOfZeroChangesNothing) {
   }
 }
 
-// A punch dragged at depths from 1e-15 m to 10 mm: friction within its limit, and with beta = 1 it slides at each.
-// As printed: F_n = f_max / mu_D breaks the limit by the answer (E5); here only finite and not pulling.
+// A punch moved along the face at depths from 1e-15 m to 10 mm: friction within its limit, and with beta = 1 it slips
+// at every depth. As printed: F_n = f_max / mu_D exceeds the limit of the new F_n (E5); here only finite and not
+// adhesive.
 TEST(FrictionExtremes, EveryDepthKeepsTheLimit) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Friction& friction : {scene::Friction{0.6, 2.0 / 3.0, 0.5}, scene::Friction{0.6, 1.0, 0.6}}) {

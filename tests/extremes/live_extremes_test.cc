@@ -1,4 +1,4 @@
-// The extremes: what reaches the hand.
+// The extremes: the force sent to the device.
 #include "extremes/rig.h"
 #include "unit/fast/live/lock_step.h"
 
@@ -18,10 +18,10 @@ scene::Scene live_scene(scene::Formulation formulation) {
   return scene;
 }
 
-// A device that jumps, says NaN, quaternions of no length or nothing: every force is finite, at most force_max_n, and
-// changes by at most its slew.
-// As printed: Not spoken of: the computed force goes to the device.
-TEST(LiveExtremes, WhateverTheDeviceSaysTheForceKeepsItsLimits) {
+// A device whose poses jump, are NaN, are missing or have quaternions of length zero: every force is finite, at most
+// force_max_n, and changes at most at its largest rate. As printed: Not mentioned: the computed force goes to the
+// device.
+TEST(LiveExtremes, AnyDevicePoseKeepsTheForceLimits) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const double K : {0.5, 1e6}) {
       scene::Scene scene = live_scene(formulation);
@@ -54,9 +54,9 @@ TEST(LiveExtremes, WhateverTheDeviceSaysTheForceKeepsItsLimits) {
   }
 }
 
-// A device that falls silent in contact: the force fades to 0 within release_s, never rising, and stays there.
-// As printed: Not spoken of.
-TEST(LiveExtremes, ADeviceThatFallsSilentIsLetGo) {
+// A device that sends no more poses while in contact: the force fades to 0 within release_s, never rising, and stays
+// there. As printed: Not mentioned.
+TEST(LiveExtremes, SilentDeviceFadesToZero) {
   IN_BOTH_FORMULATIONS(formulation) {
     const scene::Scene scene = live_scene(formulation);
     test::FakeDevice device([](const Tick& tick, DeviceSample& sample) {

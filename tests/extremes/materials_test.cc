@@ -20,7 +20,7 @@ scene::Inclusion sphere_at(const Vec3& center_m, double radius_m, double youngs_
   return inclusion;
 }
 
-// Poisson's ratio from 0 to 0.5: the force of one region does not know it, and that of several has no jump at 0.5.
+// Poisson's ratio from 0 to 0.5: the force of one region does not depend on it, and that of several has no jump at 0.5.
 // As printed: The elasticity matrix is singular at 0.5 if it is inverted (E11).
 TEST(MaterialExtremes, PoissonsRatioFromZeroToAHalf) {
   IN_BOTH_FORMULATIONS(formulation) {
@@ -51,8 +51,8 @@ TEST(MaterialExtremes, PoissonsRatioFromZeroToAHalf) {
   }
 }
 
-// An inclusion of the body's own material: the same as none.
-// As printed: The deflection of one material in two parts is up to 16 times that of one part (E13).
+// An inclusion of the body's own material: no effect. As printed: The deflection of one material in two segments is up
+// to 16 times that of one segment (E13).
 TEST(MaterialExtremes, InclusionOfTheBodysOwnMaterialIsNone) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene plain = extremes::cube(formulation), filled = plain;
@@ -70,8 +70,8 @@ TEST(MaterialExtremes, InclusionOfTheBodysOwnMaterialIsNone) {
   }
 }
 
-// Moduli in the ratio 1e-6 to 1e6: finite, the force untouched, the beams in balance.
-// As printed: (12) is a tautology and leaves the parts' elongations open (E14); the balance is least squares (E8).
+// Moduli in the ratio 1e-6 to 1e6: finite, the force unchanged, the beams in equilibrium. As printed: (12) is a
+// tautology and does not determine the segments' elongations (E14); the equilibrium is least squares (E8).
 TEST(MaterialExtremes, InclusionRatiosOverTwelveDecades) {
   IN_BOTH_FORMULATIONS(formulation) {
     double force_n = -1.0;
@@ -90,8 +90,8 @@ TEST(MaterialExtremes, InclusionRatiosOverTwelveDecades) {
   }
 }
 
-// An inclusion that fills the body: a body of that material.
-// As printed: The same limit: the printed k is exact where one part is the whole beam.
+// An inclusion that fills the body: the same as a body of that material. As printed: The same limit: the printed k is
+// exact where one segment is the whole beam.
 TEST(MaterialExtremes, InclusionFillingTheBodyIsTheBody) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene stiff = extremes::ball(formulation), filled = stiff;
@@ -111,8 +111,8 @@ TEST(MaterialExtremes, InclusionFillingTheBodyIsTheBody) {
   }
 }
 
-// As many inclusions as there may be, in the way of one beam: split into all their parts, finite, the beams in balance.
-// As printed: One inclusion per beam is spoken of.
+// The largest number of inclusions, all on one beam: split into all its segments, finite, the beams in equilibrium. As
+// printed: Only one inclusion per beam is mentioned.
 TEST(MaterialExtremes, SixteenInclusions) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::cube(formulation);
@@ -131,8 +131,8 @@ TEST(MaterialExtremes, SixteenInclusions) {
   }
 }
 
-// An inclusion a micrometre under the contact, the tool sliding over it: bounded, and the force that of the body alone.
-// As printed: A part of no length divides by nothing.
+// An inclusion a micrometre under the contact, with the tool moving over it: bounded, and the force of the body alone.
+// As printed: A segment of length zero is a division by zero.
 TEST(MaterialExtremes, InclusionTouchingTheContact) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::cube(formulation), plain = scene;
@@ -146,8 +146,8 @@ TEST(MaterialExtremes, InclusionTouchingTheContact) {
   }
 }
 
-// Past the peak of a softening law: the force rises to its peak and stays there, and the step says so.
-// As printed: The absolute value makes the force fall to 0 and rise again to 9 times the peak (E1).
+// Beyond the peak of a softening law: the force rises to its peak and stays there, and the status reports it. As
+// printed: The absolute value makes the force fall to 0 and rise again to 9 times the peak (E1).
 TEST(MaterialExtremes, SofteningLawSaturatesAtItsPeak) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::cube(formulation);
@@ -159,7 +159,7 @@ TEST(MaterialExtremes, SofteningLawSaturatesAtItsPeak) {
     bool saturated = false;
     for (int i = 0; i <= 60; ++i) {
       saturated = has(rig.to(test::pressed(0.0001 * i)), StepStatus::law_saturated) || saturated;
-      // A sample that comes in dilutes the mean.
+      // An additional sample may lower the mean depth.
       EXPECT_GE(rig.force_n().norm(), before_n * (1.0 - 0.02));
       before_n = rig.force_n().norm();
       EXPECT_LE(before_n, 2.0 / 3.0 * 4000.0 * 0.002 * (1.0 + 1e-12));
@@ -168,9 +168,9 @@ TEST(MaterialExtremes, SofteningLawSaturatesAtItsPeak) {
   }
 }
 
-// k1 = 0: the force goes with the cube of the depth, and its inverse gives the depth back.
-// As printed: The same; the closed inverse has k1 in its denominators.
-TEST(MaterialExtremes, PurelyCubicLawIsTheCube) {
+// k1 = 0: the force is proportional to the cube of the depth, and the inverse law gives the depth back. As printed: The
+// same; the closed inverse has k1 in its denominators.
+TEST(MaterialExtremes, PurelyCubicLaw) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::punch_on_cube(formulation);
     scene.contact.k1_n_per_m = 0.0;
@@ -184,9 +184,9 @@ TEST(MaterialExtremes, PurelyCubicLawIsTheCube) {
   }
 }
 
-// C_n at its limit and far past it: corrected never turns the surface inside out; both stay bounded.
-// As printed: Beyond the limit points beside the contact move against it, by up to C_n over the limit (E16).
-TEST(MaterialExtremes, LocalFactorAtItsLimitAndPastIt) {
+// C_n at its limit and far beyond it: corrected never inverts the surface; both stay bounded. As printed: Beyond the
+// limit points beside the contact move against it, by up to C_n over the limit (E16).
+TEST(MaterialExtremes, LocalFactorAtItsLimitAndBeyond) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::cube(formulation);
     const double limit = 1.0 / std::log((scene.fast.r_R_m + scene.fast.C_r_m) / scene.fast.C_r_m);
@@ -208,10 +208,9 @@ TEST(MaterialExtremes, LocalFactorAtItsLimitAndPastIt) {
   }
 }
 
-// Contacts of 1 to 1e5 samples and of area 0 to 1 m2: the corrected factor is 1 at r_R and at the rim and has no step
-// between.
-// As printed: It jumps at r_R by 41 % for two samples and 84 % for 200 (E16); here only bounded.
-TEST(MaterialExtremes, LocalFactorHasNoStep) {
+// Contacts of 1 to 1e5 samples and of area 0 to 1 m2: the corrected factor is 1 at r_R and at the contact's edge, and
+// has no jump between. As printed: It jumps at r_R by 41 % for two samples and 84 % for 200 (E16); here only bounded.
+TEST(MaterialExtremes, LocalFactorIsContinuous) {
   const LocalConstants local{0.4, 0.002, 0.015};
   for (const double area_m2 : {0.0, 1e-300, 1e-12, 1e-5, 3e-4, 1.0}) {
     for (const int n : {1, 2, 200, 100000}) {
@@ -221,7 +220,7 @@ TEST(MaterialExtremes, LocalFactorHasNoStep) {
       EXPECT_DOUBLE_EQ(before, 1.0);
       for (double r_m = 1e-6; r_m <= local.r_R_m; r_m += 1e-6) {
         const double w = local_factor_corrected(local, size, r_m);
-        // Steepest over the core radius: 1.5 (1 - w) / C_r and C_n / C_r.
+        // Largest slope over the core radius: 1.5 (1 - w) / C_r and C_n / C_r.
         ASSERT_LE(std::abs(w - before), 2.0 / local.C_r_m * 1e-6);
         before = w;
         const double printed = local_factor_published(local, size, r_m);
@@ -231,8 +230,8 @@ TEST(MaterialExtremes, LocalFactorHasNoStep) {
   }
 }
 
-// The area-aware law with a contact of no area: the cubic term alone, and with k3 = 0 no force.
-// As printed: There is no such law: the force does not know the area (E7).
+// The area-aware law with a contact of zero area: the cubic term alone, and with k3 = 0 no force. As printed: There is
+// no such law: the force does not depend on the area (E7).
 TEST(MaterialExtremes, AreaAwareLawWithVanishingArea) {
   scene::Contact contact;
   contact.law = scene::ContactLaw::area_aware;
@@ -254,7 +253,7 @@ TEST(MaterialExtremes, AreaAwareLawWithVanishingArea) {
       rig.may = StepStatus::anchors_limited;
       rig.to(extremes::punched(0.001));
       const double of_the_foot = rig.force_n().norm() / (8e6 * side_m / std::sqrt(std::numbers::pi) * 0.001);
-      // One sample under the mass centre: all shares as printed are 0, and the flanks count as much as the foot (E6).
+      // One sample under the mass centre: all printed weights are 0, and the flanks count as much as the foot (E6).
       EXPECT_GT(of_the_foot, formulation == Formulation::corrected ? 1.0 - 1e-6 : 0.25);
       EXPECT_LT(of_the_foot, 1.0 + 1e-6);
       EXPECT_LT(rig.force_n().norm(), before_n);

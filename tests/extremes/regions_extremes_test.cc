@@ -1,4 +1,4 @@
-// The extremes: many regions, too many, regions that merge and split, stand opposite or mirror each other.
+// The extremes: many regions, too many, and regions that merge, split, face each other or are mirror images.
 #include "extremes/rig.h"
 
 #include <numbers>
@@ -21,9 +21,9 @@ std::vector<Vec3> grid_of(int columns, int rows, double pitch_m) {
   return feet_m;
 }
 
-// Twelve pins and room for four regions: four are felt, the step says that there are more, and all is bounded.
-// As printed: One new region in a time step is assumed; below 10 the rate is kept.
-TEST(RegionExtremes, MoreRegionsThanThereIsRoomFor) {
+// Twelve pins and a limit of four regions: four have a force, the status reports that there are more, and everything is
+// bounded. As printed: At most one new region per time step is assumed; up to 10 regions keep the rate.
+TEST(RegionExtremes, MoreRegionsThanTheLimit) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::pins_on_cube(formulation, grid_of(4, 3, 0.012));
     scene.fast.max_regions = 4;
@@ -40,9 +40,9 @@ TEST(RegionExtremes, MoreRegionsThanThereIsRoomFor) {
   }
 }
 
-// Four pins rocked over the face with room for two regions: the place of one that goes is taken by one that had none.
-// As printed: One new region in a time step is assumed.
-TEST(RegionExtremes, AFreedPlaceIsTakenAgain) {
+// Four pins rocked over the face with a limit of two regions: when one region ends, another pin gets one. As printed:
+// At most one new region per time step is assumed.
+TEST(RegionExtremes, FreedRegionIsReused) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::pins_on_cube(formulation, grid_of(4, 1, 0.012));
     scene.fast.max_regions = 2;
@@ -73,9 +73,9 @@ TEST(RegionExtremes, AFreedPlaceIsTakenAgain) {
   }
 }
 
-// Ten pins down, 20 ticks of standing still, and up: ten regions, no drift, nothing left.
-// As printed: The same, in the order of creation, each on the shape of those before (E18).
-TEST(RegionExtremes, TenPinsStandStill) {
+// Ten pins pressed in, 20 ticks at rest, and released: ten regions, no drift, nothing left. As printed: The same, in
+// the order of creation, each on the shape of those before (E18).
+TEST(RegionExtremes, TenPinsAtRest) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig rig(extremes::pins_on_cube(formulation, grid_of(5, 2, 0.010)));
     rig.may = StepStatus::anchors_limited;
@@ -93,7 +93,7 @@ TEST(RegionExtremes, TenPinsStandStill) {
   }
 }
 
-/// A tool with two feet, joined by a hollow this high above them.
+/// A tool with two feet, joined by a hollow of this height.
 scene::Scene hollow_on_cube(Formulation formulation, double hollow_m) {
   scene::Scene scene = extremes::cube(formulation);
   scene::TriangleMesh mesh;
@@ -109,9 +109,9 @@ scene::Scene hollow_on_cube(Formulation formulation, double hollow_m) {
   return scene;
 }
 
-// Two regions that merge as the hollow between them fills, and split on the way back: one region, the older one's, then
-// two; the same force at the same depth both ways, and nothing left at the end.
-// As printed: The same; since the force of a region is a mean, it falls where two merge, by half and more (E7).
+// Two regions that merge as the hollow between them touches, and split on release: one region with the older one's id,
+// then two; the same force at the same depth both times, and nothing left at the end. As printed: The same; since the
+// force of a region is a mean, it falls where two merge, by half and more (E7).
 TEST(RegionExtremes, TwoMergeIntoOneAndSplitAgain) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig rig(hollow_on_cube(formulation, 0.001));
@@ -119,7 +119,7 @@ TEST(RegionExtremes, TwoMergeIntoOneAndSplitAgain) {
     std::vector<int> counts;
     std::vector<double> force_n;
     const auto to = [&](int i) {
-      rig.to(extremes::sunk(0.0001 * i + 1e-6));  // the hollow's touch is not left to rounding
+      rig.to(extremes::sunk(0.0001 * i + 1e-6));  // not decided by rounding whether the hollow touches
       if (counts.empty() || counts.back() != rig.state.region_count) counts.push_back(rig.state.region_count);
       force_n.push_back(rig.force_n().z());
       if (rig.state.region_count == 1) {
@@ -135,9 +135,9 @@ TEST(RegionExtremes, TwoMergeIntoOneAndSplitAgain) {
   }
 }
 
-// Two feet from the side, the second so little behind that it first comes no nearer than the bulge beside the other:
-// once it is inside, its region looks into the side, too. As printed: The same.
-TEST(RegionExtremes, ARegionThatBeginsOutsideLooksTheWayItIsMet) {
+// Two feet from the side, the second slightly behind, so that it first only reaches the bulge beside the other: once it
+// is inside, its region's direction is into the side, too. As printed: The same.
+TEST(RegionExtremes, RegionThatBeginsOutsideGetsItsDirection) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig rig(extremes::pins_on_cube(formulation, {Vec3(-0.008, 0.0, 0.0), Vec3(0.008, 0.0, 0.001)}));
     rig.may = StepStatus::anchors_limited;
@@ -157,8 +157,8 @@ TEST(RegionExtremes, ARegionThatBeginsOutsideLooksTheWayItIsMet) {
   }
 }
 
-// Gripped from two opposite sides: each side is pushed back, the two nearly cancel, and the support carries what is
-// left. As printed: The second of the two meets the shape that the first has left, and is a little weaker (E18).
+// Gripped from two opposite sides: the forces are opposite and nearly cancel, and the support carries the rest. As
+// printed: The second of the two is evaluated on the shape left by the first and is a little weaker (E18).
 TEST(RegionExtremes, OppositeSidesNearlyCancel) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::cube(formulation);
@@ -180,8 +180,9 @@ TEST(RegionExtremes, OppositeSidesNearlyCancel) {
   }
 }
 
-// Two pins that are mirror images, one a micrometre longer, then the other: mirrored forces, and the same total.
-// As printed: The same; but the second of two alike meets the shape of the first, and feels a seventh of it (E18).
+// Two pins that are mirror images, one a micrometre longer, then the other: mirrored forces, and the same total. As
+// printed: The same; but the second of two equal pins is evaluated on the shape of the first, and its force is a
+// seventh (E18).
 TEST(RegionExtremes, MirroredPinsHaveMirroredForces) {
   IN_BOTH_FORMULATIONS(formulation) {
     std::vector<Vec3> first_n, second_n;
@@ -202,14 +203,14 @@ TEST(RegionExtremes, MirroredPinsHaveMirroredForces) {
   }
 }
 
-// Pins exactly r_th apart, a digit less and a digit more: one region or two, bounded in each case.
-// As printed: The same: points closer than a threshold are one region.
+// Pins exactly r_th apart, and the next smaller and larger number: one region or two, bounded in each case. As printed:
+// The same: points closer than a threshold are one region.
 TEST(RegionExtremes, ExactlyTheThresholdApart) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const double off : {-1e-9, -1e-16, 0.0, 1e-16, 1e-9}) {
       scene::Scene scene = extremes::pins_on_cube(formulation, {Vec3(-0.005, 0, 0), Vec3(0.005, 0, 0)});
       Rig probe(scene);
-      // The samples that stand nearest each other.
+      // The two closest samples of different pins.
       double gap_m = 1e300;
       const ToolSamples& tool = probe.model.tool;
       for (std::size_t i = 0; i < tool.x_T_m.size(); ++i) {

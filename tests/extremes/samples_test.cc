@@ -1,4 +1,4 @@
-// The extremes: how many samples the tool has, how many triangles the body, and slivers among both.
+// The extremes: the number of the tool's samples and of the body's triangles, and slivers among both.
 #include "extremes/rig.h"
 
 namespace touchstone::fast {
@@ -8,10 +8,10 @@ using extremes::Rig;
 using scene::Formulation;
 using scene::Vec3;
 
-// A tool of one sample, as printed: a point contact, its force the law's at its depth, head on or on edge. Corrected,
-// cells are made where they are needed, and the force is nearly that of the default number.
-// As printed: A point under the mass centre has no lever arm, and its share is 0 / 0 (E6).
-TEST(SampleExtremes, OneSampleIsAPointContactOrAskedForMore) {
+// A tool of one sample, as printed: a point contact with the law's force at its depth, on a face or an edge. Corrected,
+// cells are refined where needed, and the force is nearly that of the default number. As printed: A point under the
+// mass centre has no lever arm, and its weight is 0 / 0 (E6).
+TEST(SampleExtremes, OneSample) {
   scene::Scene scene = extremes::cube(Formulation::published);
   scene.fast.tool_samples = 1;
   Rig rig(scene);
@@ -41,9 +41,9 @@ TEST(SampleExtremes, OneSampleIsAPointContactOrAskedForMore) {
   EXPECT_NEAR(force_n[0], force_n[1], 0.02 * force_n[1]);
 }
 
-// 1e5 samples: force and corrected surface go to a limit, each five times as many samples nearer to it.
-// As printed: The more samples, the shallower the surface beside the contact, by 1 + ln n (E16).
-TEST(SampleExtremes, HundredThousandSamplesAreNearTheLimit) {
+// 1e5 samples: force and corrected surface converge, closer with every factor of five. As printed: The more samples,
+// the shallower the surface beside the contact, by 1 + ln n (E16).
+TEST(SampleExtremes, HundredThousandSamplesConverge) {
   IN_BOTH_FORMULATIONS(formulation) {
     std::vector<Vec3> force_n;
     std::vector<double> moved_m;
@@ -72,8 +72,8 @@ TEST(SampleExtremes, HundredThousandSamplesAreNearTheLimit) {
   }
 }
 
-/// The punch as a mesh. Each face is a fan about a point this far from its first corner, in parts of its diagonal, with
-/// each side cut into so many pieces.
+/// The punch as a mesh. Each face is a fan of triangles about a point at this distance from its first corner, in units
+/// of its diagonal; each side is divided into so many pieces.
 scene::Scene meshed_punch(Formulation formulation, double apex, int pieces) {
   scene::Scene scene = extremes::cube(formulation);
   const Vec3 half_m(0.005, 0.005, 0.01);
@@ -107,10 +107,9 @@ scene::Scene meshed_punch(Formulation formulation, double apex, int pieces) {
   return scene;
 }
 
-// A tool's mesh of slivers a million times as long as wide, and of triangles without area: the corrected force is that
-// of the tool itself.
-// As printed: Contact points are the mesh's vertices, "provided that these vertex points are evenly distributed": each
-// counts the same, whatever its area (E6).
+// A tool's mesh with slivers a million times as long as wide, and with triangles of zero area: the corrected force is
+// that of the tool itself. As printed: Contact points are the mesh's vertices, "provided that these vertex points are
+// evenly distributed": each has the same weight, whatever its area (E6).
 TEST(SampleExtremes, ToolMeshOfSlivers) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const double tilt : {0.0, 0.05}) {
@@ -134,10 +133,10 @@ TEST(SampleExtremes, ToolMeshOfSlivers) {
   }
 }
 
-// A bar 200 times as long as wide on as few triangles as there may be: normals of length 1, the surface bounded, and
-// the force that of 20000 triangles to the last bit.
-// As printed: Contact is found on the body's mesh, so the force hangs on its triangles.
-TEST(SampleExtremes, BodyOfSliversLeavesTheForceAlone) {
+// A bar 200 times as long as wide with the fewest triangles allowed: normals of length 1, the surface bounded, and
+// exactly the force for 20000 triangles. As printed: Contact is found on the body's mesh, so the force depends on its
+// triangles.
+TEST(SampleExtremes, BodyOfSlivers) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::cube(formulation);
     scene.body.size_m = Vec3(2.0, 0.01, 0.01);
@@ -154,8 +153,8 @@ TEST(SampleExtremes, BodyOfSliversLeavesTheForceAlone) {
   }
 }
 
-// As few samples as a tool of each shape may have: a force within the law from every side.
-// As printed: A contact without a vertex of the tool in it has no shares: 0 / 0.
+// The fewest samples that a tool of each shape may have: a force within the law's bound from every side. As printed: A
+// contact without a vertex of the tool has no weights: 0 / 0.
 TEST(SampleExtremes, FewestSamplesOfEveryTool) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::ToolShape shape :

@@ -1,4 +1,4 @@
-// The extremes: bodies that are needles, plates, pointed, tiny or huge.
+// The extremes: bodies that are needles, plates, pointed, tiny or very large.
 #include "extremes/rig.h"
 
 namespace touchstone::fast {
@@ -15,15 +15,15 @@ scene::Scene revolution(Formulation formulation, const scene::Profile& profile) 
   return scene;
 }
 
-/// The first sample stands at most this far behind the ball's outline, along any way.
+/// The first sample is at most this far behind the ball's surface, in any direction.
 constexpr double touch_m = 0.0005;
 
-/// Moved towards the body's middle from the given side, to this depth under the point of first touch, and off.
+/// Moved towards the body's centre from the given side, to this depth beyond first touch, and back.
 double press_from(Rig& rig, const Vec3& side, double depth_m, const Vec3& aside_m = Vec3::Zero()) {
   const scene::Bounds bounds = rig.model.body->bounds();
   const Vec3 middle_m = 0.5 * (bounds.lower_m + bounds.upper_m) + aside_m;
   const double far_m = (bounds.upper_m - bounds.lower_m).norm() + 0.05;
-  // First touch of a ball of 10 mm along this way.
+  // First touch of a ball of 10 mm along this line.
   double low_m = 0.0, high_m = far_m;
   for (int i = 0; i < 60; ++i) {
     const double at_m = 0.5 * (low_m + high_m);
@@ -39,7 +39,7 @@ double press_from(Rig& rig, const Vec3& side, double depth_m, const Vec3& aside_
   return most_n;
 }
 
-// An ellipsoid 40 times as long as wide: pressed from every side, on its tips and its flanks, within the law.
+// An ellipsoid 40 times as long as wide: pressed from every side, on its tips and its flanks, within the law's bound.
 // As printed: The same away from the tips, which are anchor points (E9).
 TEST(ShapeExtremes, NeedleEllipsoid) {
   IN_BOTH_FORMULATIONS(formulation) {
@@ -52,8 +52,8 @@ TEST(ShapeExtremes, NeedleEllipsoid) {
   }
 }
 
-// An ellipsoid 40 times as wide as high: pressed from every side, on its rim and its flats, within the law.
-// As printed: The same away from the anchor points (E9).
+// An ellipsoid 40 times as wide as high: pressed from every side, on its rim and its flat sides, within the law's
+// bound. As printed: The same away from the anchor points (E9).
 TEST(ShapeExtremes, PancakeEllipsoid) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig rig(extremes::ellipsoid(formulation, Vec3(0.1, 0.1, 0.0025), 0.0005));
@@ -66,8 +66,8 @@ TEST(ShapeExtremes, PancakeEllipsoid) {
   }
 }
 
-// A plate of 0.5 mm on 200 mm: pressed through and off; the depth limit is a quarter of a millimetre, and said.
-// As printed: Nothing bounds the depth.
+// A plate of 0.5 mm on 200 mm: pressed through and released; the depth is limited to a quarter of a millimetre, and the
+// status reports it. As printed: Nothing bounds the depth.
 TEST(ShapeExtremes, PlateOfHalfAMillimetre) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::punch_on_cube(formulation);
@@ -88,15 +88,14 @@ TEST(ShapeExtremes, PlateOfHalfAMillimetre) {
   }
 }
 
-// A cone of 11 degrees, pressed on its apex, slowly and in one tick: the force along the axis; and from every side,
-// within the law.
-// As printed: The apex is an anchor point, and the beam to it has no length (E9).
+// A cone of 11 degrees, pressed on its apex, slowly and in one tick: the force is along the axis; from every side it is
+// within the law's bound. As printed: The apex is an anchor point, and the beam to it has length 0 (E9).
 TEST(ShapeExtremes, SharpApex) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Profile cone;
     cone.rz_m = {{0.0, 0.0}, {0.01, 0.0}, {0.0, 0.1}};
     scene::Scene scene = revolution(formulation, cone);
-    scene.fast.tool_samples = 50000;  // closer than the cone is thick at this depth
+    scene.fast.tool_samples = 50000;  // closer than the cone's thickness at this depth
     Rig rig(scene);
     rig.may = StepStatus::anchors_limited | StepStatus::depth_limited;
     for (const int ticks : {1, 60}) {
@@ -110,8 +109,9 @@ TEST(ShapeExtremes, SharpApex) {
   }
 }
 
-// A wire of 0.4 mm on 100 mm, and a coin of 0.2 mm on 60 mm: within the law from every side, and nothing left; on end,
-// a wire thinner than the samples stand apart is missed. As printed: The same with the vertices of the tool's mesh.
+// A wire of 0.4 mm on 100 mm, and a coin of 0.2 mm on 60 mm: within the law's bound from every side, and nothing left;
+// end on, a wire thinner than the distance between samples is missed. As printed: The same with the vertices of the
+// tool's mesh.
 TEST(ShapeExtremes, WireAndCoin) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const auto& [r_m, h_m] : {std::pair(0.0002, 0.1), std::pair(0.03, 0.0002)}) {
@@ -129,8 +129,8 @@ TEST(ShapeExtremes, WireAndCoin) {
   }
 }
 
-/// Everything this many times as long. Of the law k1 goes with the length and k3 against it, so that forces go with its
-/// square as the beams' do.
+/// All lengths times s. Of the law, k1 is scaled by s and k3 by 1 / s, so that forces are proportional to s^2, as are
+/// those of the beams.
 scene::Scene scaled(scene::Scene scene, double s) {
   scene.body.size_m *= s;
   scene.body.radius_m *= s;
@@ -146,9 +146,9 @@ scene::Scene scaled(scene::Scene scene, double s) {
   return scene;
 }
 
-// Bodies of 0.1 mm and of 8 m: forces go with the square of the length, displacements with the length.
-// As printed: The same: no length is built in.
-TEST(ShapeExtremes, TinyAndHugeBodiesAreAlike) {
+// Bodies of 0.1 mm and of 8 m: forces are proportional to the square of the length, displacements to the length. As
+// printed: The same: the method has no fixed length.
+TEST(ShapeExtremes, TinyAndHugeBodies) {
   IN_BOTH_FORMULATIONS(formulation) {
     const std::vector<scene::Scene> scenes{extremes::cube(formulation), extremes::ball(formulation),
                                            extremes::ellipsoid(formulation, Vec3(0.05, 0.03, 0.02), 0.004)};

@@ -10,7 +10,7 @@ using extremes::Rig;
 using scene::Formulation;
 using scene::Vec3;
 
-/// A split of its own, away from the tick.
+/// A force split outside the tick.
 struct Split {
   explicit Split(const scene::Scene& scene)
       : model(scene), skeleton(model.skeleton), ends(model.skeleton.anchor_m.size()) {}
@@ -30,9 +30,9 @@ struct Split {
   BeamEnds ends;
 };
 
-// A force straight along one beam: carried in balance.
-// As printed: y_i of that beam is 0 / 0; the least squares leave a residual, here of no more than the force (E8).
-TEST(SkeletonExtremes, ForceAlongABeamIsCarried) {
+// A force exactly along one beam: the beams are in equilibrium. As printed: y_i of that beam is 0 / 0; least squares
+// leave a residual, here at most the force (E8).
+TEST(SkeletonExtremes, ForceAlongABeam) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig rig(extremes::cube(formulation));
     rig.may = StepStatus::anchors_limited;
@@ -44,9 +44,9 @@ TEST(SkeletonExtremes, ForceAlongABeamIsCarried) {
   }
 }
 
-// All anchor points in one plane with the contact, the force at right angles to it: finite, in balance, all bending.
-// As printed: The axial sum g is 0, so its factor a is 0 / 0 (E8).
-TEST(SkeletonExtremes, AllBeamsInAPlaneCarryAForceAcrossIt) {
+// All anchor points in one plane with the contact, the force perpendicular to it: finite, in equilibrium, all in
+// bending. As printed: The axial sum g is 0, so its factor a is 0 / 0 (E8).
+TEST(SkeletonExtremes, ForceAcrossAPlaneOfBeams) {
   IN_BOTH_FORMULATIONS(formulation) {
     Split split(extremes::cube(formulation));
     for (Vec3& p_m : split.skeleton.anchor_m) p_m.z() = 0.06;
@@ -59,8 +59,7 @@ TEST(SkeletonExtremes, AllBeamsInAPlaneCarryAForceAcrossIt) {
 }
 
 // The contact on an anchor point itself: no beam shorter than r_R, the split finite and the same on both sides of the
-// point.
-// As printed: l_i = 0 and NaN; a hair further one beam takes all (E9).
+// point. As printed: l_i = 0 and NaN; slightly beside it one beam takes everything (E9).
 TEST(SkeletonExtremes, ContactOnAnAnchorHasNoShortBeam) {
   IN_BOTH_FORMULATIONS(formulation) {
     Split split(extremes::cube(formulation));
@@ -80,9 +79,8 @@ TEST(SkeletonExtremes, ContactOnAnAnchorHasNoShortBeam) {
   }
 }
 
-// s_c over twelve decades: the force does not know it; the thicker the beams the less the anchor points move, never
-// more than the contact.
-// As printed: Thin beams tear the body off its contact (E17).
+// s_c over twelve decades: the force does not depend on it; the thicker the beams, the less the anchor points move,
+// never more than the contact. As printed: Thin beams move the body away from its contact (E17).
 TEST(SkeletonExtremes, CrossSectionOverTwelveDecades) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (scene::Scene scene : {extremes::cube(formulation), extremes::ball(formulation)}) {
@@ -106,9 +104,9 @@ TEST(SkeletonExtremes, CrossSectionOverTwelveDecades) {
   }
 }
 
-// E over twelve decades: the force is the law's, whatever E, and so are the beams' shares of it.
-// As printed: The same: E enters the displacements alone.
-TEST(SkeletonExtremes, YoungsModulusOverTwelveDecadesLeavesForceAndSharesAlone) {
+// E over twelve decades: the force is the law's, whatever E, and so are the fractions that the beams carry. As printed:
+// The same: E affects the displacements alone.
+TEST(SkeletonExtremes, YoungsModulusOverTwelveDecadesHasNoEffect) {
   IN_BOTH_FORMULATIONS(formulation) {
     std::vector<Vec3> shares;
     for (double E_pa = 10.0; E_pa <= 1e13; E_pa *= 10.0) {
@@ -125,8 +123,8 @@ TEST(SkeletonExtremes, YoungsModulusOverTwelveDecadesLeavesForceAndSharesAlone) 
   }
 }
 
-// r_R larger than the body: every beam has that length, and the split is finite and in balance.
-// As printed: The same: l_i = r_R inside R.
+// r_R larger than the body: every beam has that length, and the split is finite and in equilibrium. As printed: The
+// same: l_i = r_R inside R.
 TEST(SkeletonExtremes, NeighbourhoodLargerThanTheBody) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::cube(formulation);
@@ -139,8 +137,7 @@ TEST(SkeletonExtremes, NeighbourhoodLargerThanTheBody) {
   }
 }
 
-// r_R of a nanometre: nothing is left of the local factor.
-// As printed: 1 + C_n ln(...) is taken over a range of no width.
+// r_R of a nanometre: the local factor has no effect. As printed: 1 + C_n ln(...) acts on a range of width zero.
 TEST(SkeletonExtremes, NeighbourhoodOfANanometre) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene with = extremes::cube(formulation), without = with;
@@ -156,8 +153,8 @@ TEST(SkeletonExtremes, NeighbourhoodOfANanometre) {
   }
 }
 
-// Anchor points pushed into one place, onto a line or far apart: cross-sections above 0 that sum to s_c.
-// As printed: The shares are 0 / 0 where the areas vanish.
+// Anchor points moved to one place, onto a line or far apart: cross-sections above 0 that sum to s_c. As printed: The
+// fractions are 0 / 0 where the areas vanish.
 TEST(SkeletonExtremes, CollapsedAnchorsKeepTheirCrossSections) {
   const FastModel model(extremes::cube(Formulation::corrected));
   CurrentEnds ends(model.skeleton);

@@ -1,4 +1,4 @@
-// The extremes: poses that are mirrored, turned or moved, and must have mirrored, turned or equal forces.
+// The extremes: poses that are mirrored, rotated or moved, and must have mirrored, rotated or equal forces.
 #include "extremes/rig.h"
 
 namespace touchstone::fast {
@@ -8,7 +8,7 @@ using extremes::Rig;
 using scene::Formulation;
 using scene::Vec3;
 
-/// The force at the end of a straight way down to this depth.
+/// The force at the end of a straight press to this depth.
 Vec3 force_at(const scene::Scene& scene, double depth_m, double x_m, double y_m,
               const Eigen::Quaterniond& turn = Eigen::Quaterniond::Identity()) {
   Rig rig(scene);
@@ -21,7 +21,7 @@ Vec3 force_at(const scene::Scene& scene, double depth_m, double x_m, double y_m,
   return rig.force_n();
 }
 
-// Mirrored at the middle planes of the cube: a mirrored force, to 2 %, since the samples of a ball are not mirrored.
+// Mirrored at the symmetry planes of the cube: a mirrored force, to 2 %, since the samples of a ball are not mirrored.
 // As printed: The same, if the tool's mesh is mirrored, too.
 TEST(SymmetryExtremes, MirroredPlaces) {
   IN_BOTH_FORMULATIONS(formulation) {
@@ -37,8 +37,8 @@ TEST(SymmetryExtremes, MirroredPlaces) {
   }
 }
 
-// Turned by right angles about the cube's axis: the same force turned, to 1e-9, since the samples turn onto each other.
-// As printed: The same, if the tool's mesh is alike.
+// Rotated by right angles about the cube's axis: the same force rotated, to 1e-9, since the samples have this symmetry.
+// As printed: The same, if the tool's mesh has this symmetry.
 TEST(SymmetryExtremes, QuarterTurns) {
   IN_BOTH_FORMULATIONS(formulation) {
     const scene::Scene scene = extremes::cube(formulation);
@@ -50,9 +50,9 @@ TEST(SymmetryExtremes, QuarterTurns) {
   }
 }
 
-// Tool and pose turned together about the axis of a round body, by any angle: the same force turned, to 1e-9.
+// Tool and pose rotated together about the axis of an axisymmetric body, by any angle: the same force rotated, to 1e-9.
 // As printed: The same on a smooth body; a mesh has no such symmetry.
-TEST(SymmetryExtremes, AnyTurnOfARoundBody) {
+TEST(SymmetryExtremes, AnyRotationOfAnAxisymmetricBody) {
   IN_BOTH_FORMULATIONS(formulation) {
     Vec3 first_n = Vec3::Zero();
     for (const double angle : {0.0, 0.1, 1.0, 2.5, 6.0}) {
@@ -71,9 +71,9 @@ TEST(SymmetryExtremes, AnyTurnOfARoundBody) {
   }
 }
 
-// A ball turned in any way: the force of the same place, to what the samples leave.
-// As printed: The same, to what the vertices leave.
-TEST(SymmetryExtremes, AnyTurnOfABall) {
+// A ball in any orientation: the same force, up to the effect of the samples. As printed: The same, up to the effect of
+// the vertices.
+TEST(SymmetryExtremes, AnyRotationOfABall) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = extremes::cube(formulation);
     scene.fast.tool_samples = 20000;
@@ -87,8 +87,7 @@ TEST(SymmetryExtremes, AnyTurnOfABall) {
   }
 }
 
-// Moved along the middle of a wide face: the same force, which knows no edge that is out of reach.
-// As printed: The same.
+// Moved along the middle of a wide face: the same force, independent of edges that are far away. As printed: The same.
 TEST(SymmetryExtremes, PlacesOnAFace) {
   IN_BOTH_FORMULATIONS(formulation) {
     const scene::Scene scene = extremes::cube(formulation);
@@ -99,8 +98,7 @@ TEST(SymmetryExtremes, PlacesOnAFace) {
   }
 }
 
-// Along the face and back without friction: the force of the way there, to 1e-9.
-// As printed: The same.
+// Along the face and back without friction: the same forces, to 1e-9. As printed: The same.
 TEST(SymmetryExtremes, ThereAndBack) {
   IN_BOTH_FORMULATIONS(formulation) {
     Rig rig(extremes::cube(formulation));
@@ -118,9 +116,9 @@ TEST(SymmetryExtremes, ThereAndBack) {
   }
 }
 
-// A press straight down the axis: no force and no torque to any side, to 1e-9 of what presses.
-// As printed: The same, if the tool's mesh is mirrored at both planes.
-TEST(SymmetryExtremes, NoForceAside) {
+// A press straight down the axis: no lateral force and no torque, to 1e-9 of the normal force. As printed: The same, if
+// the tool's mesh is mirrored at both planes.
+TEST(SymmetryExtremes, NoLateralForce) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : {extremes::cube(formulation), extremes::punch_on_cube(formulation)}) {
       Rig rig(scene);

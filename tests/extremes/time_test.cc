@@ -1,4 +1,4 @@
-// The extremes: poses that are none, jumps, pauses, and many ticks.
+// The extremes: invalid poses, jumps, pauses, and many ticks.
 #include "extremes/rig.h"
 
 #include <limits>
@@ -19,7 +19,7 @@ constexpr double inf = std::numeric_limits<double>::infinity();
 
 scene::Friction rubber() { return {0.6, 0.75, 0.4}; }
 
-/// The scenes whose state a tick may change: plain, with friction, with two regions.
+/// Scenes with different kinds of state: plain, with friction, with two regions.
 std::vector<scene::Scene> scenes_with_memory(Formulation formulation) {
   scene::Scene plain = extremes::cube(formulation), rubbing = plain;
   rubbing.contact.friction = rubber();
@@ -27,10 +27,10 @@ std::vector<scene::Scene> scenes_with_memory(Formulation formulation) {
   pins.contact.friction = rubber();
   return {plain, rubbing, pins};
 }
-// A pose with a number that is NaN or infinite in any place: the last answer to the bit, and the next good pose is
-// answered as if it had never been.
-// As printed: Not spoken of: it goes through every formula and comes out at the device.
-TEST(TimeExtremes, PoseThatIsNoNumberIsAsIfItHadNeverBeen) {
+// A pose with a number that is NaN or infinite in any place: exactly the last result, and the next valid pose gives the
+// result as if the invalid one had not occurred. As printed: Not mentioned: it passes through every formula to the
+// device.
+TEST(TimeExtremes, InvalidPoseIsIgnored) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : scenes_with_memory(formulation)) {
       Rig rig(scene), other(scene);
@@ -53,9 +53,9 @@ TEST(TimeExtremes, PoseThatIsNoNumberIsAsIfItHadNeverBeen) {
   }
 }
 
-// No good pose from the first tick on: no contact, no force, a surface at rest.
-// As printed: NaN from the first tick on.
-TEST(TimeExtremes, NoGoodPoseAtAllIsNoContact) {
+// No valid pose from the first tick on: no contact, no force, a surface at rest. As printed: NaN from the first tick
+// on.
+TEST(TimeExtremes, NoValidPoseIsNoContact) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : scenes_with_memory(formulation)) {
       Rig rig(scene);
@@ -67,9 +67,9 @@ TEST(TimeExtremes, NoGoodPoseAtAllIsNoContact) {
   }
 }
 
-// An orientation of any length from 1e-320 to 1e308: from 0.5 to 2 the orientation of length 1, any other no pose.
-// As printed: Not spoken of.
-TEST(TimeExtremes, QuaternionOfAnyLengthTurnsOnly) {
+// A quaternion of any length from 1e-320 to 1e308: between 0.5 and 2 it is normalised, any other is an invalid pose. As
+// printed: Not mentioned.
+TEST(TimeExtremes, QuaternionOfAnyLength) {
   IN_BOTH_FORMULATIONS(formulation) {
     const scene::Scene scene = extremes::punch_on_cube(formulation);
     const Eigen::Quaterniond tilt(Eigen::AngleAxisd(0.05, Vec3(1, 2, 3).normalized()));
@@ -92,9 +92,9 @@ TEST(TimeExtremes, QuaternionOfAnyLengthTurnsOnly) {
   }
 }
 
-// As far away as a number goes, and from there into contact in one tick: no contact, then the force of a fresh press.
-// As printed: Not spoken of: slow motion is assumed.
-TEST(TimeExtremes, FromTheEndOfTheNumbersIntoContact) {
+// The largest finite distance, and from there into contact in one tick: no contact, then the force of a new press. As
+// printed: Not mentioned: slow motion is assumed.
+TEST(TimeExtremes, FromTheLargestDistanceIntoContact) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : scenes_with_memory(formulation)) {
       for (const double far_m : {1e9, 1e160, 1e308}) {
@@ -112,8 +112,8 @@ TEST(TimeExtremes, FromTheEndOfTheNumbersIntoContact) {
   }
 }
 
-// 50 mm to and fro in every tick, in contact at both ends, with friction: bounded, and no more friction than its limit.
-// As printed: Slow motion is assumed; the stretch of a jump is taken as it is, until C4 says that it is too much.
+// 50 mm back and forth in every tick, in contact at both ends, with friction: bounded, and friction within its limit.
+// As printed: Slow motion is assumed; the stretch of a jump is used as it is, until C4 limits it.
 TEST(TimeExtremes, FiftyMillimetresInEveryTick) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : scenes_with_memory(formulation)) {
@@ -129,8 +129,8 @@ TEST(TimeExtremes, FiftyMillimetresInEveryTick) {
   }
 }
 
-// Any pose in any tick, within and around the body: finite, within the law, and at the end nothing is left.
-// As printed: Each of the divisions by nothing is met in the end (E6, E8, E9).
+// Any pose in any tick, inside and around the body: finite, within the law's bound, and nothing left at the end. As
+// printed: Each of the divisions by zero occurs at some time (E6, E8, E9).
 TEST(TimeExtremes, AnyPoseInAnyTick) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : scenes_with_memory(formulation)) {
@@ -149,8 +149,8 @@ TEST(TimeExtremes, AnyPoseInAnyTick) {
   }
 }
 
-// A tool that does not move: equal bits from the third tick on, stuck or sliding.
-// As printed: The same while stuck; one that has slid goes on rubbing against its last motion (E5).
+// A tool that does not move: identical bits from the third tick on, sticking or slipping. As printed: The same while
+// sticking; after slip friction continues to act against the last motion (E5).
 TEST(TimeExtremes, APauseRepeatsTheAnswer) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : scenes_with_memory(formulation)) {
@@ -171,7 +171,7 @@ TEST(TimeExtremes, APauseRepeatsTheAnswer) {
   }
 }
 
-/// A round of the tool: down, across, deeper, turned, back and off.
+/// One round of the tool: down, along, deeper, rotated, back and off.
 scene::Pose on_the_round(const scene::Scene& scene, int tick, int round) {
   const double t = 2.0 * std::numbers::pi * tick / round;
   scene::Pose pose = in(scene, 0.0015 - 0.0025 * std::cos(t), 0.004 * std::sin(2.0 * t));
@@ -180,10 +180,10 @@ scene::Pose on_the_round(const scene::Scene& scene, int tick, int round) {
   return pose;
 }
 
-// 1e8 ticks of a motion that repeats: the whole state has equal bits one round on. A tick is a function of state and
-// pose alone, so it has them after every round to come, and 1e8 ticks differ from 300 in nothing.
-// As printed: Each shape is an update of the last time step's, so errors add up.
-TEST(TimeExtremes, HundredMillionTicksAreTwoRounds) {
+// 1e8 ticks of a periodic motion: the whole state has identical bits after one round. A tick is a function of state and
+// pose alone, so this holds after every later round, and 1e8 ticks are the same as 300. As printed: Each shape is an
+// update of the last time step's, so errors add up.
+TEST(TimeExtremes, HundredMillionTicksArePeriodic) {
   IN_BOTH_FORMULATIONS(formulation) {
     for (const scene::Scene& scene : scenes_with_memory(formulation)) {
       constexpr int round = 150;
@@ -203,8 +203,8 @@ TEST(TimeExtremes, HundredMillionTicksAreTwoRounds) {
   }
 }
 
-// The same, walked: 1e5 ticks, half of them in each formulation, with the same bits after every round.
-// As printed: As above.
+// The same, simulated: 1e5 ticks, half of them in each formulation, with the same bits after every round. As printed:
+// As above.
 TEST(TimeExtremes, HundredThousandTicksDoNotDrift) {
   IN_BOTH_FORMULATIONS(formulation) {
     scene::Scene scene = scenes_with_memory(formulation)[1];

@@ -1,4 +1,4 @@
-"""Set-up as a newcomer meets it: the package lists, and what the scripts say on another system.
+"""Set-up for a new user: the package lists, and the scripts' messages on another system.
 
     set_up_test.py ROOT
 """
@@ -17,7 +17,7 @@ def packages(name):
 
 
 def require_machine(os_release):
-    """What ./demo says on a machine with this os-release."""
+    """The message of ./demo on a machine with this os-release."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "os-release"
         file.write_text(os_release)

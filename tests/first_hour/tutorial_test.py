@@ -1,4 +1,4 @@
-"""Types in reports/first-scene.md as it stands, in an empty folder, and checks what it leaves.
+"""Runs the commands of reports/first-scene.md in an empty folder and checks the results.
 
     tutorial_test.py ROOT BUILD_DIR
 """

@@ -68,7 +68,7 @@ def settings(key, text):
 
 
 def numbers_are_fit(folder):
-    """What is wrong with the numbers of a result folder, or nothing."""
+    """A fault in the numbers of a result folder, or nothing."""
     summary = json.loads((folder / "summary.json").read_text())
     reasons = summary.pop("reasons", {})
     summary.pop("units")
@@ -87,7 +87,7 @@ def numbers_are_fit(folder):
 
 
 def finding(program, verb, scene, setting, folder):
-    """Runs the program. @returns what broke the rule, or nothing"""
+    """Runs the program. @returns the fault, or nothing"""
     command = [program, verb, scene, "--set", setting] + (["--quiet", "--out", folder] if verb == "fast" else [])
     limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (4 * BYTES_MAX, 4 * BYTES_MAX))  # noqa: E731
     begin = time.monotonic()
@@ -100,7 +100,7 @@ def finding(program, verb, scene, setting, folder):
         run.communicate()
         return f"no end within {3 * SECONDS_MAX:g} s"
     seconds = time.monotonic() - begin
-    # The largest of all runs so far, so the first one above the limit is the one that is told.
+    # The maximum of all runs so far, so the first one above the limit is reported.
     largest = 1024 * resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
     if largest > BYTES_MAX and largest > finding.largest:
         finding.largest = largest

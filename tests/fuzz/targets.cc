@@ -32,7 +32,7 @@
 #include <string>
 #include <string_view>
 
-/// Made by the reference solver from all that its answer hangs on; here it is of any scene.
+/// Made by the reference solver from everything that affects its result; here the same for any scene.
 std::string touchstone::reference::content_key(const scene::Scene&) { return "any"; }
 
 namespace {
@@ -47,8 +47,8 @@ const path source = source_folder();
   std::abort();
 }
 
-/// A folder in memory with the shipped scenes, tools and studies, where the input becomes a file among them. Removed at
-/// the end of the process.
+/// A folder in memory with the shipped scenes, tools and studies, to which the input is added as a file. Removed at the
+/// end of the process.
 class Folder {
  public:
   Folder() : path_(path("/dev/shm") / ("touchstone-fuzz-" + std::to_string(::getpid()))) {
@@ -65,7 +65,7 @@ class Folder {
   Folder& operator=(const Folder&) = delete;
 
   [[nodiscard]] const path& root() const { return path_; }
-  /// Makes the input a file of this name.
+  /// Writes the input to a file of this name.
   path file(const path& name, const std::string& bytes) const {
     const path file = path_ / name;
     if (std::FILE* out = std::fopen(file.c_str(), "wb")) {
@@ -84,14 +84,14 @@ const Folder& folder() {
   return one;
 }
 
-/// A message is text for a terminal, of a length that somebody reads. @returns it
+/// Checks that a message is text for a terminal, of a readable length. @returns it
 const std::string& require_readable(const std::string& message) {
   constexpr std::size_t bytes_max = 64 << 10;
   if (message.empty() || message.size() > bytes_max)
     finding("a message of " + std::to_string(message.size()) + " bytes");
   for (std::string_view rest = message; !rest.empty();) {
     const std::size_t length = scene::utf8_length(rest);
-    if (length == 0) finding("a message that is no UTF-8");
+    if (length == 0) finding("a message that is not UTF-8");
     if (rest[0] != '\n' && scene::is_control(rest, length)) finding("a control character in a message");
     rest.remove_prefix(length);
   }
@@ -109,7 +109,7 @@ void require_finite(const scene::TriangleMesh& mesh) {
 
 void scene_file(const std::string& bytes) {
   const scene::Scene scene = scene::load_scene(folder().file("scenes/input.toml", bytes));
-  // What is accepted can be written down and is the same scene when read again.
+  // An accepted scene can be written and gives the same scene when read again.
   const std::string resolved = scene::resolved_toml(scene);
   if (scene::scene_hash(scene::parse_scene(resolved, folder().root() / "scenes/input.toml")) !=
       scene::scene_hash(scene))
@@ -137,7 +137,7 @@ void track_file(const std::string& bytes) {
   if (rows.size() != lines.size()) finding("a row without its line");
 }
 
-/// The whole way of a mesh file: the format, the checks, convexity.
+/// All stages of a mesh file: the format, the checks, convexity.
 void mesh_file(const char* ending, const std::string& bytes) {
   std::vector<scene::Fault> faults;
   const auto mesh =
@@ -149,7 +149,7 @@ void mesh_file(const char* ending, const std::string& bytes) {
 
 void live_log(const std::string& bytes) { (void)live::read_log(folder().file("live.csv", bytes)); }
 
-/// The record of a load step as the store keeps it, on a mesh of one cell; its checksum is taken to be right.
+/// The record of a load step as the store keeps it, on a mesh of one cell; its checksum is assumed to be right.
 void store_record(const std::string& bytes) {
   reference::Mesh<2> mesh;
   mesh.points_m.setZero(2, reference::Mesh<2>::nodes_per_cell);
@@ -186,7 +186,7 @@ void curve_file(const std::string& bytes) {
   }
 }
 
-/// The scene of a gate, of few rest points.
+/// The scene of a gate, with few rest points.
 struct GateScene {
   scene::Scene scene;
   scene::Surface rest;
@@ -201,7 +201,7 @@ const GateScene& gate_scene() {
   return one;
 }
 
-/// An answer with a contact at the second instant.
+/// A result with a contact at the second instant.
 reference::Result pressed(Eigen::Index points) {
   reference::Result result;
   for (int t = 0; t < 2; ++t) {
@@ -222,7 +222,7 @@ reference::Result pressed(Eigen::Index points) {
   return result;
 }
 
-/// A committed reference of two instants, for a gate. One of its three files is the input; the checksums are right.
+/// Committed reference data of two instants, for a gate. One of its three files is the input; the checksums are right.
 void committed_reference(const std::string& about, const std::string& curve, const std::string& surface) {
   std::filesystem::create_directories(folder().root() / "reference");
   (void)folder().file("reference/reference.json", about);
@@ -260,7 +260,7 @@ const std::string& valid(const std::string& name) {
   return files.at(name);
 }
 
-/// What the reference says of itself, with the checksum of another file in the place of a valid one's.
+/// The reference's manifest, with the checksum of another file in place of a valid one's.
 std::string about_with(const char* name, const std::string& bytes) {
   std::string about = valid("reference.json");
   const std::string checksum = scene::hash_text(valid(name));
@@ -313,7 +313,7 @@ const std::map<std::string_view, Target> targets = {
     {"curve", &curve_file},
 };
 
-/// Those that the target makes by itself.
+/// Seeds that the target makes by itself.
 const std::map<std::string_view, std::string (*)()> seeds = {
     {"reference", [] { return valid("reference.json"); }},
     {"reference-curve", [] { return valid("curve.csv"); }},

@@ -1,4 +1,4 @@
-// What a tick asks of detection, for every body, without the heap.
+// The detection in a tick does not use the heap, for any body.
 #include "fast/contact/contact_regions.h"
 #include "fast/contact/find_cells.h"
 #include "fast/contact/pull_back.h"
@@ -28,7 +28,7 @@ TEST_P(DetectionWithoutHeap, FindsSplitsFollowsAndTakesBack) {
   scene.body.radius_m = 0.03;
   scene.body.semi_axes_m = Vec3(0.035, 0.025, 0.030);
   scene.body.profile = {{{0.0, 0.0}, {0.030, 0.0}, {0.025, 0.040}, {0.0, 0.055}}, {0.0, 0.0, 0.030}};
-  scene.tool.shape = scene::ToolShape::box;  // laid across the top it meets it in up to two places
+  scene.tool.shape = scene::ToolShape::box;  // laid across the top, it touches in up to two places
   scene.tool.size_m = Vec3(0.08, 0.01, 0.01);
   const auto body = scene::body_shape(scene.body);
   const Detection detection = detection_for(*body);

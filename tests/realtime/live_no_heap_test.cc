@@ -1,4 +1,4 @@
-// No heap use in a tick of the device loop, whatever happens to it.
+// No heap use in a tick of the device loop, whatever happens.
 #include "support/no_heap.h"
 
 #include "fast/live/hand_device.h"
@@ -15,7 +15,7 @@ namespace {
 
 using test::live_scene;
 
-/// Runs the whole loop, its ring overflowing, under the watch.
+/// Runs the whole loop with an overflowing ring under the heap check.
 Ledger run_without_heap(const scene::Scene& scene, Device& device, TickListener* listener, VirtualClock& clock,
                         std::int64_t ticks) {
   fast::Engine engine(scene);

@@ -1,4 +1,4 @@
-// No heap use below step(): not on entering contact, in it, on a jump, on a bad pose, or on leaving.
+// No heap use below step(): at first contact, in contact, on a jump, on an invalid pose, and on release.
 #include "support/no_heap.h"
 
 #include "fast/response/response_step.h"
@@ -131,7 +131,7 @@ TEST_P(ShippedSceneWithoutHeap, BelowAStep) {
 INSTANTIATE_TEST_SUITE_P(All, ShippedSceneWithoutHeap, testing::ValuesIn(test::shipped_scenes()),
                          [](const auto& scene) { return test::test_name(scene.param); });
 
-// The watch itself.
+// The heap check itself.
 TEST(NoHeapDeathTest, SeesEveryWayToTheHeap) {
   testing::FLAGS_gtest_death_test_style = "fast";
   void* volatile block = nullptr;

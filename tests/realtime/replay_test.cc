@@ -1,4 +1,4 @@
-// The pipeline in virtual time is a function of its scene, to the last bit.
+// The pipeline in virtual time is a function of its scene, bit for bit.
 #include "fast/run/run.h"
 #include "fast/step/step.h"
 #include "support/press.h"
@@ -13,7 +13,7 @@ namespace {
 
 using scene::Formulation;
 
-/// A press that also slides and turns.
+/// A press that also slides and rotates.
 scene::Scene busy(Formulation formulation) {
   scene::Scene scene = test::ball_on_cube(formulation);
   scene.track.push_back({0.8, test::pressed(0.002, 0.012, -0.004)});
@@ -76,7 +76,7 @@ TEST(Replay, HashSeesEveryPhysicalChange) {
 }
 
 TEST(Replay, AHeldPoseIsAFixedPoint) {
-  // However many ticks a tool rests in place, nothing drifts.
+  // However many ticks a tool rests, nothing drifts.
   for (const Formulation formulation : {Formulation::published, Formulation::corrected}) {
     const FastModel model(busy(formulation));
     FastState state(model);

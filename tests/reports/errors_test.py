@@ -1,4 +1,4 @@
-"""reports/errors/measure with a made-up program: what it asks for, what it does not ask twice, what it writes."""
+"""reports/errors/measure with a fake program: its calls, calls that it does not repeat, and its output."""
 import json
 import pathlib
 import subprocess
@@ -8,7 +8,7 @@ import unittest
 
 measure = pathlib.Path(sys.argv.pop()).resolve()
 
-# Keeps a list of its calls and answers with the summary beside it; fails for scenes listed in fails.txt.
+# Writes a list of its calls and returns the summary beside it; fails for scenes listed in fails.txt.
 program = """#!/bin/sh
 here=$(dirname "$0")
 echo "$@" >> "$here/calls.txt"
@@ -51,7 +51,7 @@ class Measure(unittest.TestCase):
         self.answer(figures)
 
     def answer(self, summary):
-        """As the program writes it: what is no number is null, and a text says why."""
+        """As the program writes it: a missing number is null, and a text gives the reason."""
         reasons = {key: value for key, value in summary.items() if isinstance(value, str)}
         (self.folder / "summary.json").write_text(json.dumps(summary | dict.fromkeys(reasons) | {"reasons": reasons}))
 
@@ -71,7 +71,7 @@ class Measure(unittest.TestCase):
         return (self.folder / "calls.txt").read_text().splitlines()
 
     def line(self, scene, preset, table):
-        """The cells of a row behind its scene and preset."""
+        """The cells of a row after its scene and preset."""
         part = self.page.read_text().split(f"### {table}\n")[1].split("###")[0]
         rows = [row for row in part.splitlines() if row.startswith(f"| {scene} | {preset} |")]
         self.assertEqual(len(rows), 1, (scene, preset, table))
@@ -108,7 +108,7 @@ class Measure(unittest.TestCase):
         self.assertEqual((len(slide), len(press)), (2, 2))
         self.assertIn("--set fast.formulation=published", slide[0])
         self.assertNotIn("k1_n_per_m", slide[0])
-        # For the fast side alone: --set would give the tuned friction to the reference as well.
+        # For the fast model alone: --set would give the tuned friction to the reference as well.
         for call, study in ((slide[1], "friction"), (press[1], "ball-on-cube")):
             self.assertRegex(call, rf"--parameters \S*{study}-tune/parameters-published-duffing.toml")
             self.assertNotIn("--set", call)
@@ -139,7 +139,7 @@ class Measure(unittest.TestCase):
         self.run_on("compass-two-pins")
         self.assertEqual(self.line("compass-two-pins", "all", "Force")[0], "made-up: no answer")
         self.assertEqual(len(self.calls()), 1)
-        # Nothing that failed counts as done.
+        # A failed run does not count as done.
         (self.folder / "fails.txt").write_text("")
         self.run_on("compass-two-pins")
         self.assertEqual(self.line("compass-two-pins", "untuned", "Force")[0], "25 % ± 1 %")

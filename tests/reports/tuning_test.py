@@ -1,4 +1,4 @@
-"""reports/tuning/measure with a made-up program: the tables of a study with an answer, and of one without."""
+"""reports/tuning/measure with a fake program: the tables of a study with results, and of one without."""
 import json
 import pathlib
 import subprocess
@@ -8,7 +8,7 @@ import unittest
 
 measure = pathlib.Path(sys.argv.pop()).resolve()
 
-# Answers for one study only.
+# Has results for one study only.
 program = """#!/bin/sh
 if [ "$(basename "$2" .toml)" != mallet ]; then
   echo "made-up: no answer" >&2

@@ -1,4 +1,4 @@
-"""What the verbs leave, read by Python's own csv and json: every column of numbers holds numbers, whatever is unknown.
+"""Result files read by Python's csv and json: every column of numbers contains numbers, even if a value is unknown.
 
     results_test.py TOUCHSTONE ROOT
 """
@@ -133,7 +133,7 @@ class Results(unittest.TestCase):
         self.assertTrue(math.isfinite(float(rows[1]["force.nrmse_uncertainty"])))
         cases = read_json(folder / "summary.json")["cases"]
         self.assertIsNone(cases[0]["figures"]["force.nrmse_uncertainty"])
-        # The page is the study's and goes with it.
+        # The page belongs to the study and moves with it.
         moved = self.out / "elsewhere"
         shutil.move(folder, moved)
         page = (moved / "report.html").read_text()

@@ -19,8 +19,8 @@ struct Both {
   double poissons_ratio, depth_m;
   int steps, deck_level, reference_levels;
   std::optional<double> element_size_m;
-  double force_limit;               ///< share of the reference's force
-  double surface_limit = 0.02;      ///< of the largest displacement
+  double force_limit;               ///< fraction of the reference's force
+  double surface_limit = 0.02;      ///< fraction of the largest displacement
   std::optional<double> coulomb{};  ///< friction coefficient
   friend void PrintTo(const Both& both, std::ostream* out) { *out << both.name; }
 };
@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Both{"QuarterBlockCompressible", block, 0.3, 0.004, 2, 0, 2, quarter_size_m, 0.02},
                     Both{"QuarterBlockRubber", block, 0.49, 0.004, 2, 0, 2, quarter_size_m, 0.02},
                     Both{"CylinderAroundSoftBall", cylinder_around_soft_ball, 0.3, 0.003, 3, 1, 3, {}, 0.005},
-                    // In both codes of first order in the steps.
+                    // Both codes are of first order in the steps.
                     Both{"CylinderWithFriction", cylinder, 0.49, 0.003, 8, 1, 3, {}, 0.005, 0.06, 0.3}),
     [](const auto& one) { return one.param.name; });
 

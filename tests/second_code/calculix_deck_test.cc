@@ -1,4 +1,4 @@
-// The deck's text without the code that reads it: equations of hanging nodes, the tool's coat, materials, refusals.
+// The deck's text without CalculiX: equations of hanging nodes, the tool's surface elements, materials, refusals.
 #include "reference/calculix/deck.h"
 #include "reference/calculix/tool.h"
 #include "reference/tool/tool_distance.h"
@@ -22,7 +22,7 @@ using scene::Vec3;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Numbers of the cards of a deck, line by line, commas and line ends taken as space.
+/// Numbers of a deck's cards, line by line; commas and line ends count as space.
 struct Cards {
   std::map<int, std::vector<double>> nodes;
   std::vector<std::vector<double>> equations;  ///< node, direction, weight, ...
@@ -47,7 +47,7 @@ struct Cards {
       if (card == "*EQUATION") equations.back().insert(equations.back().end(), numbers.begin(), numbers.end());
     }
   }
-  /// Largest failure of an equation for a displacement that is one function in every direction.
+  /// Largest residual of the equations for a displacement that is the same function in every direction.
   [[nodiscard]] double largest_gap(const std::function<double(const std::vector<double>&)>& f) const {
     double largest = 0.0;
     for (const std::vector<double>& terms : equations) {

@@ -1,4 +1,4 @@
-// CalculiX's .dat as read: factors, directions, and what an unfinished run leaves behind.
+// Reading CalculiX's .dat: factors, directions, and the output of an unfinished run.
 #include "compare/calculix/calculix.h"
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ TEST_F(CalculixReader, TheMeridianPlaneStandsInTheWorld) {
 TEST_F(CalculixReader, AnUnfinishedStepIsLeftOut) {
   const std::string first = step(1, 1.0), second = step(2, 10.0);
   EXPECT_EQ(read(first + step(2, 10.0, 1)).size(), 1u);
-  // Cut off anywhere but in its last number, which cannot be told from a whole one.
+  // Cut off anywhere except within its last number, where the cut cannot be seen.
   for (std::size_t length = 0; length < second.rfind("-3.0"); ++length) {
     EXPECT_EQ(read(first + second.substr(0, length)).size(), 1u) << length;
   }

@@ -1,4 +1,4 @@
-// Which mesh's cost counts for an error.
+// Selection of the mesh whose cost is that of an error.
 #include "compare/calculix/time_to_error.h"
 
 #include <gtest/gtest.h>

@@ -12,7 +12,7 @@ using scene::Vec3;
 
 namespace {
 
-/// Where all that the tool may reach has this same plane next to it, if such a place is found soon.
+/// A touch with the same plane around all that the tool may reach, if such a place is found soon.
 Touch touch_under_plane(const fast::FastModel& model, double reach_m, Random& random) {
   Touch touch = random_touch(model, random);
   for (int attempt = 0; attempt < 50; ++attempt) {
@@ -29,8 +29,8 @@ Touch touch_under_plane(const fast::FastModel& model, double reach_m, Random& ra
   return touch;
 }
 
-/// No sample, and no part of a cell's polygon, below the plane of the touch is beside the body, which is convex. The
-/// bulge of a curved cell is not looked at.
+/// Whether no sample, and no part of a cell's polygon, below the plane of the touch is outside the body, which is
+/// convex. The bulge of a curved cell is not considered.
 bool stays_under_plane(const fast::FastModel& model, const ClosedPath& closed) {
   const scene::Bounds bounds = model.body->bounds();
   const double rounding_m = 1e-9 * (bounds.upper_m - bounds.lower_m).norm();
@@ -66,7 +66,7 @@ ClosedPath closed_path(PathKind kind, const fast::FastModel& model, Random& rand
   const double depth_m = least_m * (kind == PathKind::level ? random.decades(1e-4, 0.1) : random.decades(1e-3, 0.4));
   const Touch touch =
       kind == PathKind::level ? touch_under_plane(model, 3.0 * depth_m, random) : random_touch(model, random);
-  // Half of the paths leave the body on their way.
+  // Half of the paths leave the body in between.
   const double swell_m = depth_m * random.uniform(0.1, 2.0) / waves;
   const double aside_m = depth_m * random.decades(0.1, 10.0) / waves;
   const double turn_rad = kind == PathKind::level ? 0.0 : random.decades(1e-3, 0.3);
@@ -95,7 +95,7 @@ ClosedPath closed_path(PathKind kind, const fast::FastModel& model, Random& rand
   };
   std::vector<Pose> path;
   for (int i = 0; i <= ticks_per_round; ++i) {
-    // The way back takes the very poses of the way there, so that rounding has no part in it.
+    // The return uses exactly the same poses, so that rounding has no effect.
     const bool back = 2 * i > ticks_per_round;
     if (kind == PathKind::there_and_back && back) {
       path.push_back(path[static_cast<std::size_t>(ticks_per_round - i)]);
@@ -106,7 +106,7 @@ ClosedPath closed_path(PathKind kind, const fast::FastModel& model, Random& rand
     Pose& pose = path.back();
     const Vec3& twin_m = path[static_cast<std::size_t>(ticks_per_round - i)].position_m;
     pose.position_m += (twin_m - pose.position_m).dot(touch.normal) * touch.normal;
-    // On a face at right angles to an axis the depth is then the same to the last bit.
+    // On a face perpendicular to an axis the depth is then bitwise the same.
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(touch.normal[axis]) == 1.0) pose.position_m[axis] = twin_m[axis];
   }
@@ -131,11 +131,11 @@ RoundWork go_round(const fast::FastModel& model, const fast::FastState& state, c
     torque_nm = now_nm;
     work.always_in_contact = work.always_in_contact && state.in_contact();
     if (state.region_count == 0) continue;
-    // A region lives on where only the tool's back is inside, and so does its direction.
+    // A region continues, with its direction, while only the tool's rear is inside.
     const fast::ContactRegion& region = state.regions[0];
     work.steady = work.steady && state.region_count == 1 && (region.d + closed.touch.normal).norm() <= 1e-9;
     work.deepest_rel = std::max(work.deepest_rel, region.depth_rel);
-    // A sample's way out along -d ends on the surface, whose normal there tells a plane.
+    // The exit of a sample along -d is on the surface, whose normal there tells whether it is a plane.
     for (int k = 0; k < region.points.count && work.flat; ++k) {
       const Vec3 p_m = region.points.p_W_m(static_cast<std::size_t>(k));
       const double out_m = model.detection.exit_distance_m(*model.body, p_m, -region.d);

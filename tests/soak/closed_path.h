@@ -1,4 +1,4 @@
-// Closed paths of the tool, and the work that the contact does along them.
+// Closed paths of the tool, and the work of the contact along them.
 #pragma once
 
 #include "fast/step/model.h"
@@ -15,25 +15,26 @@ namespace touchstone::soak {
 inline constexpr int ticks_per_round = 100;
 
 enum class PathKind {
-  level,           ///< no turning; sideways any way, and in depth the same on the way out as on the way in
-  there_and_back,  ///< any way with turning, and back through the same poses
-  loop             ///< any way with turning
+  level,           ///< no rotation; any lateral motion, with the same depths back as forth
+  there_and_back,  ///< any motion with rotation, and back through the same poses
+  loop             ///< any motion with rotation
 };
 
 struct ClosedPath {
   PathKind kind;
-  std::vector<scene::Pose> poses;  ///< of a round; the last is the first
-  Touch touch;                     ///< where the tool was put
+  std::vector<scene::Pose> poses;  ///< of one round; the last is the first
+  Touch touch;                     ///< the pose of first touch
 };
 [[nodiscard]] ClosedPath closed_path(PathKind kind, const fast::FastModel& model, Random& random);
 
-/// What the contact did in the second of two rounds.
+/// What happened in the second of two rounds.
 struct RoundWork {
-  double gained_j = 0.0;       ///< by the tool: sum of F dx + T dphi, forces by the mean of two ticks
-  double turned_over_j = 0.0;  ///< sum of the parts' sizes
+  double gained_j = 0.0;       ///< work gained by the tool: sum of F dx + T dphi, forces by the mean of two ticks
+  double turned_over_j = 0.0;  ///< sum of the absolute values of its parts
   bool always_in_contact = true;
-  bool steady = true;  ///< one region at a time, pressing or not, against Touch::normal to 1e-9 all along
-  /// All cells and samples below the plane of the touch were in the body, and the way out was through that plane.
+  bool steady =
+      true;  ///< one region at a time, with or without force, whose direction is Touch::normal to 1e-9 throughout
+  /// All cells and samples below the plane of the touch were in the body, and their exit was through that plane.
   bool flat = true;
   double deepest_rel = 0.0;  ///< largest depth over the body's thickness
 };

@@ -12,13 +12,13 @@ namespace touchstone::soak {
 
 class Random {
  public:
-  /// One stream of numbers for each seed and each number of a scene.
+  /// One stream of numbers for each seed and each scene number.
   Random(std::uint64_t seed, std::uint64_t stream) : engine_(mixed(mixed(seed) + stream)) {}
 
   double uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1.0p-53;
   }
-  /// Every decade is as likely as the others. @param low > 0
+  /// Uniform in the logarithm. @param low > 0
   double decades(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
   bool chance(double probability) { return uniform(0.0, 1.0) < probability; }
   /// 0 to count - 1.
@@ -33,7 +33,7 @@ class Random {
   }
 
  private:
-  /// Neighbouring seeds give streams that have nothing in common (the finaliser of splitmix64).
+  /// Neighbouring seeds give uncorrelated streams (the finaliser of splitmix64).
   static std::uint64_t mixed(std::uint64_t x) {
     x += 0x9e3779b97f4a7c15U;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;

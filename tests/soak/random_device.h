@@ -1,4 +1,4 @@
-// A device that moves at random: presses, slides, turns, leaves, jumps, and now and then answers nonsense.
+// A device that moves at random: presses, slides, rotates, leaves, jumps, and now and then returns an invalid pose.
 #pragma once
 
 #include "fast/live/device.h"
@@ -11,25 +11,25 @@
 
 namespace touchstone::soak {
 
-/// The tool over a place of the rest surface: one of its samples stands on the place, all others are further out along
-/// the normal. On a convex body that is where it touches.
+/// The tool above a place of the rest surface: one of its samples is at the place, all others are further out along the
+/// normal. On a convex body that is first touch.
 struct Touch {
   scene::Pose pose;
   scene::Vec3 place_m;
-  scene::Vec3 normal;  ///< of the rest surface there, outward
+  scene::Vec3 normal;  ///< outward normal of the rest surface there
   [[nodiscard]] scene::Pose sunk(double depth_m) const {
     return {pose.position_m - depth_m * normal, pose.orientation};
   }
 };
 [[nodiscard]] Touch random_touch(const fast::FastModel& model, Random& random);
 
-/// Poses to go through: touch, press to between 1e-4 and 0.7 of the body's least extent, slide, turn, stay, leave; one
-/// way in twenty is a jump of one tick, which may end anywhere.
+/// Random waypoints: touch, press to between 1e-4 and 0.7 of the body's smallest extent, slide, rotate, stay, leave.
+/// One move in twenty is a jump in one tick, which may end anywhere.
 [[nodiscard]] std::vector<scene::Waypoint> random_track(const fast::FastModel& model, double rate_hz,
                                                         std::int64_t ticks, Random& random);
 
-/// Follows a random track, either exactly or as the virtual hand does, which feels the force. One sample in 5000 is no
-/// placement.
+/// Follows a random track, either exactly or as the virtual hand does, which reacts to the force. One sample in 5000 is
+/// an invalid pose.
 class RandomDevice final : public live::Device {
  public:
   RandomDevice(const fast::FastModel& model, const scene::Scene& scene, std::int64_t ticks, Random& random);

@@ -28,7 +28,7 @@ scene::Profile random_profile(double size_m, Random& random) {
       return scene::capsule_profile(radius_m, height_m);
     case 3:  // a cone
       return {{{0.0, 0.0}, {radius_m, 0.0}, {0.0, height_m}}, {}};
-    case 4:  // a cone without its tip
+    case 4:  // a truncated cone
       return {{{0.0, 0.0}, {radius_m, 0.0}, {random.uniform(0.1, 0.9) * radius_m, height_m}, {0.0, height_m}}, {}};
     default:  // two cones
       return {{{0.0, 0.0}, {radius_m, random.uniform(0.3, 0.7) * height_m}, {0.0, height_m}}, {}};
@@ -68,7 +68,7 @@ scene::Body random_body(BodyShape shape, Random& random) {
   return body;
 }
 
-/// Up to four solids inside, those that fit.
+/// Up to four solids inside, as far as they fit.
 void add_inclusions(scene::Scene& scene, Random& random) {
   const Vec3 size_m = extent_m(scene.body);
   for (int wished = 1 + random.below(4); wished > 0; --wished) {
@@ -84,7 +84,7 @@ void add_inclusions(scene::Scene& scene, Random& random) {
   }
 }
 
-/// A plate with square pins of unequal length under it.
+/// A plate with square pins of unequal length below it.
 scene::TriangleMesh pins(Random& random) {
   scene::TriangleMesh mesh;
   const auto add_box = [&](const Vec3& lower_m, const Vec3& upper_m) {

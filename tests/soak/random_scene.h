@@ -1,4 +1,4 @@
-// Scenes made up by chance: every body, tool and formulation in turn, all else at random.
+// Random scenes: every body, tool and formulation in turn, everything else at random.
 #pragma once
 
 #include "scene/model/scene.h"
@@ -10,7 +10,7 @@
 
 namespace touchstone::soak {
 
-/// Scenes of a full turn: every body shape with every tool shape in both formulations.
+/// Scenes until every body shape has occurred with every tool shape in both formulations.
 inline constexpr int scenes_per_turn = 4 * 5 * 2;
 
 /// The shipped mesh tools, each scaled to a largest extent of 1 m.
@@ -18,13 +18,13 @@ using ToolMeshes = std::vector<scene::TriangleMesh>;
 /// @param folder  meshes/tools
 [[nodiscard]] ToolMeshes tool_meshes(const std::filesystem::path& folder);
 
-/// A scene without any broken rule. Bodies of 1 mm to 1 m, tools 1e-3 to 1e3 times as large where the ranges of a scene
-/// file allow it, materials over nine decades, laws and settings over all that is sensible and some more. Its track
-/// only keeps the tool apart.
-/// @param index  body, tool and formulation go in turn with it
+/// A valid scene. Bodies of 1 mm to 1 m, tools 1e-3 to 1e3 times as large if the ranges of a scene file allow it,
+/// materials over nine decades, laws and settings over all sensible values and some more. Its track keeps the tool
+/// apart.
+/// @param index  selects body, tool and formulation in turn
 [[nodiscard]] scene::Scene random_scene(int index, const ToolMeshes& meshes, Random& random);
 
-/// Body, tool, formulation and what else decides the way through the model, in a few words.
+/// Body, tool, formulation and other choices that decide which stages run, in a few words.
 [[nodiscard]] std::string words_for(const scene::Scene& scene);
 
 }  // namespace touchstone::soak

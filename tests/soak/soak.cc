@@ -1,5 +1,4 @@
-// The soak: many ticks in virtual time, with a device that moves at random over scenes made up by chance. See
-// README.md.
+// The soak test: many ticks in virtual time, with a device that moves at random over random scenes. See README.md.
 #include "fast/command/command_line.h"
 #include "fast/command/progress_line.h"
 #include "fast/command/stop_signals.h"
@@ -42,13 +41,13 @@ constexpr bool sanitized = false;
 constexpr bool sanitized = false;
 #endif
 
-/// Most that the resident memory may grow within a scene, once it has been through a quarter of its ticks [bytes].
+/// Largest growth of the resident memory within a scene, after a quarter of its ticks [bytes].
 constexpr std::int64_t growth_in_scene = 256 * 1024;
-/// Most that it may grow between scenes, with no model in memory, from the end of the first tenth to the end [bytes].
+/// Largest growth between scenes, with no model in memory, from the end of the first tenth to the end [bytes].
 constexpr std::int64_t growth_between_scenes = 2 * 1024 * 1024;
-/// Most that a path of the claimed class may give, of what it turns over.
+/// Largest gain on a path of the class that must not gain, relative to the exchanged work.
 constexpr double gain_tolerance = 1e-6;
-/// Faults told in words, of a scene and of all; the rest are only counted.
+/// Number of faults printed, per scene and in all; the rest are only counted.
 constexpr int faults_told_of_scene = 3, faults_told = 100;
 
 struct Options {
@@ -70,9 +69,9 @@ struct Options {
 /// Closed paths of one kind.
 struct Gains {
   std::int64_t paths = 0, above_tolerance = 0, above_percent = 0;
-  double worst_rel = -1.0, sum_rel = 0.0;  ///< of the tool's gain over what was turned over
+  double worst_rel = -1.0, sum_rel = 0.0;  ///< the tool's gain over the exchanged work
 };
-/// Bounded, formulation, friction, kind, steady direction.
+/// Bounded, formulation, friction, kind, constant direction.
 using GainKey = std::tuple<bool, scene::Formulation, bool, PathKind, bool>;
 
 struct Run {
@@ -82,7 +81,7 @@ struct Run {
   std::int64_t scenes = 0;
   double ratio_least = 1e300, ratio_most = 0.0;  ///< tool over body, largest extents
   std::int64_t resident_first = 0, resident_last = 0, resident_most = 0, growth_most = 0;  ///< [bytes]
-  std::map<std::string, std::int64_t> faults;  ///< by what is wrong: the words before the colon
+  std::map<std::string, std::int64_t> faults;  ///< by the kind of fault: the words before the colon
   int told = 0;
 };
 
@@ -114,7 +113,7 @@ void look_at_gain(Run& run, const scene::Scene& scene, PathKind kind, const soak
   if (gain_rel <= gain_tolerance) return;
   ++looked.faults;
   report(Property::energy,
-         fmt::format("a closed path gave energy: {:.3g} of the {:.3g} J it turned over", gain_rel, work.turned_over_j));
+         fmt::format("a closed path gained energy: {:.3g} of the {:.3g} J exchanged", gain_rel, work.turned_over_j));
 }
 
 void run_scene(Run& run, int index, const soak::ToolMeshes& meshes, fast::ProgressLine& progress) {
@@ -163,7 +162,7 @@ void run_scene(Run& run, int index, const soak::ToolMeshes& meshes, fast::Progre
     const soak::ClosedPath path = soak::closed_path(kind, model, random);
     look_at_gain(run, scene, kind, soak::go_round(model, state, path, step), report);
   }
-  // Away for good.
+  // Far away until the end.
   step({scene::Vec3(0.0, 0.0, 1e4), Eigen::Quaterniond::Identity()});
   const std::int64_t growth = soak::resident_bytes() - resident;
   run.growth_most = std::max(run.growth_most, growth);
@@ -287,7 +286,7 @@ int soak_all(const Options& options) {
   look_at_memory(run, run.resident_last - run.resident_first <= growth_between_scenes);
   print_tables(run, seconds());
   if (fast::StopSignals::asked()) return fast::interrupted;
-  // What was never looked at has not been shown.
+  // A property that was never checked has not been shown.
   const auto& looked = run.figures.looked;
   const bool all_looked_at =
       options.only_scene >= 0 ||

@@ -19,7 +19,7 @@ using fast::ContactRegion;
 using fast::StepStatus;
 using scene::Vec3;
 
-/// The groups of points are counted anew in one tick of so many.
+/// The groups of points are counted independently in one tick of so many.
 constexpr std::int64_t ticks_per_count = 50;
 
 bool has(StepStatus status, StepStatus bit) { return (status | bit) == status; }
@@ -144,11 +144,11 @@ void Watch::check_reported(StepStatus status) {
     const double D_m = region.displacement_m.norm();
     for (std::size_t k = 0; k < region.ends.force_n.size(); ++k) {
       ends_beyond = ends_beyond || !(region.ends.displacement_m[k].norm() <= D_m * (1.0 + 1e-9));
-      // Below that rounding of the force decides.
+      // Below that, round-off of the force dominates.
       if (model_.skeleton.held[k] || !(D_m > 1e-12)) continue;
       ends_cut = ends_cut || unlimited_m(region.ends.beam[k], region.ends.force_n[k]) > D_m * (1.0 + 1e-3);
     }
-    check(Property::reported, region.points.count <= model_.max_points(), "more points than there is room for");
+    check(Property::reported, region.points.count <= model_.max_points(), "more points than the capacity");
   }
   check(Property::reported, state_.region_count <= model_.max_regions, "more regions than max_regions");
   check(Property::reported, !too_deep || has(status, StepStatus::depth_limited),
@@ -162,7 +162,7 @@ void Watch::check_regions_full(const scene::Pose& pose, StepStatus status) {
   fast::RegionPoints points = state_.probe.window();
   const scene::Pose unit{pose.position_m, pose.orientation.normalized()};
   fast::find_points(model_, fast::placement(unit), bulge_m_, points, cells_);
-  // Groups of points by the rule of section II-B, in the plainest way.
+  // Groups of points by the rule of section II-B, in the simplest algorithm.
   const auto count = static_cast<std::size_t>(points.count);
   std::iota(group_.begin(), group_.begin() + points.count, 0);
   const auto root = [&](int i) {
@@ -199,7 +199,7 @@ void Watch::check_rest() {
       u_m[static_cast<int>(k)] = state_.field.displacement_m[k][v];
       change[static_cast<int>(k)] = state_.field.normal[k][v] - model_.rest.normal[k][v];
     }
-    // A number that is none counts as far.
+    // NaN counts as far.
     farthest_m = u_m.norm() <= farthest_m ? farthest_m : u_m.norm();
     turned = change.norm() <= turned ? turned : change.norm();
   }

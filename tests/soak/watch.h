@@ -1,4 +1,4 @@
-// What must hold after every tick, whatever the scene and the pose; and how often it was looked at.
+// What must hold after every tick, for any scene and pose, and how often it was checked.
 #pragma once
 
 #include "fast/step/model.h"
@@ -14,11 +14,11 @@ namespace touchstone::soak {
 
 enum class Property {
   finite,         ///< force, torque, regions, beams and the whole surface are finite numbers
-  reported,       ///< whatever was cut off, held back or left out has its status bit
-  bad_pose_held,  ///< a pose that is no placement is named, and changes nothing
+  reported,       ///< whatever was limited or dropped has its status bit
+  bad_pose_held,  ///< an invalid pose has its status bit and changes nothing
   rest,           ///< without contact: no force, and the shape at rest to rest_tolerance_m
   memory,         ///< resident memory within a scene and from scene to scene
-  energy          ///< what closed paths give
+  energy          ///< work gained on closed paths
 };
 inline constexpr std::size_t properties = 6;
 
@@ -38,14 +38,14 @@ struct Figures {
   [[nodiscard]] std::int64_t faults() const;
 };
 
-/// Looks at one scene's model and state after each tick.
+/// Checks one scene's model and state after each tick.
 class Watch {
  public:
-  /// @param report  gets every fault in words
+  /// @param report  gets a sentence for every fault
   Watch(const fast::FastModel& model, fast::FastState& state, Figures& figures,
         std::function<void(Property, const std::string&)> report);
 
-  /// Before a step: remembers what the step may not change or will overwrite.
+  /// Before a step: stores what the step must not change or will overwrite.
   void before_step() noexcept;
   /// After a step.
   void after_step(const scene::Pose& asked, fast::StepStatus status);

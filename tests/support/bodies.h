@@ -28,11 +28,11 @@ inline scene::Profile cone_profile() { return {{{0.0, 0.0}, {0.025, 0.0}, {0.0, 
 inline scene::Profile double_cone_profile() { return {{{0.0, 0.0}, {0.03, 0.03}, {0.0, 0.07}}, {}}; }
 /// A hemisphere on a disc: one circle, a flat bottom and a dome.
 inline scene::Profile dome_profile() { return {{{0.0, 0.0}, {0.03, 0.0}, {0.0, 0.03}}, {0.0, 0.03}}; }
-/// A disc whose half round rim has to be written as two arcs of one circle.
+/// A disc whose half-round rim is written as two arcs of one circle.
 inline scene::Profile pill_profile() {
   return {{{0.0, 0.0}, {0.02, 0.0}, {0.03, 0.01}, {0.02, 0.02}, {0.0, 0.02}}, {0.0, 0.01, 0.01, 0.0}};
 }
-/// A sphere in two arcs that do not meet on its equator.
+/// A sphere as two arcs that do not meet on its equator.
 inline scene::Profile sphere_profile() {
   return {{{0.0, 0.0}, {0.03 * std::sin(1.2), 0.03 - 0.03 * std::cos(1.2)}, {0.0, 0.06}}, {0.03, 0.03}};
 }
@@ -49,7 +49,7 @@ struct NamedBody {
 };
 inline void PrintTo(const NamedBody& named, std::ostream* out) { *out << named.name; }
 
-/// Every shape, and every way to stand.
+/// Every shape, with every kind of support.
 inline std::vector<NamedBody> bodies() {
   scene::Body box, sphere, ellipsoid;
   box.shape = scene::BodyShape::box;

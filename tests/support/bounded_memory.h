@@ -1,4 +1,4 @@
-// What must do with little memory.
+// For tests of work that must need little memory.
 #pragma once
 
 #include <sys/resource.h>
@@ -22,8 +22,8 @@ inline std::size_t writable_bytes() {
   return 0;
 }
 
-/// Whether a process of its own has the work done with so much more memory than this one has. Not under the address
-/// sanitizer, which keeps memory of its own.
+/// Whether a process of its own can do the work with this much more memory than the present one. Not under the address
+/// sanitizer, which has memory of its own.
 [[nodiscard]] inline bool done_within(std::size_t bytes, const std::function<bool()>& work) {
   const pid_t child = ::fork();
   if (child == 0) {

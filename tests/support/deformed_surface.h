@@ -49,7 +49,7 @@ class DeformedSurface {
   }
 
   struct Answer {
-    double signed_distance_m, facets_m;  ///< of the surface, and what its 20k flat triangles say
+    double signed_distance_m, facets_m;  ///< distance to the surface, and to its 20k flat triangles
   };
   [[nodiscard]] Answer query(const Vec3& p) const {
     Nearest coarse;
@@ -83,7 +83,7 @@ class DeformedSurface {
       if (here > distance_m * (1.0 + 1e-9)) return;
       const Vec3 normal = (b - a).cross(c - a).normalized();
       const double along = here > 0.0 ? off.dot(normal) / here : 0.0;
-      // Of triangles that share the closest point, the one that faces it most knows the side.
+      // Of triangles with the same closest point, the one that faces the point most decides the side.
       if (here < distance_m * (1.0 - 1e-9) || std::abs(along) > std::abs(cosine)) cosine = along;
       distance_m = std::min(distance_m, here);
     }

@@ -1,5 +1,4 @@
-// Every key of the table of keys with a second valid value, on scenes in which it applies: for tests of what a key
-// changes.
+// Every key of the table with a second valid value, on scenes in which it applies: for tests of what a key changes.
 #pragma once
 
 #include "scene/input/fields.h"
@@ -13,7 +12,7 @@
 
 namespace touchstone::test {
 
-/// Two scenes that differ in one key's value alone; a choice of shape or law brings its own keys with it.
+/// Two scenes that differ in one key's value alone; a choice of shape or law implies its own keys.
 struct KeyChange {
   std::string key;  ///< as in the scene reference: "body.inclusion[].center_m"
   scene::Side side;
@@ -21,7 +20,7 @@ struct KeyChange {
   scene::Scene after;
 };
 
-/// A text to change, for keys whose second value cannot be derived from the first.
+/// A change of the text, for keys whose second value cannot be derived from the first.
 struct TextChange {
   std::string key, from, to;
 };
@@ -53,6 +52,12 @@ shape = "revolution"
 profile_rz_m = [[0.0, -0.004], [0.005, 0.0], [0.0, 0.004]]
 profile_arc_radius_m = [0.02, 0.03]
 center_m = [-0.012, 0.002, 0.04]
+material = { youngs_modulus_pa = 1.0e6, poissons_ratio = 0.4 }
+[[body.inclusion]]
+shape = "cylinder"
+radius_m = 0.003
+length_m = 0.006
+center_m = [-0.013, -0.015, 0.03]
 material = { youngs_modulus_pa = 1.0e6, poissons_ratio = 0.4 }
 [tool]
 shape = "sphere"
@@ -91,7 +96,7 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-/// Scenes in which, together, every key applies.
+/// Scenes that together use every key.
 inline std::vector<std::string> scenes_of_all_keys() {
   const std::size_t inclusions = first_scene.find("[[body.inclusion]]"), tool = first_scene.find("[tool]");
   const std::string plain = replaced(first_scene, first_scene.substr(inclusions, tool - inclusions), "");
@@ -110,10 +115,11 @@ inline std::vector<std::string> scenes_of_all_keys() {
   capsule = replaced(capsule, ball, "shape = \"capsule\"\nradius_m = 0.004\nlength_m = 0.01\n");
   std::string block = replaced(plain, box, "shape = \"sphere\"\nradius_m = 0.03\nsupport_height_m = 0.005\n");
   block = replaced(block, ball, "shape = \"box\"\nsize_m = [0.01, 0.011, 0.012]\n");
+  const std::string cylinder = replaced(plain, box, "shape = \"cylinder\"\nradius_m = 0.03\nlength_m = 0.06\n");
   std::string mesh = replaced(plain, ball, "shape = \"mesh\"\nfile = \"compass.obj\"\nunit = \"mm\"\n");
   mesh = replaced(mesh, "[0.0, 0.0, 0.074]", "[0.0, 0.0, 2.0]");
   mesh = replaced(mesh, last, "position_m = [0.0, 0.0, 0.0]\n");
-  return {first_scene, round, capsule, block, mesh};
+  return {first_scene, round, capsule, block, cylinder, mesh};
 }
 
 inline const std::vector<TextChange>& text_changes() {
@@ -183,7 +189,7 @@ inline std::vector<KeyChange> every_key_changed() {
         changes.push_back({key, field.side, before, scene::parse_scene(replaced(text, one.from, one.to), file)});
       }
       if (by_text || !scene::applies(field, object) || key == "body.support") return;
-      // An absent value has none to derive from; another of the scenes has one.
+      // An absent value cannot be changed; another of the scenes has one.
       if (scene::value_text(field, object).empty() || scene::value_text(field, object) == "[]") return;
       const std::string value = scene::value_text(field, with_another_value(field, object));
       changes.push_back(

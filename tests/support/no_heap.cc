@@ -8,7 +8,7 @@
 #include <cstring>
 
 extern "C" {
-// The C library's own heap, under the names it keeps for this purpose.
+// The C library's own heap functions, by their internal names.
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
 void* __libc_realloc(void*, std::size_t);

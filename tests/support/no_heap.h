@@ -1,11 +1,11 @@
-// Proof that a stretch of code does not touch the heap. Linking no_heap.cc puts this binary's own malloc family before
-// the C library's, for every library in the process: Eigen calls malloc and not operator new, which itself ends there.
+// Shows that a section of code does not use the heap. Linking no_heap.cc replaces malloc and its relatives for every
+// library in the process: Eigen calls malloc and not operator new, which itself calls malloc.
 #pragma once
 
 namespace touchstone::test {
 
-/// While one lives on this thread, any malloc, calloc, realloc, free, posix_memalign, aligned_alloc, memalign, valloc
-/// or pvalloc on it ends the process with "heap use below step()".
+/// While such an object exists on this thread, any malloc, calloc, realloc, free, posix_memalign, aligned_alloc,
+/// memalign, valloc or pvalloc on it ends the process with "heap use below step()".
 class NoHeap {
  public:
   NoHeap() noexcept;

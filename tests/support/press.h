@@ -12,7 +12,7 @@ inline scene::Pose at(double x_m, double y_m, double z_m) {
   return {scene::Vec3(x_m, y_m, z_m), Eigen::Quaterniond::Identity()};
 }
 
-/// The ball with its lowest point this deep under the top of the cube.
+/// The ball with its lowest point this deep below the top of the cube.
 inline scene::Pose pressed(double depth_m, double x_m = 0.0, double y_m = 0.0) {
   return at(x_m, y_m, 0.060 + 0.010 - depth_m);
 }
@@ -41,7 +41,7 @@ inline scene::Scene ball_on_cube(scene::Formulation formulation = scene::Formula
   return scene;
 }
 
-/// The same ball on a rubber sphere of 30 mm held below 5 mm.
+/// The same ball on a rubber sphere of 30 mm, fixed below 5 mm.
 inline scene::Scene ball_on_sphere(scene::Formulation formulation = scene::Formulation::corrected) {
   scene::Scene scene = ball_on_cube(formulation);
   scene.name = "ball-on-sphere";
@@ -51,7 +51,7 @@ inline scene::Scene ball_on_sphere(scene::Formulation formulation = scene::Formu
   return scene;
 }
 
-/// A ball about its mass centre.
+/// A ball with its mass centre at its centre.
 inline scene::Tool ball(double radius_m) {
   scene::Tool tool;
   tool.shape = scene::ToolShape::sphere;
@@ -59,7 +59,7 @@ inline scene::Tool ball(double radius_m) {
   return tool;
 }
 
-/// A rotation without any special axis.
+/// A rotation about no special axis.
 inline Eigen::Quaterniond tilted() {
   return Eigen::Quaterniond(Eigen::AngleAxisd(1.1, scene::Vec3(0.3, -0.7, 0.5).normalized()));
 }

@@ -1,4 +1,4 @@
-// One of every kind of shape, for tests of what all of them promise.
+// One shape of every kind, for tests of their common interface.
 #pragma once
 
 #include "scene/shape/solids.h"

@@ -1,4 +1,4 @@
-// A contact model that nobody but the tests knows: a spring, on a body that never moves.
+// A contact model for the tests: a spring, on a body that does not deform.
 #pragma once
 
 #include "compare/model/request.h"
@@ -27,7 +27,7 @@ class Spring final : public ContactModel {
   int steps_ = 0;
 };
 
-/// One as stiff as the scene's k1, and one that cannot be set up.
+/// One spring with the scene's k1, and one that cannot be set up.
 [[nodiscard]] inline std::vector<ModelEntry> springs(const ModelRequest&) {
   return {{.name = "spring",
            .key = "spring",

@@ -51,7 +51,7 @@ Sides pressed(int instants, int triangles) {
   const double radius_m = sides.scene.tool.radius_m;
   sides.run.surface = surface;
   const Eigen::Index points = surface.points_m.cols();
-  // On the ball within the contact, 1/r outside, nothing at the support; the sides bulge.
+  // On the ball inside the contact, 1/r outside, zero at the support; the sides bulge.
   const auto reference_m = [&](const Vec3& p, double d) {
     const double height = p.z() / 0.06, r = std::hypot(p.x(), p.y());
     const double far = Vec3(p.x(), p.y(), p.z() - 0.06).norm(), a = std::sqrt(radius_m * d);

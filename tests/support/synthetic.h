@@ -1,5 +1,5 @@
-// Made-up answers of both sides, close in size and form to real ones: a ball on a cube, a half-space-like
-// reference and a fast model with a cubic law and a cone for a dimple.
+// Synthetic results of both sides, similar in size and form to real ones: a ball on a cube, a reference like a half
+// space, and a fast model with a cubic law and a cone as its indentation.
 #pragma once
 
 #include "compare/report/report.h"
@@ -24,11 +24,11 @@ struct Sides {
 };
 [[nodiscard]] Sides pressed(int instants = 23, int triangles = 3952);
 
-/// The same answers of a scene whose tool is the shipped mallet, loaded from copies made in this folder.
+/// The same results for a scene whose tool is the shipped mallet, loaded from copies in this folder.
 [[nodiscard]] Sides pressed_by_mallet(const std::filesystem::path& folder, int instants = 3);
 
-/// Two instants at depths 1 and 10 mm, four rest points of a tetrahedron with vertex areas 1, 2, 3, 4 m^2, no
-/// displacement, no force, no uncertainty: a case to be filled by hand.
+/// Two instants at depths 1 and 10 mm, four rest points of a tetrahedron with vertex areas 1, 2, 3, 4 m^2; no
+/// displacement, force or uncertainty, to be filled in.
 [[nodiscard]] Sides small();
 
 /// The page of a comparison.
@@ -42,7 +42,7 @@ void set_force(scene::InstantRecord& record, const scene::Vec3& force_n);
   return {&sides.run.instants[t], &sides.result.instants[t]};
 }
 
-/// Gives a member the same value at all instants, or to each its own.
+/// Sets a member to the same value at all instants, or to one value for each.
 template <class T>
 void set_all(reference::Result& result, T scene::ReferenceInstant::*member, const std::type_identity_t<T>& value) {
   for (scene::ReferenceInstant& instant : result.instants) instant.*member = value;

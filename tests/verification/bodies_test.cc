@@ -44,7 +44,7 @@ Grading<dim> fine_at(double top_m, double size_m) {
   return grading;
 }
 
-/// In space with cells of `size_m` at the contact against the meridian plane with fine ones.
+/// In space with cells of `size_m` at the contact, over the meridian plane with fine cells.
 double space_over_plane(const scene::Body& body, double size_m) {
   const double top_m = scene::body_shape(body)->bounds().upper_m.z();
   RoundSpec spec = round_spec(body);
@@ -92,7 +92,7 @@ TEST(Bodies, EllipsoidWithEqualAxesIsTheSphere) {
   EXPECT_LT((a.points_m - b.points_m).cwiseAbs().maxCoeff(), 1e-15);
 }
 
-/// Force of the tool of a scene at its last place, on a mesh of the refinement sequence.
+/// Force of a scene's tool at its last pose, on a mesh of the refinement sequence.
 template <int dim>
 double last_force_n(const scene::Scene& scene, ModelChoice choice, int level) {
   choice.dim = dim;
@@ -107,7 +107,7 @@ double last_force_n(const scene::Scene& scene, ModelChoice choice, int level) {
   return body.observe(state).force_n.z();
 }
 
-/// A round punch on a round body with a ball in it, on the meshes the solver takes.
+/// An axisymmetric punch on an axisymmetric body with a ball inside, on the meshes that the solver uses.
 TEST(Bodies, PunchedCylinderInSpaceAgreesWithItsMeridianPlane) {
   scene::Scene scene;
   scene.body = turned({{{0.0, 0.0}, {0.03, 0.0}, {0.03, 0.04}, {0.0, 0.04}}, {}});
@@ -149,13 +149,13 @@ TEST(Bodies, SmallStrainOnASphereIsTheLimitOfFiniteStrain) {
   EXPECT_NEAR(small_n / force_n(plane, scene::Kinematics::finite), 1.0, 0.01);
   const Mesh<3> space = round_mesh<3>(quarter, fine_at<3>(top_m, 0.0015));
   EXPECT_NEAR(force_n(space, scene::Kinematics::small) / force_n(space, scene::Kinematics::finite), 1.0, 0.02);
-  // Hertz with the curvatures added; the ball's other side gives way by a/R of that.
+  // Hertz with the sum of the curvatures; the ball's other side deforms by a/R of that.
   const double R_m = 1.0 / (1.0 / ball_m + 1.0 / 0.03);
   EXPECT_NEAR(small_n / verification::hertz(verification::contact_modulus_pa(3e6, 0.5), R_m, depth_m).force_n, 1.0,
               0.02);
 }
 
-/// The same ellipsoid with its longer axis along x and along y: the mesh has no preferred side.
+/// The same ellipsoid with its longer axis along x and along y: the mesh has no preferred direction.
 TEST(Bodies, EllipsoidTurnedByARightAngle) {
   double force_n[2];
   for (const int axis : {0, 1}) {

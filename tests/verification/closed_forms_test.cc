@@ -1,4 +1,4 @@
-// The closed forms against printed or independently computed numbers, before anything is held against them.
+// The closed forms against printed or independently computed numbers, before they are used for comparison.
 #include "reference/verification/closed_forms.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(ClosedForms, RoundedConeIsACone) {
   const Indentation sharp = cone(1.0, half_angle, depth_m);
   EXPECT_NEAR(sharp.contact_radius_m, 1.0, 1e-5);
   EXPECT_NEAR(blunt.force_n / sharp.force_n, 1.0, 1e-5);
-  // Wholly inside its ball the cone is a ball.
+  // Entirely inside its ball, the cone is a ball.
   EXPECT_NEAR(rounded_cone(1.0, half_angle, 4.0, 1.0, depth_m).force_n, sneddon_force_n(1.0, 4.0, 1.0), 1e-12);
   EXPECT_NEAR(depth_m, sneddon_depth_m(4.0, 1.0), 1e-12);
 }

@@ -16,7 +16,7 @@ namespace {
 
 using scene::Vec3;
 
-/// The half space above z = 0 of its own frame.
+/// A half space that occupies z > 0 of its own frame.
 class FlatTool : public ToolDistance {
  public:
   [[nodiscard]] Gap<3> at(const Vec3& p_T_m) const override {
@@ -67,7 +67,7 @@ Sums sums(const ContactProblem<3>& body, const State<3>& state) {
   return sum;
 }
 
-/// A ball's way over the block.
+/// A track of a ball over the block.
 class BallPath {
  public:
   explicit BallPath(ContactProblem<3>& body) : body_(body), state_(body.rest()) {
@@ -131,8 +131,8 @@ TEST(Friction, NafemsWedge) {
     EXPECT_GT(contact.friction_n.dot(along), 0.0);
   }
   const Observation seen = body.observe(state, 1.0);
-  // Friction in the slope's plane: NAFEMS CGS-4, F / G = (tan a + mu) / (1 - mu tan a) = 0.412371, but for what the
-  // block is dragged to the sides, which turns the friction of single nodes.
+  // Friction in the slope's plane: NAFEMS CGS-4, F / G = (tan a + mu) / (1 - mu tan a) = 0.412371, apart from the
+  // block's lateral deformation, which changes the friction's direction at single nodes.
   double share = 0.0, normal_n = 0.0;
   for (const NodeContact<3>& contact : contacts) {
     share += contact.friction_n.dot(along) / mu;
@@ -214,7 +214,7 @@ TEST(Friction, AStuckBallIsStifferByMossakovskiisFactor) {
   for (const double nu : {0.0, 0.3}) {
     const Pressed stuck = press(nu, 1e3, 40);
     const double C = (1.0 - nu) * std::log(3.0 - 4.0 * nu) / (1.0 - 2.0 * nu);
-    // The contact radius moves by whole nodes, which is worth 1 %.
+    // The contact radius changes by whole nodes, an effect of 1 %.
     const double a_m = stuck.seen.contact_radius_m, d_m = 1e-5, E_star_pa = verification::contact_modulus_pa(3e6, nu);
     const double found = stuck.seen.force_n.z() / (4.0 / 3.0 * E_star_pa * a_m * d_m);
     EXPECT_NEAR(found, C, 0.012 * C);
@@ -246,8 +246,9 @@ double deep_press_n(std::optional<double> coefficient) {
 }
 
 TEST(Friction, HoldsRubberUnderADeepBall) {
-  // An independent program that holds sticking nodes by springs found 191.18 N without friction and 192.8, 193.6, 194.2
-  // N with mu = 0.3 and ever stiffer ones, until it did not converge; so friction is worth somewhat more than 1.6 %.
+  // An independent program with springs at sticking nodes found 191.18 N without friction and 192.8, 193.6, 194.2 N
+  // with mu = 0.3 and stiffer and stiffer springs, until it did not converge; so friction adds slightly more than 1.6
+  // %.
   const double without_n = deep_press_n(std::nullopt), some_n = deep_press_n(0.3), stuck_n = deep_press_n(10.0);
   EXPECT_NEAR(without_n, 191.18, 0.002 * 191.18);
   EXPECT_GT(some_n / without_n, 1.016);
@@ -296,8 +297,8 @@ TEST(Friction, CattaneoAndMindlin) {
 }
 
 TEST(Friction, ATailBeginsToSlide) {
-  // Of a tool whose width says nothing about its contact, pressed by half its radius, so that the contact's wall is
-  // steep, and moved on by a quarter of its radius at a time.
+  // A tool whose width does not bound its contact, pressed by half its radius, so that the contact's wall is steep, and
+  // moved on by a quarter of its radius at a time.
   ContactProblem<3> body = block(0.0015, 0.5, 0.006);
   body.set_friction({1.0, 0.75, 0.5}, 0.004);
   const auto tail = std::make_shared<Tail>();

@@ -49,7 +49,7 @@ TEST(HalfSpaceLimit, NearlyIncompressibleIsIncompressible) {
 }
 
 TEST(HalfSpaceLimit, LargeStepDoesNotEndInAnUnstableBalance) {
-  // In one step this load has a second, unstable balance 0.05 to 0.1 % away.
+  // In one step this load has a second, unstable equilibrium at a distance of 0.05 to 0.1 %.
   const HalfSpaceAnswer limit = indent_half_space(ball(0.5, 0.3, Kinematics::finite, 3));
   const HalfSpaceAnswer nearly = indent_half_space(ball(0.4999, 0.3, Kinematics::finite, 3));
   EXPECT_NEAR(nearly.force_n / limit.force_n, 1.0, 0.0003);

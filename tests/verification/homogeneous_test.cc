@@ -1,4 +1,5 @@
-// States of uniform strain, which the element must hold to round-off on any mesh: patch tests and the uniaxial bar.
+// States of uniform strain, which the element must reproduce to round-off on any mesh: patch tests and the uniaxial
+// bar.
 #include "reference/contact/contact_problem.h"
 #include "reference/mesh/mesh.h"
 #include "reference/mesh/round_mesh.h"
@@ -88,7 +89,7 @@ TEST_P(Bar, IncompressibleCompressionBetweenLubricatedPlates) {
 
 INSTANTIATE_TEST_SUITE_P(Stretch, Bar, testing::Values(0.7, 0.85, 1.5));
 
-/// Dead forces on a face with hanging nodes, whose share goes to their masters.
+/// Dead forces on a face with hanging nodes, whose part goes to their masters.
 TEST(DeadForce, OnHangingNodesPullsTheBarUniformly) {
   const Mesh<3> mesh = verification::graded_cube(L_m);
   const scene::Material rubber{3e6, 0.3};

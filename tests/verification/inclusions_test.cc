@@ -1,4 +1,4 @@
-// Inclusions against closed forms, and the limit in which there is none.
+// Inclusions against closed forms, and the limit without an inclusion.
 #include "reference/mesh/inclusions.h"
 #include "reference/contact/contact_problem.h"
 #include "reference/mesh/round_mesh.h"
@@ -137,7 +137,7 @@ TEST(Inclusions, OfTheBodysOwnMaterialChangesNothing) {
   }
 }
 
-/// Force on a ball of 10 mm pressed into a rubber ball with another inside, in steps of half a millimetre.
+/// Force on a ball of 10 mm pressed into a rubber ball with another ball inside, in steps of half a millimetre.
 double pressed_n(const scene::Material& inner, int steps) {
   scene::Body body;
   body.shape = scene::BodyShape::sphere;
@@ -170,7 +170,7 @@ TEST(Inclusions, EveryRatioOfStiffnessRunsAndOrdersTheForce) {
     EXPECT_GT(force_n, before_n) << inner.youngs_modulus_pa;
     before_n = force_n;
   }
-  // What is soft and keeps its volume gives way less than what can be squeezed.
+  // A soft material that keeps its volume deforms less than a compressible one.
   EXPECT_GT(pressed_n({300.0, 0.5}, 4), pressed_n({300.0, 0.33}, 4));
 }
 

@@ -1,4 +1,4 @@
-// What makes a problem pass or miss. The problems themselves are run by `touchstone verify --quick`.
+// When a problem passes or misses. The problems themselves are run by `touchstone verify --quick`.
 #include "reference/verification/problem.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(Levels, OrderIsThatOfAPowerSeries) {
     const Check check = from_levels("value", "", 7.0, 1.0, values);
     EXPECT_NEAR(check.order.value(), order, 1e-9);
     EXPECT_DOUBLE_EQ(check.value, values.back());
-    // The band holds the true error.
+    // The uncertainty covers the true error.
     EXPECT_GE(check.mesh_band.value(), std::abs(check.error()));
   }
 }

@@ -46,7 +46,7 @@ TEST_P(RoundedPunch, OnAHalfSpaceInSmallStrain) {
 }
 INSTANTIATE_TEST_SUITE_P(PoissonsRatio, RoundedPunch, testing::Values(0.3, 0.5));
 
-/// What a tool does to the middle of a block of 60 x 60 x 30 mm, pressed to a depth in equal steps.
+/// Results for a tool in the middle of a block of 60 x 60 x 30 mm, pressed to a depth in equal steps.
 struct Pressed {
   Observation seen;
   int iterations = 0;
@@ -119,7 +119,7 @@ TEST(Tools, ACapsuleOnItsSide) {
   EXPECT_LT(half.seen.torque_nm.norm(), 1e-6 * R_m * half.seen.force_n.z());
   EXPECT_LT(half.seen.equilibrium_rel, 1e-6);
   EXPECT_EQ(half.seen.regions.size(), 1u);
-  // The straight part adds to what the two ends carry as one ball.
+  // The straight part adds to the force of both ends, which form one ball.
   const Pressed ball = press(round_tool(ToolShape::sphere, R_m, 0, 0), R_m, 0.0015, 0.002);
   EXPECT_GT(half.seen.force_n.z(), 1.3 * ball.seen.force_n.z());
 }
@@ -146,7 +146,7 @@ scene::Tool pins(bool left, bool right) {
 }
 
 TEST(Tools, TwoPinsFarApart) {
-  // The pins of a tool that rocks: right, both, left.
+  // The pins of a tool that tilts: right, both, left.
   const double height_m = 0.012, depth_m = 0.001, angle = 0.06;
   scene::Scene scene;
   scene.name = "two-pins";
@@ -154,7 +154,7 @@ TEST(Tools, TwoPinsFarApart) {
   scene.body.material = {3e6, 0.5};
   scene.tool = pins(true, true);
   const auto pose_at_angle = [&](double turn) {
-    // Tilted about y the tip at 20 mm dips by 20 mm sin(turn) and its middle stays a radius above.
+    // Tilted about y, the tip at 20 mm is lower by 20 mm sin(turn) and its centre stays a radius above.
     const Eigen::Quaterniond orientation = turned(turn, Vec3::UnitY());
     const Vec3 tip_m = orientation * Vec3(turn < 0.0 ? -0.5 * apart_m : 0.5 * apart_m, 0.0, pin_m - drop_m);
     return scene::Pose{Vec3(0.0, 0.0, height_m + pin_m - depth_m - tip_m.z()), orientation};
@@ -176,12 +176,12 @@ TEST(Tools, TwoPinsFarApart) {
   for (const std::size_t i : {1, 2, 3}) EXPECT_EQ(both.instants[i].regions[0].id, 0);
   for (const std::size_t i : {2, 3}) EXPECT_EQ(both.instants[i].regions[1].id, 1);
   EXPECT_EQ(both.instants[4].regions[0].id, 1);
-  // Where the tool leans to the right, the left tip is higher by 40 mm sin(angle).
+  // Where the tool tilts to the right, the left tip is higher by 40 mm sin(angle).
   EXPECT_NEAR(both.instants[2].regions[0].depth_m, depth_m, 2e-5);
   EXPECT_NEAR(both.instants[2].regions[1].depth_m, depth_m - apart_m * std::sin(0.25 * angle), 2e-5);
-  // Upright, the right pin's force pulls the tool about -y.
+  // When upright, the right pin's force has a torque about -y.
   const scene::RegionRecord &right = both.instants[3].regions[0], &left = both.instants[3].regions[1];
-  // The cells under the two are not quite mirror images.
+  // The cells under the two are not exactly mirror images.
   EXPECT_NEAR(left.force_n.z() / right.force_n.z(), 1.0, 0.01);
   EXPECT_NEAR(right.torque_nm.y() / (-0.5 * apart_m * right.force_n.z()), 1.0, 0.02);
   EXPECT_NEAR(left.torque_nm.y() / (0.5 * apart_m * left.force_n.z()), 1.0, 0.02);

@@ -1,5 +1,5 @@
-// The reported band must hold the true error, taken from a much finer mesh: in the meridian plane, and in space for a
-// scene that the meridian plane can answer, too.
+// The reported uncertainty must cover the true error, taken from a much finer mesh: in the meridian plane, and in space
+// for a scene that can also be solved in the meridian plane.
 #include "reference/contact/contact_problem.h"
 #include "reference/contact/load_path.h"
 #include "reference/mesh/sampling.h"
@@ -68,7 +68,8 @@ class UncertaintyBand : public testing::Test {
     return result;
   }
 
-  /// @param widest_rel  of the force, where the contact is deep: a band that holds everything says nothing
+  /// @param widest_rel  limit on the force's uncertainty where the contact is deep: one that is too large would say
+  /// nothing
   static void expect_held(const Result& reported, const Result& truth, double widest_rel) {
     double deepest_m = 0.0;
     for (const auto& instant : reported.instants) deepest_m = std::max(deepest_m, instant.depth_m);
@@ -79,8 +80,8 @@ class UncertaintyBand : public testing::Test {
       EXPECT_GT(error_n, 0.0);
       EXPECT_LT(reported.instants[i].force_uncertainty_n, widest_rel * truth.instants[i].force_n().norm())
           << "instant " << i + 1;
-      // The norm of the band holds the norm of the error, its largest value the largest error, and the most points are
-      // inside their own.
+      // The norm of the uncertainty covers the norm of the error, its largest value the largest error, and most points
+      // are within their own uncertainty.
       const Eigen::VectorXd error_m =
           (reported.instants[i].displacement_m - truth.instants[i].displacement_m).colwise().norm().transpose();
       const Eigen::VectorXd& band_m = reported.instants[i].displacement_uncertainty_m;
@@ -105,7 +106,7 @@ TEST_F(UncertaintyBand, HoldsTheErrorAgainstAFinerSolution) {
   }
 }
 
-/// The edge of a flat pin's fillet is what makes its force oscillate.
+/// The edge of a flat pin's fillet makes its force oscillate with the mesh.
 TEST_F(UncertaintyBand, HoldsItUnderAPin) {
   scene_.body.shape = scene::BodyShape::revolution;
   scene_.body.profile = {{{0.0, 0.0}, {0.03, 0.0}, {0.03, 0.04}, {0.0, 0.04}}, {}};

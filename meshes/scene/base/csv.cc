@@ -7,7 +7,7 @@
 namespace touchstone::scene {
 namespace {
 
-/// What stands before the first separator, which is removed with it.
+/// The text before the first separator; both are removed from `text`.
 std::string_view take(std::string_view& text, char separator) {
   const std::string_view part = text.substr(0, text.find(separator));
   text.remove_prefix(std::min(part.size() + 1, text.size()));
@@ -26,7 +26,7 @@ bool CsvRows::next() {
   cells_.clear();
   std::string_view row = text_;
   cells_.push_back(take(row, ','));
-  // Behind a comma there is a cell, be it empty.
+  // A comma is followed by a cell, which may be empty.
   while (cells_.back().data() + cells_.back().size() != text_.data() + text_.size()) cells_.push_back(take(row, ','));
   return true;
 }

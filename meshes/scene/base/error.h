@@ -7,7 +7,7 @@
 
 namespace touchstone::scene {
 
-/// One fault of an input: where it stands, what is wrong, what was expected.
+/// One fault of an input: its place, what is wrong, what was expected.
 struct Fault {
   std::string file;  ///< path, "--set" for an override, or empty when the fault has no file
   int line = 0;      ///< 1-based; 0 when unknown

@@ -18,10 +18,10 @@
 namespace touchstone::scene {
 namespace {
 
-/// Between a file's name and "PROCESS-NUMBER" in the name of a temporary one. Others hardly choose it by chance.
+/// Part of the name of a temporary file, between the file's name and "PROCESS-NUMBER"; unlikely in other names.
 constexpr std::string_view unfinished_mark = ".touchstone-part-";
 
-/// Whether open_temporary() makes names like this.
+/// Whether a name has the form of open_temporary().
 bool is_temporary(std::string_view name) {
   const std::size_t mark = name.rfind(unfinished_mark);
   if (mark == std::string_view::npos || mark == 0) return false;
@@ -38,8 +38,8 @@ bool is_temporary(std::string_view name) {
   throw std::filesystem::filesystem_error(what, path, std::error_code(error, std::generic_category()));
 }
 
-/// A new file that no other process writes to; `temporary` becomes its name. Its number is -1 with errno set on
-/// failure.
+/// Opens a new file that no other process writes to; `temporary` becomes its name. The descriptor is -1 on failure,
+/// with errno set.
 int open_temporary(const std::filesystem::path& path, std::filesystem::path& temporary) {
   for (int number = 0;; ++number) {
     temporary = path;
@@ -60,9 +60,9 @@ int write_all(int file, std::string_view content) {
   return 0;
 }
 
-/// Brings a file, or a folder's list of names, to the disk. @returns 0 or the error number
+/// Writes a file, or a folder's list of names, to the disk. @returns 0 or the error number
 int sync(int file) {
-  // EINVAL: a file system that has no disk behind it.
+  // EINVAL: the file system has no disk.
   return ::fsync(file) == 0 || errno == EINVAL ? 0 : errno;
 }
 
@@ -71,7 +71,7 @@ int sync(int file) {
 UnfinishedFile::UnfinishedFile(std::filesystem::path path) : path_(std::move(path)) {
   descriptor_ = open_temporary(path_, temporary_);
   if (descriptor_ < 0) fail("cannot write", path_, errno);
-  // Tells remove_unfinished() that this run lives, until the file has its name.
+  // Shows remove_unfinished() that this run is active, until the file has its final name.
   ::flock(descriptor_, LOCK_EX);
 }
 
@@ -87,7 +87,7 @@ bool UnfinishedFile::append(std::string_view content) noexcept {
 
 bool UnfinishedFile::finish() {
   if (error_ == 0) error_ = sync(descriptor_);
-  // A network file system may report a full disk only at a close; a copy's keeps the lock.
+  // A network file system may report a full disk only when a file is closed; closing a duplicate keeps the lock.
   const int copy = ::dup(descriptor_);
   if ((copy < 0 || ::close(copy) != 0) && error_ == 0) error_ = errno;
   if (error_ == 0 && ::rename(temporary_.c_str(), path_.c_str()) != 0) error_ = errno;
@@ -136,8 +136,8 @@ void require_writable(const std::filesystem::path& folder, const std::string& op
   };
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) refuse("cannot make the folder", error);
-  // Being root or on a read-only disk makes permissions a poor witness: try it.
+  if (error) refuse("cannot create the folder", error);
+  // For root and on a read-only disk permissions do not tell, so try to write.
   std::filesystem::path probe;
   const Descriptor file(open_temporary(folder / "probe", probe));
   int number = file.number() < 0 ? errno : write_all(file.number(), "probe");
@@ -146,7 +146,7 @@ void require_writable(const std::filesystem::path& folder, const std::string& op
 }
 
 FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& name) : file_(folder / name) {
-  // Without waiting: it may be a pipe.
+  // Non-blocking: it may be a pipe.
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail("cannot open", file_, errno);
 }
@@ -155,7 +155,7 @@ FolderLock::FolderLock(FolderLock&& other) noexcept
     : file_(std::move(other.file_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 FolderLock::~FolderLock() {
-  if (descriptor_ >= 0) ::close(descriptor_);  // which gives the lock back
+  if (descriptor_ >= 0) ::close(descriptor_);  // releases the lock
 }
 
 bool FolderLock::try_take() {

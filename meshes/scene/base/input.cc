@@ -22,7 +22,7 @@ std::string kind_text(mode_t mode) {
          : S_ISFIFO(mode)                 ? "a pipe"
          : S_ISCHR(mode) || S_ISBLK(mode) ? "a device"
          : S_ISSOCK(mode)                 ? "a socket"
-                                          : "no ordinary file";
+                                          : "not a regular file";
 }
 
 std::string size_text(std::uintmax_t bytes) {
@@ -35,9 +35,9 @@ Input read_input(const std::filesystem::path& path, const InputKind& kind) {
   const auto refuse = [&](const std::string& why) {
     return Input{"", why + "; expected " + std::string(kind.expected) + " of at most " + size_text(kind.bytes_max)};
   };
-  // The system would take the name to end there.
+  // The system would end the name there.
   if (path.native().find('\0') != std::string::npos) return refuse("its name holds a zero byte");
-  // Not to wait for the other end of a pipe.
+  // Non-blocking: a pipe would wait for its other end.
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   if (file.number() < 0 && errno == ENOENT) {
     Input absent = refuse("there is no such file");
@@ -59,8 +59,8 @@ Input read_input(const std::filesystem::path& path, const InputKind& kind) {
     if (got == 0) return refuse("it ends after " + std::to_string(at) + " of " + std::to_string(size) + " bytes");
     at += static_cast<std::size_t>(got);
   }
-  // Files that the system makes up, as those of /proc, say that they are empty.
-  if (char more = 0; size == 0 && ::read(file.number(), &more, 1) != 0) return refuse("it is no ordinary file");
+  // Virtual files such as those in /proc report a size of zero.
+  if (char more = 0; size == 0 && ::read(file.number(), &more, 1) != 0) return refuse("it is not a regular file");
   return input;
 }
 

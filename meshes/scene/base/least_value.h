@@ -15,7 +15,7 @@ struct Sample {
   Eigen::Matrix<double, N, 1> gradient;
 };
 
-/// Where a place stands to the region searched: the nearest place of the region, how far off, and the direction
+/// A place relative to the searched region: the nearest place of the region, its distance, and the direction
 /// from it; off_m <= 0 in the region.
 template <int N>
 struct Reach {

@@ -7,10 +7,10 @@
 namespace touchstone::scene {
 namespace {
 
-/// No key is nearly as long, and the effort grows with the length.
+/// Longer than any key; the cost grows with the length.
 constexpr std::size_t name_size_max = 100;
 
-/// Edit distance with transpositions, to suggest the key that was meant.
+/// Edit distance with transpositions, to suggest a similar key.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
@@ -25,7 +25,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return d[a.size()][b.size()];
 }
 
-/// Without the dashes before an option, which agree with those of every other.
+/// Number of characters without the leading dashes of an option.
 std::size_t letters(std::string_view name) { return name.size() - std::min(name.find_first_not_of('-'), name.size()); }
 
 }  // namespace
@@ -63,7 +63,7 @@ std::string did_you_mean_file(const std::filesystem::path& missing) {
   }
   std::ranges::sort(names);
   std::ranges::sort(others);
-  // The ending is the same for all and says nothing of how near two names are.
+  // Without the extension, which all files share.
   std::vector<std::string> stems;
   for (const std::string& name : names) stems.push_back(std::filesystem::path(name).stem().string());
   const std::string stem = missing.stem().string();

@@ -18,7 +18,7 @@ std::string Range::text() const {
 
 std::optional<Eigen::Quaterniond> orientation_of(const Eigen::Quaterniond& q) {
   if (!orientation_norm.contains(q.norm())) return std::nullopt;
-  // Dividing by a length that differs from one by rounding alone would change the last digits at every reading.
+  // A length that differs from one only by rounding is not divided by: repeated reading would change the last digits.
   constexpr double rounding = 2e-15;
   return std::abs(q.squaredNorm() - 1.0) < rounding ? q : q.normalized();
 }

@@ -11,7 +11,7 @@ namespace {
 
 unsigned byte(std::string_view text, std::size_t at) { return static_cast<unsigned char>(text[at]); }
 
-/// A control character, whose number is that of its last byte, as TOML and JSON write it.
+/// A control character as TOML and JSON write it; its number is its last byte.
 std::string escaped(unsigned control) {
   switch (control) {
     case '\n':
@@ -33,7 +33,7 @@ std::size_t utf8_length(std::string_view text) noexcept {
   if (first < 0x80) return 1;
   const std::size_t length = first >= 0xc2 && first <= 0xdf ? 2 : first >= 0xe0 && first <= 0xef ? 3 : 4;
   if (first < 0xc2 || first > 0xf4 || text.size() < length) return 0;
-  // The second byte has bounds of its own after some first ones: no overlong form, no surrogate, none past U+10FFFF.
+  // After some first bytes the second byte has its own bounds: no overlong form, no surrogate, nothing beyond U+10FFFF.
   const unsigned low = first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80;
   const unsigned high = first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf;
   if (byte(text, 1) < low || byte(text, 1) > high) return 0;
@@ -75,7 +75,7 @@ std::string visible(std::string_view text) {
 
 std::string shortened(std::string_view text, std::size_t bytes_max) {
   if (text.size() <= bytes_max) return std::string(text);
-  // Not within a character.
+  // Do not cut within a character.
   std::size_t end = bytes_max;
   while (end > 0 && (byte(text, end) & 0xc0) == 0x80) --end;
   return std::string(text.substr(0, end)) + "... (" + std::to_string(text.size()) + " bytes)";
@@ -85,7 +85,7 @@ std::string name_or_nothing(std::string_view word) {
   const bool plain = !word.empty() && word.size() <= 32 && std::all_of(word.begin(), word.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
-  return plain ? "\"" + std::string(word) + "\"" : "that is no plain name";
+  return plain ? "\"" + std::string(word) + "\"" : "that is not a plain name";
 }
 
 std::string toml_quoted(std::string_view text) {

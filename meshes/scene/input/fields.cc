@@ -22,25 +22,46 @@ Choice<T> choice(std::vector<std::string_view> names, Enum& (*member)(T&)) {
           [member](T& object, int value) { member(object) = static_cast<Enum>(value); }};
 }
 
-// A table reads best with one key per row.
+// One key per row is easier to read.
 // clang-format off
 
-/// The keys that give a convex solid its dimensions, each only with its shape.
-/// @param keys  shape and the five dimensions, with the prefix of their table
+/// The words of BodyShape, then the named profiles, which are bodies of revolution.
 template <class T, Solid& (*solid)(T&)>
-std::vector<Field<T>> solid_fields(const std::array<std::string_view, 6>& keys, const std::array<std::string_view, 4>& conditions) {
+Choice<T> solid_choice() {
+  static constexpr int shapes = 4;
+  Choice<T> out{{"box", "sphere", "ellipsoid", "revolution"},
+                [](const T& t) {
+                  const Solid& s = solid(const_cast<T&>(t));
+                  const auto found = std::ranges::find(named_profiles(), s.named, &NamedProfile::name);
+                  return s.named.empty() ? static_cast<int>(s.shape) : shapes + static_cast<int>(found - named_profiles().begin());
+                },
+                [](T& t, int value) {
+                  solid(t).shape = value < shapes ? static_cast<BodyShape>(value) : BodyShape::revolution;
+                  solid(t).named = value < shapes ? std::string_view() : named_profiles()[static_cast<std::size_t>(value - shapes)].name;
+                }};
+  for (const NamedProfile& profile : named_profiles()) out.names.push_back(profile.name);
+  return out;
+}
+
+/// The keys of a convex solid's dimensions, each valid for its shapes only.
+/// @param keys  shape and the dimensions, with the prefix of their table
+template <class T, Solid& (*solid)(T&)>
+std::vector<Field<T>> solid_fields(const std::array<std::string_view, 7>& keys, const std::array<std::string_view, 5>& conditions) {
   const std::string_view shape = keys[0];
   const Condition<T> box{shape, conditions[0], [](const T& t) { return solid(const_cast<T&>(t)).shape == BodyShape::box; }},
-      sphere{shape, conditions[1], [](const T& t) { return solid(const_cast<T&>(t)).shape == BodyShape::sphere; }},
+      ball{shape, conditions[1], [](const T& t) { const Solid& s = solid(const_cast<T&>(t)); return s.shape == BodyShape::sphere || s.named == "cylinder"; }},
       ellipsoid{shape, conditions[2], [](const T& t) { return solid(const_cast<T&>(t)).shape == BodyShape::ellipsoid; }},
-      revolution{shape, conditions[3], [](const T& t) { return solid(const_cast<T&>(t)).shape == BodyShape::revolution; }};
+      revolution{shape, conditions[3], [](const T& t) { const Solid& s = solid(const_cast<T&>(t)); return s.shape == BodyShape::revolution && s.named.empty(); }},
+      cylinder{shape, conditions[4], [](const T& t) { return solid(const_cast<T&>(t)).named == "cylinder"; }};
   return {
-      {shape, "", Range{}, {}, Side::both, choice<BodyShape, T>({"box", "sphere", "ellipsoid", "revolution"}, +[](T& t) -> BodyShape& { return solid(t).shape; }), {},
+      {shape, "", Range{}, {}, Side::both, solid_choice<T, solid>(), {},
            "Shape of the elastic solid, convex; a body's lowest point is on z = 0, its centre on the z axis."},
       {keys[1], "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> Vec3& { return solid(t).size_m; }, box,
            "Edge lengths of the box along x, y, z."},
-      {keys[2], "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> double& { return solid(t).radius_m; }, sphere,
-           "Radius of the sphere."},
+      {keys[2], "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> double& { return solid(t).radius_m; }, ball,
+           "Radius of the sphere or cylinder."},
+      {keys[6], "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> double& { return solid(t).length_m; }, cylinder,
+           "Length of the cylinder along z, from end to end."},
       {keys[3], "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> Vec3& { return solid(t).semi_axes_m; }, ellipsoid,
            "Semi-axes of the ellipsoid along x, y, z."},
       {keys[4], "m", between(-10.0, 10.0), {}, Side::both, +[](T& t) -> std::vector<Eigen::Vector2d>& { return solid(t).profile.rz_m; }, revolution,
@@ -50,8 +71,14 @@ std::vector<Field<T>> solid_fields(const std::array<std::string_view, 6>& keys, 
   };
 }
 
-/// A default need not be more exact, and reads better.
+/// Three digits are accurate enough for a default and easier to read.
 double three_digits(double value) { return rounded(value, 3); }
+
+std::vector<std::string_view> law_words() {
+  std::vector<std::string_view> words;
+  for (const LawName& law : contact_law_names) words.push_back(law.word);
+  return words;
+}
 
 Solid& solid_of(Scene& scene) { return scene.body; }
 Solid& solid_of(Inclusion& inclusion) { return inclusion; }
@@ -75,15 +102,15 @@ std::vector<Field<Scene>> make_scene_fields() {
                                shape = Tunable{TuningStage::shape}, rough_shape = Tunable{TuningStage::shape, true}, no;
   const Range any;
   std::vector<Field<S>> fields = {
-      // key, unit, range, default, whose answer it changes, where it lives, when it applies,
+      // key, unit, range, default, whose result it changes, where it is stored, when it applies,
       //     meaning, may it be tuned, a default that follows from other values
       {"title", "", any, "\"\"", none, +[](S& s) -> std::string& { return s.title; }, always,
-           "What the scene shows, for reports."},
+           "Title of the scene, for reports."},
 
       {"body.support", "", any, "\"bottom\"", both, choice({"bottom"}, +[](S& s) -> Support& { return s.body.support; }), always,
-           "Which surface region is held: a flat bottom face, else the lowest cap."},
+           "Which part of the surface is fixed: a flat bottom face, else the lowest cap."},
       {"body.support_height_m", "m", above(0.0, 10.0), required, both, +[](S& s) -> double& { return s.body.support_height_m; }, body_round,
-           "The surface below this height is held."},
+           "The surface below this height is fixed."},
       {"body.material.youngs_modulus_pa", "Pa", above(0.0, 1e13), required, both, +[](S& s) -> double& { return s.body.material.youngs_modulus_pa; }, always,
            "Young's modulus E of the body."},
       {"body.material.poissons_ratio", "", between(0.0, 0.5), required, both, +[](S& s) -> double& { return s.body.material.poissons_ratio; }, always,
@@ -104,11 +131,11 @@ std::vector<Field<Scene>> make_scene_fields() {
       {"tool.unit", "", any, required, both, choice({"m", "cm", "mm", "in"}, +[](S& s) -> LengthUnit& { return s.tool.unit; }), tool_mesh,
            "Unit of the mesh file's coordinates."},
       {"tool.mass_kg", "kg", above(0.0, 1e3), "1.0", fast, +[](S& s) -> double& { return s.tool.mass_kg; }, always,
-           "Mass m of the tool; k1 and k3 hold its size already, only its shares over the contact points count."},
+           "Mass m of the tool; k1 and k3 contain its size already, so only its distribution over the contact points matters."},
       {"tool.mass_center_m", "m", between(-10.0, 10.0), absent, both, +[](S& s) -> std::optional<Vec3>& { return s.tool.mass_center_m; }, always,
            "Mass centre, from the shape's centre or in the mesh's own axes; a track gives its poses. Absent: that of a uniform solid."},
 
-      {"contact.law", "", any, "\"duffing\"", fast, choice({"duffing", "area_aware"}, +[](S& s) -> ContactLaw& { return s.contact.law; }), always,
+      {"contact.law", "", any, "\"duffing\"", fast, choice(law_words(), +[](S& s) -> ContactLaw& { return s.contact.law; }), always,
            "Contact law of the fast model.", model},
       {"contact.k1_n_per_m", "N/m", between(0.0, 1e12), required, fast, +[](S& s) -> double& { return s.contact.k1_n_per_m; }, duffing,
            "Linear constant k1 = m w0^2 of F = k1 D + k3 D^3.", Tunable{.stage = TuningStage::force, .per_mass = PerMass{"contact.omega0_squared_per_s2", "1/s^2", 1.0}}},
@@ -120,30 +147,30 @@ std::vector<Field<Scene>> make_scene_fields() {
            "r_th: contact points closer than this belong to one contact region, for both solvers; a convex tool is always in one.", no,
            +[](const S& s) { return three_digits(body_size_m(s.body) / 15.0); }, "L / 15"},
       {"contact.friction.K", "N^(1-beta)", between(0.0, 1e6), required, both, +[](S& s) -> double& { return s.contact.friction->K; }, friction,
-           "K of the static limit f_max = K F_n^beta; a scene without friction leaves the table out.", force},
+           "K of the static limit f_max = K F_n^beta; absent in a scene without friction.", force},
       {"contact.friction.beta", "", between(2.0 / 3.0, 1.0), required, both, +[](S& s) -> double& { return s.contact.friction->beta; }, friction,
            "beta of the static limit; 2/3 for a truly elastic solid.", force},
       {"contact.friction.mu_D", "", between(0.0, 10.0), required, both, +[](S& s) -> double& { return s.contact.friction->mu_D; }, friction,
            "Dynamic friction coefficient.", force},
       {"contact.friction.stiffness_ratio", "", between(1e-3, 1e3), "1.0", fast, +[](S& s) -> double& { return s.contact.friction->stiffness_ratio; }, friction,
-           "kappa: stiffness F_t / D_t of the stuck contact over F_n / D_n; 1 as in the paper. Only the corrected formulation has another.", Tunable{.stage = TuningStage::force, .formulation = Formulation::corrected}},
+           "kappa: stiffness F_t / D_t of the sticking contact over F_n / D_n; 1 as in the paper. Only the corrected formulation allows other values.", Tunable{.stage = TuningStage::force, .formulation = Formulation::corrected}},
 
       {"fast.formulation", "", any, "\"corrected\"", fast, choice({"published", "corrected"}, +[](S& s) -> Formulation& { return s.fast.formulation; }), always,
            "The paper's printed method, or its corrected form.", model},
       {"fast.triangles", "", between(12, 1e5), "3952", fast, +[](S& s) -> int& { return s.fast.triangles; }, always,
-           "Triangles on the body; their corners are the rest points compared. Times compare.instants at most 1e7."},
+           "Triangles of the body's surface; their corners are the rest points compared. Times compare.instants at most 1e7."},
       {"fast.tool_samples", "", between(1, 1e5), "2000", fast, +[](S& s) -> int& { return s.fast.tool_samples; }, always,
            "Points on the tool's surface. The corrected form takes cells, a quarter as many, and smaller ones where few "
            "are in contact."},
       {"fast.rate_hz", "Hz", between(1.0, 1e5), "1000.0", fast, +[](S& s) -> double& { return s.fast.rate_hz; }, always,
            "Ticks per second of virtual time."},
       {"fast.max_regions", "", between(1, 64), "10", fast, +[](S& s) -> int& { return s.fast.max_regions; }, tool_mesh,
-           "Contact regions at a time; 1 takes all contact points as one region. A convex tool on a convex body has one."},
+           "Largest number of contact regions at a time; 1 takes all contact points as one region. A convex tool on a convex body has one."},
       {"fast.r_R_m", "m", above(0.0, 10.0), required, fast, +[](S& s) -> double& { return s.fast.r_R_m; }, always,
            "r_R: radius of the local neighbourhood R.", rough_shape,
            +[](const S& s) { return three_digits(body_size_m(s.body) / 4.0); }, "L / 4"},
       {"fast.C_n", "", between(0.0, 1e3), "0.2", fast, +[](S& s) -> double& { return s.fast.C_n; }, always,
-           "C_n: strength of the local factor; 0 leaves it out.", shape},
+           "C_n: strength of the local factor; 0 turns it off.", shape},
       {"fast.C_r_m", "m", above(0.0, 10.0), required, fast, +[](S& s) -> double& { return s.fast.C_r_m; }, always,
            "C_r: core radius of the local factor.", rough_shape,
            +[](const S& s) { return three_digits(body_size_m(s.body) / 30.0); }, "L / 30"},
@@ -154,9 +181,9 @@ std::vector<Field<Scene>> make_scene_fields() {
       {"live.force_max_n", "N", above(0.0, 1e4), "40.0", live, +[](S& s) -> double& { return s.live.force_max_n; }, always,
            "Device loop: largest norm of the force sent to the device."},
       {"live.force_slew_n_per_s", "N/s", above(0.0, 1e9), "2.0e4", live, +[](S& s) -> double& { return s.live.force_slew_n_per_s; }, always,
-           "Device loop: fastest change of that force."},
+           "Device loop: largest rate of change of that force."},
       {"live.release_s", "s", above(0.0, 10.0), "0.1", live, +[](S& s) -> double& { return s.live.release_s; }, always,
-           "Device loop: after a pose that is no placement the force falls to zero in this time."},
+           "Device loop: after an invalid pose the force falls to zero in this time."},
       {"live.hand_mass_kg", "kg", above(0.0, 100.0), "0.2", live, +[](S& s) -> double& { return s.live.hand_mass_kg; }, always,
            "Virtual hand: its mass with the tool's handle."},
       {"live.hand_damping_n_s_per_m", "N s/m", between(0.0, 1e4), "5.0", live, +[](S& s) -> double& { return s.live.hand_damping_n_s_per_m; }, always,
@@ -177,8 +204,8 @@ std::vector<Field<Scene>> make_scene_fields() {
            "Evenly spaced track instants at which both sides are recorded."},
   };
   const auto body = solid_fields<S, solid_of>(
-      {"body.shape", "body.size_m", "body.radius_m", "body.semi_axes_m", "body.profile_rz_m", "body.profile_arc_radius_m"},
-      {"body.shape = \"box\"", "body.shape = \"sphere\"", "body.shape = \"ellipsoid\"", "body.shape = \"revolution\""});
+      {"body.shape", "body.size_m", "body.radius_m", "body.semi_axes_m", "body.profile_rz_m", "body.profile_arc_radius_m", "body.length_m"},
+      {"body.shape = \"box\"", "body.shape = \"sphere\" or \"cylinder\"", "body.shape = \"ellipsoid\"", "body.shape = \"revolution\"", "body.shape = \"cylinder\""});
   fields.insert(fields.begin() + 1, body.begin(), body.end());
   return fields;
 }
@@ -186,8 +213,8 @@ std::vector<Field<Scene>> make_scene_fields() {
 std::vector<Field<Inclusion>> make_inclusion_fields() {
   using I = Inclusion;
   std::vector<Field<I>> fields = solid_fields<I, solid_of>(
-      {"shape", "size_m", "radius_m", "semi_axes_m", "profile_rz_m", "profile_arc_radius_m"},
-      {"shape = \"box\"", "shape = \"sphere\"", "shape = \"ellipsoid\"", "shape = \"revolution\""});
+      {"shape", "size_m", "radius_m", "semi_axes_m", "profile_rz_m", "profile_arc_radius_m", "length_m"},
+      {"shape = \"box\"", "shape = \"sphere\" or \"cylinder\"", "shape = \"ellipsoid\"", "shape = \"revolution\"", "shape = \"cylinder\""});
   fields.push_back({"center_m", "m", between(-10.0, 10.0), {}, Side::both, +[](I& i) -> Vec3& { return i.center_m; }, {},
        "Centre of the inclusion's bounding box in the body at rest."});
   fields.push_back({"material.youngs_modulus_pa", "Pa", above(0.0, 1e13), {}, Side::both, +[](I& i) -> double& { return i.material.youngs_modulus_pa; }, {},
@@ -279,7 +306,7 @@ std::string numbers(const Numbers& values) {
 
 template <class T>
 std::string value_text(const Field<T>& field, const T& object) {
-  T& o = const_cast<T&>(object);  // the accessors serve reading and writing; this only reads
+  T& o = const_cast<T&>(object);  // the accessors serve reading and writing; here only reading
   struct Visitor {
     T& o;
     std::string operator()(double& (*at)(T&)) const { return number_text(at(o)); }

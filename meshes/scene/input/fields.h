@@ -37,7 +37,7 @@ struct PerMass {
   double factor;
 };
 
-/// What the tuning needs to know of a key that it may change; its limits are the key's range.
+/// Properties of a key that tuning may change; its limits are the key's range.
 struct Tunable {
   TuningStage stage;
   bool rough = false;                           ///< the fit may have corners or steps in it
@@ -60,7 +60,7 @@ struct TrackRow {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
 };
 
-/// Where a key's value lives in a T (the Scene, one Inclusion or one TrackRow).
+/// Where a key's value is stored in a T (the Scene, one Inclusion or one TrackRow).
 template <class T>
 struct Choice {
   std::vector<std::string_view> names;  ///< in the order of the enumeration

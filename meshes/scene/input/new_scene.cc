@@ -12,7 +12,7 @@
 namespace touchstone::scene {
 namespace {
 
-/// As people write it: 3.0e6 rather than 3e+06.
+/// In the usual notation: 3.0e6 instead of 3e+06.
 std::string plain(double value) {
   const double size = std::abs(value);
   if (size == 0.0 || (size >= 1e-4 && size < 1e5)) {
@@ -117,10 +117,10 @@ std::string new_scene_toml(const NewScene& scene, const std::string& name) {
       "title = " +
       value_text(scene_fields().front(), titled) + "\n\n[body]\n" + body_text(body);
   if (body.flat_bottom()) {
-    out += line("support = \"bottom\"", "the bottom face is held");
+    out += line("support = \"bottom\"", "the bottom face is fixed");
   } else {
     const double height_m = body_shape(body)->bounds().upper_m.z();
-    out += line("support_height_m = " + plain(rounded(0.1 * height_m, 3)), "the surface below it is held");
+    out += line("support_height_m = " + plain(rounded(0.1 * height_m, 3)), "the surface below it is fixed");
   }
   const Material& material = body.material;
   out += "\n[body.material]\n" + line("youngs_modulus_pa = " + plain(material.youngs_modulus_pa), "E") +
@@ -139,33 +139,32 @@ std::string new_scene_toml(const NewScene& scene, const std::string& name) {
   }
 
   out +=
-      "# The fast model's force for a depth; the reference needs none of it. The area-aware law is\n"
+      "# The fast model's force for a depth; the reference does not use it. The area-aware law is\n"
       "#   F = k1 D,  k1 = k1_per_radius_n_per_m2 * a,  a = sqrt(A / pi),\n"
       "# with the contact's area A and the mean depth D over it. For a thick body the constant\n"
-      "# follows from the material, with nothing to fit: 2 E / (1 - nu^2) under a flat tool and\n"
+      "# follows from the material, without a fit: 2 E / (1 - nu^2) under a flat tool and\n"
       "# 0.707 of it under a rounded one, which is Hertz's force.\n"
       "# Here it is 2 * " +
       plain(material.youngs_modulus_pa) + " / (1 - " + plain(material.poissons_ratio) + "^2)" +
       (flat(tool) ? "" : " * 0.707") + ".\n" +
       (tool.shape == ToolShape::mesh
-           ? "# The mesh is taken for a rounded tool; if it meets the body with a flat face, leave out\n"
+           ? "# The mesh is assumed to be rounded; if it meets the body with a flat face, leave out\n"
              "# the 0.707.\n"
            : "") +
       "[contact]\nlaw = \"area_aware\"\nk1_per_radius_n_per_m2 = " +
       plain(area_law_constant_n_per_m2(material, tool, Formulation::corrected)) + "\n" +
-      line("k3_n_per_m3 = 0.0", "a cubic term on top, for \"touchstone tune\" to fit") + "\n";
+      line("k3_n_per_m3 = 0.0", "a cubic term, which \"touchstone tune\" can fit") + "\n";
 
   const std::string mark = scene.friction ? "" : "# ";
   const std::string mu = plain(scene.friction.value_or(0.3));
   out += (scene.friction ? "# Coulomb friction with the coefficient " + mu + ": K = mu, beta = 1, mu_D = mu.\n"
                          : "# No friction. Coulomb friction with the coefficient " + mu +
                                " would be these lines\n# without their first sign: K = mu, beta = 1, mu_D = mu.\n") +
-         mark + "[contact.friction]\n" + mark + line("K = " + mu, "stuck up to K F_n^beta") + mark + "beta = 1.0\n" +
-         mark + line("mu_D = " + mu, "sliding at mu_D F_n");
+         mark + "[contact.friction]\n" + mark + line("K = " + mu, "sticking up to K F_n^beta") + mark + "beta = 1.0\n" +
+         mark + line("mu_D = " + mu, "slipping at mu_D F_n");
 
   out += "\n[fast]\n" +
-         line("s_c_m2 = " + plain(stiff_beam_area_m2(body)),
-              "beams so thick that the contact moves further than they do") +
+         line("s_c_m2 = " + plain(stiff_beam_area_m2(body)), "beams thick enough to move less than the contact") +
          "# Its other lengths follow the body's size where they are not given; touchstone plan shows them.\n"
          "\n[compare]\n" +
          line(std::string("instants = ") + (scene.slide_m != 0.0 ? "25" : "13"),

@@ -26,7 +26,7 @@ constexpr std::string_view track_file_key = "file";
 constexpr std::string_view inclusion_key = "body.inclusion";
 constexpr std::string_view override_mark = "--set ";
 
-/// What stands in the file, for an error message.
+/// The value as written in the file, for an error message.
 std::string written(const toml::node& node) {
   if (const auto* number = node.as_floating_point()) return number_text(number->get());
   if (const auto* array = node.as_array()) {
@@ -45,7 +45,7 @@ std::string written(const toml::node& node) {
   return out.str();
 }
 
-/// Reads one file's document into a Scene, collecting every fault with its place.
+/// Reads one file's document into a Scene and collects all faults with their places.
 class Reader {
  public:
   Reader(const toml::table& document, std::filesystem::path file) : document_(document), file_(std::move(file)) {}
@@ -62,7 +62,11 @@ class Reader {
     read_mesh(scene);
     const std::vector<TrackRow> rows = read_track();
     check_rows(rows);
-    if (faults_.empty()) report(broken_shapes(scene));
+    if (faults_.empty()) {
+      complete(scene.body);
+      for (Inclusion& inclusion : scene.body.inclusions) complete(inclusion);
+      report(broken_shapes(scene));
+    }
     if (faults_.empty()) fill_in_defaults(scene);
     if (faults_.empty()) place_tool(rows, scene);
     if (faults_.empty()) report(broken_rules(scene));
@@ -88,7 +92,7 @@ class Reader {
     for (const Violation& v : violations) add_fault(v.key, v.message);
   }
 
-  /// A fault at a key's place; a key that is absent is reported at the nearest table above it.
+  /// Adds a fault at a key's place; for an absent key, at the nearest table above it.
   void add_fault(const std::string& key, const std::string& message) {
     const auto place = places_.find(key);
     if (place != places_.end()) {
@@ -148,7 +152,7 @@ class Reader {
                                                 const std::string& row) const {
     if (std::string former = row.empty() ? former_name_message(path) : ""; !former.empty()) return former;
     if (faults_.size() >= faults_shown_max) return unknown_key(row + path, path, known, faults_.size());
-    // Sections are keys too: [boddy] should lead to [body], not to a long key below it.
+    // Table names are keys too: [boddy] should suggest [body], not a long key inside it.
     std::set<std::string> names(known.begin(), known.end());
     for (const std::string& key : known) {
       for (std::size_t dot = key.find('.'); dot != std::string::npos; dot = key.find('.', dot + 1))
@@ -157,10 +161,10 @@ class Reader {
     return unknown_key(row + path, path, {names.begin(), names.end()}, faults_.size());
   }
 
-  /// Every field of a document or row. @param row its name with a dot, for messages; empty for the document
+  /// Reads all fields of a document or row. @param row its name with a dot, for messages; empty for the document
   template <class T>
   void read_fields(const std::vector<Field<T>>& fields, const toml::table& table, const std::string& row, T& object) {
-    // What conditions ask for comes first: choices, then lists, then the rest.
+    // Keys that conditions of others depend on come first: choices, then lists, then the rest.
     const auto rank = [](const Field<T>& field) {
       if (std::holds_alternative<Choice<T>>(field.access)) return 0;
       return std::holds_alternative<std::vector<Eigen::Vector2d>& (*)(T&)>(field.access) ? 1 : 2;
@@ -196,7 +200,7 @@ class Reader {
     }
   }
 
-  /// Those that follow from other values, which are all good by now.
+  /// Fills in defaults that follow from other values, which are all valid by now.
   void fill_in_defaults(Scene& scene) {
     for (const auto& field : scene_fields()) {
       if (!field.default_of || places_.contains(std::string(field.key)) || !applies(field, scene)) continue;
@@ -204,7 +208,7 @@ class Reader {
     }
   }
 
-  /// An array of tables. @param node of it, or of nothing
+  /// Reads an array of tables. @param node the array, or null
   template <class T>
   std::vector<T> read_rows(const std::vector<Field<T>>& fields, toml::node_view<const toml::node> node,
                            std::string_view name) {
@@ -226,7 +230,7 @@ class Reader {
     return rows;
   }
 
-  /// A file that the scene names. @param key  under which it does, where a file that cannot be read is reported
+  /// Reads a file that the scene names. @param key  the key that names it, at which a fault is reported
   std::optional<std::string> read_named(const std::filesystem::path& file, const InputKind& kind,
                                         const std::string& key) {
     Input input = read_input(file, kind);
@@ -308,7 +312,7 @@ class Reader {
     member(object) = *value;
     return true;
   }
-  /// Numbers of an array, or nothing when it is not one of `count` numbers in range.
+  /// The numbers of an array, or nothing if it does not consist of `count` numbers in range.
   template <class T>
   static std::optional<std::vector<double>> numbers(const Field<T>& field, const toml::node& node,
                                                     std::optional<std::size_t> count = std::nullopt) {
@@ -395,9 +399,9 @@ class Reader {
     return {};
   }
 
-  /// A row gives its height by z or by the depth, not by both or neither.
+  /// A row must give its height either by z or by the depth.
   void check_rows(const std::vector<TrackRow>& rows) {
-    if (!csv_lines_.empty()) return;  // a table's header says it for all rows
+    if (!csv_lines_.empty()) return;  // a CSV table's header decides this for all rows
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const TrackRow& row = rows[i];
       const std::string name = "track[" + std::to_string(i) + "].";
@@ -411,7 +415,8 @@ class Reader {
       } else if (row.direction && row.direction->stableNorm() == 0.0) {
         add_fault(name + "direction", "is zero; expected a non-zero length");
       } else if (row.direction && row.position.height_open && row.direction->head<2>().norm() > 0.0) {
-        add_fault(name + "position_m", "a slanting direction needs a point of its line; expected three numbers");
+        add_fault(name + "position_m",
+                  "a direction that is not vertical needs a point of its line; expected three numbers");
       } else if (row.depth_m && !row.direction && !row.position.height_open) {
         add_fault(name + "depth_m",
                   "the height is given twice, by depth_m and by the third number of position_m; "
@@ -423,7 +428,7 @@ class Reader {
     }
   }
 
-  /// The track's poses; those given by depth are found here, so that a resolved scene holds positions alone.
+  /// The track's poses. Those given by depth are computed here, so that a resolved scene has positions alone.
   void place_tool(const std::vector<TrackRow>& rows, Scene& scene) {
     const auto body = body_shape(scene.body);
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -434,12 +439,13 @@ class Reader {
         const std::optional<double> touch_m = first_contact_m(*body, scene.tool, pose, direction);
         if (!touch_m) {
           add_fault("track[" + std::to_string(i) + "].depth_m",
-                    row.direction ? "the tool never meets the body along this direction; expected a line through "
-                                    "position_m on which it does"
-                                  : "moved straight down the tool never meets the body; expected x and y over it");
+                    row.direction
+                        ? "the tool never touches the body along this direction; expected a line through "
+                          "position_m on which it does"
+                        : "moved straight down the tool never touches the body; expected x and y above the body");
           continue;
         }
-        // To a picometre: the same text on every machine, and the height itself where it is a round number.
+        // Rounded to a picometre: the same text on every machine, and a round height stays round.
         for (int axis = 0; axis < 3; ++axis) {
           if (direction[axis] == 0.0) continue;
           const double moved_m = pose.position_m[axis] + (*touch_m + *row.depth_m) * direction[axis];
@@ -448,7 +454,7 @@ class Reader {
         const Range& range = track_field("position_m").range;
         if (!range.contains(pose.position_m.minCoeff()) || !range.contains(pose.position_m.maxCoeff())) {
           add_fault("track[" + std::to_string(i) + "].depth_m",
-                    "leads to a place further off than position_m may be; expected each coordinate in " + range.text() +
+                    "leads to a position outside the range of position_m; expected each coordinate in " + range.text() +
                         " m");
           continue;
         }
@@ -480,12 +486,12 @@ class Reader {
   const toml::table& document_;
   std::filesystem::path file_;
   std::vector<Fault> faults_;
-  std::map<std::string, Fault> places_;  ///< where each key stands; message empty
-  std::vector<int> csv_lines_;           ///< of the track's rows, where it is a table
-  std::set<std::string> failed_;         ///< keys whose value is not to be relied on
+  std::map<std::string, Fault> places_;  ///< the place of every key; message empty
+  std::vector<int> csv_lines_;           ///< of the track's rows, if it is a CSV table
+  std::set<std::string> failed_;         ///< keys whose value is not valid
 };
 
-/// Moves, so that the values keep the place they were read from.
+/// Moves the values, which keep the place they were read from.
 void merge(toml::table&& from, toml::table& into) {
   for (auto& [key, node] : from) {
     toml::table* old = into[key.str()].as_table();
@@ -497,7 +503,7 @@ void merge(toml::table&& from, toml::table& into) {
   }
 }
 
-/// What the document says over what the file it includes says, if any, which stands beside it and includes nothing.
+/// Merges the included file, if any, below the document. It lies beside it and may not include another file.
 void take_in_included(const std::filesystem::path& file, toml::table& document) {
   const toml::node* node = document.get("include");
   if (node == nullptr) return;
@@ -511,24 +517,24 @@ void take_in_included(const std::filesystem::path& file, toml::table& document) 
   if (!input.fault.empty()) refuse("include: cannot read " + included.string() + ": " + input.fault);
   toml::table all = parse_document(input.bytes, included.string());
   if (all.contains("include"))
-    refuse("include: " + included.string() + " includes a file itself; expected one without");
+    refuse("include: " + included.string() + " includes another file; expected a file without include");
   document.erase("include");
   merge(std::move(document), all);
   document = std::move(all);
 }
 
-/// @param before  what stands before the value: its key and " = "
+/// @param before  the text before the value: its key and " = "
 toml::table parse_value(const std::string& value, const std::string& before, const std::string& place) {
   try {
     return parse_document(before + value, place);
   } catch (const InputError&) {
-    // A shell user should not have to quote words twice.
+    // So that a shell user need not quote a word twice.
     return parse_document(before + "'" + value + "'", place);
   }
 }
 
-/// Sets what a path with numbers leads to, such as track[1].position_m[2]; rows and elements count from zero and are
-/// there already.
+/// Sets the value at a path with indices, such as track[1].position_m[2]. Rows and elements are counted from zero and
+/// must exist.
 void set_element(const std::string& path, toml::table&& parsed, const std::string& place, toml::table& document) {
   toml::node& value = *parsed.get("value");
   const std::size_t end = path.find_last_of(".[");
@@ -541,7 +547,7 @@ void set_element(const std::string& path, toml::table&& parsed, const std::strin
   const toml::node* old = document.at_path(path).node();
   if (array == nullptr || old == nullptr) {
     throw InputError({{place, 0, 0,
-                       path + " is not in the scene; expected a place it has, counted from 0, such as "
+                       path + " is not in the scene; expected an existing index, counted from 0, such as "
                               "track[1].position_m[2] of a track in rows"}});
   }
   const auto at = std::find_if(array->cbegin(), array->cend(), [&](const toml::node& node) { return &node == old; });
@@ -561,7 +567,7 @@ void apply_override(const std::string& setting, toml::table& document) {
   }
 }
 
-/// @param keep  which keys; @param meaning  put every key's line of documentation behind it
+/// @param keep  which keys; @param meaning  add every key's documentation after it
 template <class Keep>
 std::string toml_text(const Scene& scene, Keep keep, bool meaning = false) {
   std::ostringstream out;
@@ -631,7 +637,7 @@ std::string explained_toml(const Scene& scene) {
 }
 
 std::string scene_hash(const Scene& scene) {
-  // A mesh counts by what it holds, not by the name of its file.
+  // A mesh is identified by its content, not by its file name.
   std::string text =
       toml_text(scene, [](const auto& field) { return field.side != Side::none && field.key != "tool.file"; });
   if (scene.tool.mesh) text += mesh_text(*scene.tool.mesh);

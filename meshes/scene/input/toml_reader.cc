@@ -48,8 +48,8 @@ std::string command_for(FileKind kind, const std::filesystem::path& file) {
   return "";
 }
 
-/// Refuses, with its place, what no TOML file has and the parser does not stand: bytes that are no UTF-8, a zero byte,
-/// a character beyond ASCII outside of quotes and comments, and a key of very many parts.
+/// Refuses, with its place, input that is no valid TOML and that the parser cannot handle: bytes that are not UTF-8, a
+/// zero byte, a character beyond ASCII outside of quotes and comments, and a key of very many parts.
 class Guard {
  public:
   Guard(std::string_view text, const std::string& file) : text_(without_mark(text)), file_(file) {}
@@ -58,7 +58,7 @@ class Guard {
     while (at_ < text_.size()) {
       const std::string_view rest = text_.substr(at_);
       const std::size_t length = utf8_length(rest);
-      if (length == 0) refuse("a byte that is no UTF-8");
+      if (length == 0) refuse("a byte that is not UTF-8");
       if (rest[0] == '\0') refuse("a zero byte");
       if (quotes_.empty() && !comment_) {
         if (length > 1) refuse("a character that is not ASCII, outside of quotes and comments");
@@ -69,7 +69,7 @@ class Guard {
   }
 
  private:
-  /// Goes over quotes that begin or end a string, or over one character. @returns its length in bytes
+  /// Advances over quotes that begin or end a string, or over one character. @returns its length in bytes
   std::size_t begin_or_end(std::string_view rest, std::size_t length) {
     const char c = rest[0];
     if (c == '\n') {
@@ -84,7 +84,7 @@ class Guard {
                rest[1] != '\n' && rest[1] != '\0') {
       return 2;
     } else if (rest.starts_with(quotes_)) {
-      // A string may end in quotes of its own before the three that end it.
+      // A string may end in quotes that belong to it, before the three closing ones.
       std::size_t count = quotes_.size();
       while (quotes_.size() == 3 && count < 5 && rest.substr(count).starts_with(c)) ++count;
       quotes_ = {};
@@ -113,7 +113,7 @@ class Guard {
 
   std::string_view text_;
   const std::string& file_;
-  std::string_view quotes_;  ///< of the string that at_ is in
+  std::string_view quotes_;  ///< quotes of the string that contains at_
   bool comment_ = false;
   std::size_t at_ = 0;
   int line_ = 1, column_ = 1, parts_ = 1;
@@ -126,7 +126,7 @@ void require_kind(const toml::table& document, const std::filesystem::path& file
   if (!kind || *kind == wanted) return;
   throw InputError({{file.string(), 0, 0,
                      "this is " + name_of(*kind) + ", expected " + name_of(wanted) +
-                         "; the verb for it is: " + command_for(*kind, file)}});
+                         "; the command for it is: " + command_for(*kind, file)}});
 }
 
 toml::table parse_document(std::string_view text, const std::string& file) {

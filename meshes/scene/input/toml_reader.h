@@ -22,7 +22,7 @@ struct Setting {
 /// The kind of a TOML file of ours, determined by its tables.
 enum class FileKind { scene, sweep, tuning, gates };
 
-/// @throws InputError when the document is clearly of another kind than wanted, with the verb that takes it
+/// @throws InputError when the document is clearly of another kind than wanted, with the command that takes it
 void require_kind(const toml::table& document, const std::filesystem::path& file, FileKind wanted);
 
 /// The text's document; every TOML file is parsed here. @param file  for messages. @throws InputError when it is no

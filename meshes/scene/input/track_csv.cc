@@ -37,7 +37,7 @@ std::vector<TrackRow> read_track_csv(std::string_view text, const std::string& n
   std::vector<TrackRow> track;
   std::array<Range, column_names.size()> ranges;
   for (std::size_t i = 0; i < ranges.size(); ++i) ranges[i] = field_of(i).range;
-  std::vector<std::size_t> meaning;  // of each column: index into column_names
+  std::vector<std::size_t> meaning;  // per column: index into column_names
   for (CsvRows rows(text); rows.next();) {
     if (rows.text().empty() || rows.text().starts_with('#')) continue;
     const int number = rows.line();

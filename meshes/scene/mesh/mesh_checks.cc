@@ -38,7 +38,7 @@ struct CellHash {
   }
 };
 
-/// For every point the first one that lies at the same place.
+/// For every point the first point at the same place.
 std::vector<std::int32_t> first_at_same_place(const std::vector<Vec3>& points) {
   const double tolerance = 1e-9 * diagonal(points);
   // Cells wide enough that a point's neighbours are in at most eight of them.
@@ -88,7 +88,7 @@ double six_volumes(const RawMesh& mesh, const Triangle& t, const Vec3& from) {
   return (point(mesh, t[0]) - from).dot((point(mesh, t[1]) - from).cross(point(mesh, t[2]) - from));
 }
 
-/// The angle under which a piece is seen from a place, in full turns: 1 inside, 0 outside (van Oosterom, Strackee).
+/// Solid angle of a piece as seen from a point, in full turns: 1 inside, 0 outside (van Oosterom, Strackee).
 double winding(const RawMesh& mesh, const MeshPiece& piece, const Vec3& from) {
   double angle = 0.0;
   for (const std::size_t t : piece.triangles) {
@@ -155,14 +155,14 @@ std::optional<std::string> orient_outwards(RawMesh& mesh, std::vector<MeshPiece>
         const auto& both = on_edge[edge_between(a, b)];
         const std::size_t other = both[0] == t ? both[1] : both[0];
         Triangle& n = mesh.triangles[other];
-        // Alike when the neighbour runs along the edge the other way.
+        // Orientations agree if the neighbour traverses the edge in the opposite direction.
         const bool alike = (n[0] == b && n[1] == a) || (n[1] == b && n[2] == a) || (n[2] == b && n[0] == a);
         if (!seen[other]) {
           if (!alike) std::swap(n[1], n[2]);
           seen[other] = true;
           piece.triangles.push_back(other);
         } else if (!alike) {
-          return "the surface has only one side: it cannot be turned outwards at " +
+          return "the surface is not orientable: its normals cannot all point outwards at " +
                  edge_text(mesh, edge_between(a, b));
         }
       }

@@ -18,7 +18,7 @@ struct MeshPiece {
   double volume = 0.0;
 };
 
-/// Turns the triangles of every piece alike, then outwards, and lists the pieces.
+/// Orients the triangles of every piece consistently, then outwards, and lists the pieces.
 /// @returns what keeps the mesh from bounding solids, in words with places in the mesh's unit; nothing when all is well
 [[nodiscard]] std::optional<std::string> orient_outwards(RawMesh& mesh, std::vector<MeshPiece>& pieces);
 

@@ -12,7 +12,7 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-/// Boxes around boxes around points, to find the one furthest along a direction.
+/// A tree of bounding boxes of points, to find the point furthest along a direction.
 class PointTree {
  public:
   explicit PointTree(const std::vector<Vec3>& points) : points_(points), order_(points.size()) {
@@ -20,7 +20,7 @@ class PointTree {
     build(0, order_.size());
   }
 
-  /// The point with the largest product with a direction, or nothing when none is above the bound.
+  /// The point with the largest product with a direction, or nothing if none exceeds the bound.
   [[nodiscard]] const Vec3* furthest(const Vec3& along, double bound) const {
     const Vec3* best = nullptr;
     search(0, along, bound, best);
@@ -87,10 +87,10 @@ class PointTree {
 using Corners = std::array<Vec3, 3>;
 
 /// A direction, `normal` or one within some 60 degrees of it, along which no point of the tree is further than the
-/// triangle's lowest corner plus the tolerance; nothing where there is none.
+/// triangle's lowest corner plus the tolerance; nothing if there is none.
 std::optional<Vec3> outward_direction(const PointTree& tree, const Corners& corners, const Vec3& normal,
                                       double tolerance) {
-  // How much too far the furthest point is, and how that changes with the direction: convex in the direction.
+  // Excess of the furthest point, and its derivative by the direction; the excess is convex in the direction.
   const auto excess = [&](const Vec3& along) {
     std::array<double, 3> at;
     for (std::size_t k = 0; k < 3; ++k) at[k] = along.dot(corners[k]);
@@ -100,7 +100,7 @@ std::optional<Vec3> outward_direction(const PointTree& tree, const Corners& corn
     return Sample<3>{along.dot(*above) - at[lowest] - tolerance, *above - corners[lowest]};
   };
   if (excess(normal).value == 0.0) return normal;
-  // Directions normal + t_x x + t_y y, x and y at right angles to the normal.
+  // Directions normal + t_x x + t_y y, with x and y perpendicular to the normal.
   constexpr double furthest_tangent = 2.0;
   const Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);
   const double close = 1e-3 * tolerance;
@@ -121,12 +121,12 @@ std::optional<Vec3> outward_direction(const PointTree& tree, const Corners& corn
   return found;
 }
 
-/// The triangles of a mesh, and where they are.
+/// The triangles of a mesh with their positions.
 class Facets {
  public:
   explicit Facets(const RawMesh& mesh)
       : triangles_(mesh.triangles), points_(mesh.points), at_(mesh.points.size()), turn_at_(mesh.points.size()) {
-    // From one of the mesh's own points, so that far from the origin nothing is lost.
+    // Relative to one of the mesh's own points, so that far from the origin no digits are lost.
     for (Vec3& p : points_) p -= mesh.points.front();
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       for (const std::int32_t i : triangles_[t]) at_[static_cast<std::size_t>(i)].push_back(t);
@@ -144,7 +144,7 @@ class Facets {
             points_[static_cast<std::size_t>(c)]};
   }
 
-  /// Unit normal. Of a triangle thinner than `thin` it may be anything, so its neighbours are asked.
+  /// Unit normal. For a triangle thinner than `thin` it is inaccurate, so that its neighbours are used.
   [[nodiscard]] Vec3 normal(std::size_t t, double thin) const {
     const Corners c = corners(t);
     const double longest = std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
@@ -156,7 +156,8 @@ class Facets {
     return normal.normalized();
   }
 
-  /// Marks the triangle and those joined to it as long as all their corners are at least `least` along the direction.
+  /// Marks the triangle and those connected to it, as long as all their corners are at least `least` along the
+  /// direction.
   void mark_above(std::size_t first, const Vec3& along, double least, std::vector<bool>& marked) {
     std::vector<std::size_t> next = {first};
     marked[first] = true;
@@ -165,7 +166,7 @@ class Facets {
       const std::size_t t = next.back();
       next.pop_back();
       for (const std::int32_t i : triangles_[t]) {
-        // Once is enough: a vertex may have thousands of triangles.
+        // Visited once: a vertex may have thousands of triangles.
         if (std::exchange(turn_at_[static_cast<std::size_t>(i)], turn_) == turn_) continue;
         for (const std::size_t near : at_[static_cast<std::size_t>(i)]) {
           if (marked[near]) continue;
@@ -188,7 +189,7 @@ class Facets {
   std::vector<Vec3> points_;
   std::vector<std::vector<std::size_t>> at_;  ///< the triangles at every point
   std::vector<Vec3> twice_area_at_;           ///< their sum
-  std::vector<std::size_t> turn_at_;          ///< when each point was last gone over
+  std::vector<std::size_t> turn_at_;          ///< number of the last visit
   std::size_t turn_ = 0;
 };
 
@@ -202,7 +203,7 @@ bool convex(const RawMesh& mesh, double tolerance) {
     if (seen[t]) continue;
     const auto along = outward_direction(tree, facets.corners(t), facets.normal(t, tolerance), tolerance);
     if (!along) return false;
-    // One plane serves all the triangles around that it touches.
+    // One plane covers all neighbouring triangles that it touches.
     const Vec3* furthest = tree.furthest(*along, -INFINITY);
     facets.mark_above(t, *along, along->dot(*furthest) - tolerance, seen);
   }

@@ -11,7 +11,7 @@
 namespace touchstone::scene {
 namespace {
 
-/// Deletes the mesh of a file, and keeps the file's content till then: whoever holds the mesh can ask for it.
+/// A mesh with its file's content: who holds the mesh can ask for the content.
 struct MeshOfFile {
   std::string content;
   void operator()(const TriangleMesh* mesh) const { delete mesh; }
@@ -36,7 +36,7 @@ std::optional<TriangleMesh> checked_mesh(const std::string& content, const std::
     }
   }
   raw = welded(raw);
-  // Places in faults are in the file's own unit, as its author sees them.
+  // Faults give positions in the file's own unit, as its author sees them.
   std::vector<MeshPiece> pieces;
   if (const auto fault = orient_outwards(raw, pieces)) return refuse(*fault);
   if (pieces.size() > mesh_pieces_max) {
@@ -44,15 +44,15 @@ std::optional<TriangleMesh> checked_mesh(const std::string& content, const std::
                   std::to_string(mesh_pieces_max));
   }
   try {
-    // A mesh of triangles as long as wide has some ten pairs for each.
+    // A mesh of well-shaped triangles has some ten pairs for each.
     const std::size_t pairs_max = 4'000'000 + 20 * raw.triangles.size();
     if (const auto place = self_intersection(raw, pairs_max)) {
       return refuse("the surface cuts or touches itself near " + place_text(*place));
     }
   } catch (const TooManyPairs&) {
     return refuse(
-        "the mesh has too many long thin triangles side by side to tell whether it cuts itself; expected "
-        "triangles nearer to equal sides");
+        "the mesh has too many long thin triangles side by side to check for self-intersection; expected "
+        "triangles with more equal sides");
   }
   if (const auto place = nested_piece(raw, pieces)) {
     return refuse("the piece at " + place_text(*place) +

@@ -30,7 +30,7 @@ inline constexpr std::size_t mesh_triangles_max = 500'000, mesh_pieces_max = 100
                                                                double unit_m, std::vector<Fault>& faults);
 
 /// The file's content as it was when the mesh was read, whatever became of the file; null for a mesh that
-/// mesh_of_file() did not make. It lives as long as the mesh.
+/// mesh_of_file() did not make. It exists as long as the mesh.
 [[nodiscard]] const std::string* content_of_file(const std::shared_ptr<const TriangleMesh>& mesh);
 
 }  // namespace touchstone::scene

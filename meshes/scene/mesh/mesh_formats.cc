@@ -45,7 +45,7 @@ RawMesh read_stl_text(const std::string& bytes, const std::string& name) {
   return mesh;
 }
 
-/// One corner of an OBJ face: i, i/j, i//k or i/j/k, counted from 1, or back from the last point with a minus.
+/// One corner of an OBJ face: i, i/j, i//k or i/j/k; counted from 1, or with a minus back from the last point.
 std::int32_t obj_index(const TextLines& lines, std::string_view word, std::size_t points) {
   const std::string_view digits = word.substr(0, word.find('/'));
   const std::optional<long> index = parsed<long>(digits);
@@ -118,7 +118,7 @@ void BinaryReader::fail(const std::string& message) const {
 }
 
 RawMesh read_stl(const std::string& bytes, const std::string& name) {
-  // Many binary files start with "solid" too, so the size decides; a text holds no zero byte.
+  // Many binary files start with "solid" too, so the size decides; a text has no zero byte.
   std::size_t expected = stl_header;
   if (bytes.size() >= stl_header) {
     BinaryReader count(bytes, stl_header - 4, false, name);

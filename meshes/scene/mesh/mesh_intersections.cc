@@ -19,7 +19,7 @@ struct Node {
   }
 };
 
-/// Boxes around boxes around triangles.
+/// A tree of bounding boxes of triangles.
 class Tree {
  public:
   Tree(const RawMesh& mesh, std::size_t pairs_max)
@@ -79,15 +79,15 @@ int Tree::build(int begin, int end) {
   return index;
 }
 
-/// Convex sets are apart exactly when their shadows on one of these directions are: the two normals, the products of
-/// edges, and, for triangles in one plane, the directions in it across the edges.
+/// Separating axis theorem: two convex sets are apart exactly if their projections on one of these directions are: the
+/// two normals, the cross products of edges and, for triangles in one plane, the in-plane normals of the edges.
 bool apart(const Corners& a, const Corners& b) {
   const auto edges = [](const Corners& t) { return Corners{t[1] - t[0], t[2] - t[1], t[0] - t[2]}; };
   const Corners ea = edges(a), eb = edges(b);
   const auto apart_along = [&](const Vec3& axis) {
     double low_a = INFINITY, high_a = -INFINITY, low_b = INFINITY, high_b = -INFINITY;
     for (std::size_t k = 0; k < 3; ++k) {
-      // From a corner of both, so that far from the origin nothing is lost.
+      // Relative to a corner, so that far from the origin no digits are lost.
       const double pa = axis.dot(a[k] - a[0]), pb = axis.dot(b[k] - a[0]);
       low_a = std::min(low_a, pa);
       high_a = std::max(high_a, pa);
@@ -118,7 +118,7 @@ std::optional<Vec3> Tree::between_triangles(int s, int t) {
   }
   const Corners a = corners(s), b = corners(t);
   if (apart(a, b)) return std::nullopt;
-  // The middle of the overlap of their boxes.
+  // The centre of the overlap of their boxes.
   Vec3 lower_a = a[0], upper_a = a[0], lower_b = b[0], upper_b = b[0];
   for (std::size_t k = 1; k < 3; ++k) {
     lower_a = lower_a.cwiseMin(a[k]);
@@ -142,7 +142,7 @@ std::optional<Vec3> Tree::between(int a, int b) {
     }
     return std::nullopt;
   }
-  // The larger of the two is opened.
+  // Descends into the larger of the two.
   if (nb.leaf() || (!na.leaf() && na.end - na.begin >= nb.end - nb.begin)) {
     const auto place = between(na.left, b);
     return place ? place : between(na.right, b);

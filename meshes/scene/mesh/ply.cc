@@ -8,7 +8,7 @@
 namespace touchstone::scene {
 namespace {
 
-/// A property of a PLY element; a list when it has a type for its count.
+/// A property of a PLY element; a list if it has a type for its count.
 struct Property {
   std::string name, type, count_type;
 
@@ -43,7 +43,7 @@ Header read_header(TextLines& lines) {
     if (words[0] == "end_header") {
       if (!format) lines.fail("the header names no format");
       for (const Element& element : header.elements) {
-        // Its rows hold nothing, however many it says there are.
+        // Rows without properties have no data, whatever their count.
         if (element.properties.empty())
           lines.fail("element " + name_or_nothing(element.name) + " has no property; expected at least one");
       }
@@ -87,7 +87,7 @@ double take(BinaryReader& reader, const std::string& type) {
   return reader.take<double>();
 }
 
-/// The body's numbers in turn, from text or binary, with faults at their place.
+/// Reads the body's numbers in order, from text or binary, with the place of faults.
 struct Numbers {
   std::function<void()> begin_row;
   std::function<double(const std::string& type)> take;
@@ -157,7 +157,7 @@ RawMesh read_ply(const std::string& bytes, const std::string& name) {
       if (element.name == "vertex") {
         read_vertex(element, numbers, mesh);
       } else {
-        // Elements of no interest hold no list of vertices and are read over in the same way.
+        // Other elements have no list of vertices and are skipped in the same way.
         read_face(element, numbers, points, mesh);
       }
     }

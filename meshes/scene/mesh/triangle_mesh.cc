@@ -12,7 +12,7 @@ double TriangleMesh::area_m2() const {
 }
 
 double TriangleMesh::volume_m3() const {
-  // Tetrahedra about one of the mesh's own points, so that a mesh far from the origin loses nothing.
+  // Tetrahedra from one of the mesh's own points, so that far from the origin no digits are lost.
   if (triangles.empty()) return 0.0;
   const Vec3 from = points_m.col(0);
   double six_m3 = 0.0;

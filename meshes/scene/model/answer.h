@@ -17,7 +17,7 @@ struct RegionRecord {
   Vec3 force_n = Vec3::Zero();     ///< on the tool
   Vec3 torque_nm = Vec3::Zero();   ///< on the tool, about its mass centre
   double area_m2 = 0.0;            ///< contact area
-  int id = 0;                      ///< the smallest number free at its creation, kept while it lives
+  int id = 0;                      ///< the smallest free number when the region begins, kept until it ends
   Vec3 friction_n = Vec3::Zero();  ///< part of force_n along the surface, where the scene has friction
   bool sliding = false;            ///< slips over the surface, where the scene has friction
 };
@@ -27,7 +27,7 @@ struct InstantRecord {
   double time_s = 0.0;
   Pose tool;
   double depth_m = 0.0;                 ///< rest_depth_m, zero when apart
-  double separation_m = 0.0;            ///< between tool and body while apart; a solver that does not know it says 0
+  double separation_m = 0.0;            ///< between tool and body while apart; 0 if the solver does not compute it
   std::vector<RegionRecord> regions;    ///< empty when apart; in the order of their creation
   Vec3 support_force_n = Vec3::Zero();  ///< of the support on the body
   Eigen::Matrix3Xd displacement_m;      ///< one column per rest point asked for
@@ -68,7 +68,7 @@ struct ReferenceInstant : InstantRecord {
 class Instants {
  public:
   template <class Record>
-  Instants(const std::vector<Record>& records) {  // NOLINT(google-explicit-constructor): it stands for the list
+  Instants(const std::vector<Record>& records) {  // NOLINT(google-explicit-constructor): it represents the list
     records_.reserve(records.size());
     for (const InstantRecord& record : records) records_.push_back(&record);
   }

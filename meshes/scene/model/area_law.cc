@@ -9,7 +9,7 @@ namespace touchstone::scene {
 namespace {
 
 /// Hertz's force of a ball, 4/3 E* sqrt(R) D^1.5, over 2 E* a <d>, with a = sqrt(2 R D) and <d> = 2/3 D, the mean depth
-/// that the corrected formulation takes under a ball: its weights fall with the distance from the middle as 1 / r.
+/// of the corrected formulation under a ball: its weights decrease as 1 / r with the distance from the centre.
 constexpr double rounded_tool_factor = std::numbers::sqrt2 / 2.0;
 
 }  // namespace

@@ -12,8 +12,8 @@ namespace touchstone::scene {
 /// apart, minus rest_depth_m when not. Of a mesh tool the surface counts, not the space within.
 [[nodiscard]] double gap_m(const Shape& body, const Tool& tool, const Pose& pose);
 
-/// How far the tool, at the pose's orientation, is to be moved from the pose along a direction to stand where it first
-/// touches the body on its way in from far off [m]; negative when it is past that place. Nothing when it passes by.
+/// How far the tool, at the pose's orientation, must move from the pose along a direction to where it first
+/// touches the body, coming from far away [m]; negative beyond that place. Nothing if it never touches.
 /// By the bodies' exact shapes rather than by FCL on their triangles: this layer is below FCL, and triangles of a round
 /// shape meet some micrometres late. Exact to rounding for a ball or capsule, else to about
 /// 1e-10 of the body's size.

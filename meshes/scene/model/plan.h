@@ -1,4 +1,4 @@
-// What a side will model for a scene, what it leaves out, and why: one line per part.
+// What a solver models of a scene, what it leaves out, and why: one line per part.
 #pragma once
 
 #include <string>

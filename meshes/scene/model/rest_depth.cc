@@ -1,5 +1,5 @@
-// The depth of a tool below the rest surface: the least signed distance of a convex body over the tool; and the first
-// contact along a line, where that distance falls to zero.
+// The depth of a tool below the rest surface, from the smallest signed distance of a convex body over the tool, and the
+// first contact along a line, where that distance becomes zero.
 #include "scene/model/rest_depth.h"
 
 #include "scene/base/least_value.h"
@@ -46,7 +46,7 @@ double least_over_segment(const Shape& body, const Vec3& from_m, const Vec3& to_
   return best;
 }
 
-/// In a triangle's plane, coordinates along two edges at right angles.
+/// Coordinates in the triangle's plane along two perpendicular directions.
 double least_over_triangle(const Shape& body, const std::array<Vec3, 3>& corner_m, double tolerance_m) {
   using Vec2 = Eigen::Vector2d;
   const Vec3 x = (corner_m[1] - corner_m[0]).normalized();
@@ -81,7 +81,7 @@ double least_over_triangle(const Shape& body, const std::array<Vec3, 3>& corner_
       });
 }
 
-/// Above this the body's tangents at a triangle's corners hold it.
+/// Lower bound of the distance over a triangle, from the tangent planes at its corners.
 double least_by_tangents_m(const std::array<Vec3, 3>& corner_m, const std::array<SurfaceQuery, 3>& at) {
   double bound_m = -INFINITY;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -92,8 +92,8 @@ double least_by_tangents_m(const std::array<Vec3, 3>& corner_m, const std::array
   return bound_m;
 }
 
-/// Triangles whose corners' tangents rule out anything lower are passed over.
-/// @param best  a value that matters no more if it is the least
+/// Triangles whose lower bound by tangents is too large are skipped.
+/// @param best  a value that need not be found if it is the minimum
 double least_over_mesh(const Shape& body, const TriangleMesh& mesh, const Pose& pose, double tolerance_m, double best) {
   const Eigen::Matrix3Xd points_m = (pose.orientation.toRotationMatrix() * mesh.points_m).colwise() + pose.position_m;
   std::vector<SurfaceQuery> at(static_cast<std::size_t>(points_m.cols()));
@@ -126,14 +126,14 @@ double least_over_mesh(const Shape& body, const TriangleMesh& mesh, const Pose& 
   return best;
 }
 
-/// The triangles of a mesh in boxes within boxes.
+/// The triangles of a mesh in a tree of bounding boxes.
 using Triangles = Eigen::KdBVH<double, 3, std::int32_t>;
 
-/// The least signed distance of a body over a mesh: what Eigen::BVMinimize asks for.
+/// Minimises the signed distance of a body over a mesh, in the form that Eigen::BVMinimize needs.
 class LeastOverBoxes {
  public:
   using Scalar = double;
-  /// @param best  a value that matters no more if it is the least
+  /// @param best  a value that need not be found if it is the minimum
   LeastOverBoxes(const Shape& body, const TriangleMesh& mesh, const Pose& pose, double tolerance_m, double best)
       : body_(body),
         mesh_(mesh),
@@ -143,7 +143,7 @@ class LeastOverBoxes {
         best_(best) {}
   [[nodiscard]] double best() const noexcept { return best_; }
 
-  /// The distance is convex, so that over a box it lies above its tangent at the middle.
+  /// The distance is convex, so in the box it lies above its tangent at the centre.
   double minimumOnVolume(const Eigen::AlignedBox3d& box) const {
     const SurfaceQuery q = body_.query(turn_ * box.center() + move_m_);
     const double falls_m = 0.5 * (turn_.transpose() * q.normal).cwiseAbs().dot(box.sizes());
@@ -171,7 +171,7 @@ class LeastOverBoxes {
   double tolerance_m_, best_;
 };
 
-/// The least signed distance of the body over the tool [m]. @param enough  what is not below it need not be exact
+/// The smallest signed distance of the body over the tool [m]. @param enough  values not below it need not be exact
 double least_distance_m(const Shape& body, const Tool& tool, const Pose& pose, double tolerance_m, double enough) {
   switch (tool.shape) {
     case ToolShape::sphere:
@@ -196,12 +196,12 @@ double least_distance_m(const Shape& body, const Tool& tool, const Pose& pose, d
 
 double diagonal_m(const Bounds& bounds) { return (bounds.upper_m - bounds.lower_m).norm(); }
 
-/// How well depths and gaps are known.
+/// Accuracy of depths and gaps.
 double depth_tolerance_m(const Shape& body) { return 1e-8 * diagonal_m(body.bounds()); }
 
-/// Where a convex function of a place on a line first falls to zero; nothing if it does not before `end_m`.
-/// A chord prolonged lies below a convex function, so no zero is stepped over.
-/// @param function  changes by at most the length gone; known to tolerance_m
+/// First zero of a convex function along a line; nothing if there is none before `end_m`. The extrapolated chord lies
+/// below a convex function, so no zero is skipped.
+/// @param function  Lipschitz with constant 1; known to tolerance_m
 template <class Function>
 std::optional<double> first_zero_m(double start_m, double end_m, double tolerance_m, const Function& function) {
   double before_m = start_m, before = function(before_m);
@@ -210,7 +210,7 @@ std::optional<double> first_zero_m(double start_m, double end_m, double toleranc
   for (int iteration = 0; iteration < 500 && here_m <= end_m; ++iteration) {
     const double here = function(here_m);
     if (here < -tolerance_m) {
-      // Rounding alone led past the zero.
+      // Rounding led past the zero.
       for (int halving = 0; halving < 60; ++halving) {
         const double middle_m = 0.5 * (before_m + here_m);
         (function(middle_m) > 0.0 ? before_m : here_m) = middle_m;
@@ -227,19 +227,20 @@ std::optional<double> first_zero_m(double start_m, double end_m, double toleranc
   return std::nullopt;
 }
 
-/// How far the mesh goes along the unit vector `direction` until it touches the body. @param points_m of the mesh
+/// Distance that the mesh can move along the unit vector `direction` before it touches the body. @param points_m of the
+/// mesh
 std::optional<double> first_contact_of_mesh_m(const Shape& body, const TriangleMesh& mesh,
                                               const Eigen::Matrix3Xd& points_m, const Vec3& direction, double start_m,
                                               double end_m, double tolerance_m) {
   struct Candidate {
-    double free_m;  ///< the triangle touches nothing before
+    double free_m;  ///< the triangle touches nothing within this distance
     std::array<std::int32_t, 3> triangle;
   };
   std::vector<Candidate> candidates(mesh.triangles.size());
   std::vector<SurfaceQuery> at(static_cast<std::size_t>(points_m.cols()));
   double moved_m = start_m;
-  // Planes that touch the body beneath the corners bound from below how far each triangle is free to go. Close by they
-  // are sharp enough to tell nearly all triangles from the first.
+  // Tangent planes of the body near the corners bound from below how far each triangle can move. Close to the body the
+  // bounds are sharp enough to exclude nearly all triangles.
   for (int round = 0; round < 50; ++round) {
     for (std::size_t i = 0; i < at.size(); ++i)
       at[i] = body.query(points_m.col(static_cast<Eigen::Index>(i)) + moved_m * direction);
@@ -340,7 +341,7 @@ std::optional<double> first_contact_m(const Shape& body, const Tool& tool, const
     center_W_m += pose.orientation * Vec3(0.5 * (own.lower_m + own.upper_m));
     radius_m = 0.5 * diagonal_m(own);
   }
-  // From where both are apart for certain to where they are apart again.
+  // From a place where both are certainly apart to the place where they are apart again.
   const double reach_m = radius_m + 0.5 * diagonal_m(bounds);
   const double middle_m = unit.dot(0.5 * (bounds.lower_m + bounds.upper_m) - center_W_m);
   const double start_m = middle_m - 1.01 * reach_m, end_m = middle_m + 1.01 * reach_m;

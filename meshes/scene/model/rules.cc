@@ -26,7 +26,7 @@ double deepest_m(const Scene& scene, const Shape& body) {
   return deepest;
 }
 
-/// Ticks of a track; more would take the fast model hours.
+/// Largest number of ticks of a track; more would take the fast model hours.
 constexpr double ticks_max = 1e8;
 
 void check_track(const Scene& scene, std::vector<Violation>& found) {
@@ -50,7 +50,7 @@ void check_track(const Scene& scene, std::vector<Violation>& found) {
   }
 }
 
-/// Triangles recorded over all instants; more would take `fast` longer than ten seconds and more than 1 GiB.
+/// Largest number of recorded triangles over all instants; more would take `fast` over ten seconds and 1 GiB.
 constexpr double recorded_triangles_max = 1e7;
 
 void check_records(const Scene& scene, std::vector<Violation>& found) {
@@ -71,11 +71,12 @@ void check_start(const Scene& scene, const Shape& body, std::vector<Violation>& 
   }
 }
 
-/// @param deepest_m  asked only where it matters
+/// @param deepest_m  called only if needed
 void check_contact_law(const Scene& scene, const std::function<double()>& deepest_m, std::vector<Violation>& found) {
   const Contact& c = scene.contact;
-  const double k1 = c.law == ContactLaw::area_aware ? c.k1_per_radius_n_per_m2 : c.k1_n_per_m;
-  if (k1 == 0.0 && c.k3_n_per_m3 <= 0.0) {
+  const bool no_linear_term = (c.law == ContactLaw::duffing && c.k1_n_per_m == 0.0) ||
+                              (c.law == ContactLaw::area_aware && c.k1_per_radius_n_per_m2 == 0.0);
+  if (no_linear_term && c.k3_n_per_m3 <= 0.0) {
     found.push_back({"contact.k3_n_per_m3", "a law with k1 = 0 needs k3 > 0, or there is no force"});
   } else if (c.k3_n_per_m3 < 0.0 && c.law == ContactLaw::duffing) {
     // Errata E1: beyond D* = sqrt(k1 / (3 |k3|)) the softening law's force falls.
@@ -121,7 +122,7 @@ void check_support(const Body& body, const Shape& shape, std::vector<Violation>&
 Eigen::Matrix3Xd surface_points_m(const Shape& shape) { return tessellate(shape, 2000).points_m; }
 
 void check_inclusions(const Body& body, const Shape& shape, std::vector<Violation>& found) {
-  // Before the pairs: the effort grows with their number.
+  // Before the loop over pairs, whose cost grows with their number.
   if (body.inclusions.size() > inclusions_max) {
     found.push_back({"body.inclusion[0]",
                      fmt::format("expected at most {} inclusions, found {}", inclusions_max, body.inclusions.size())});
@@ -165,11 +166,11 @@ void check_tool(const Tool& tool, std::vector<Violation>& found) {
 }
 
 void check_friction(const Contact& contact, std::vector<Violation>& found) {
-  // Errata E5: at beta = 1 no normal force brings the static limit back above the dynamic friction.
+  // Errata E5: at beta = 1 the static limit stays below the dynamic friction at every normal force.
   if (contact.friction && contact.friction->beta == 1.0 && contact.friction->mu_D > contact.friction->K) {
     found.push_back(
         {"contact.friction.mu_D",
-         fmt::format("with beta = 1 sliding would rub harder than the static limit; expected mu_D <= K = {:.4g}",
+         fmt::format("with beta = 1 the dynamic friction would exceed the static limit; expected mu_D <= K = {:.4g}",
                      contact.friction->K)});
   }
 }

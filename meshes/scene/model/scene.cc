@@ -5,8 +5,31 @@
 
 namespace touchstone::scene {
 
+namespace {
+
+const NamedProfile* profile_of(const Solid& solid) {
+  const auto all = named_profiles();
+  const auto found = std::ranges::find(all, solid.named, &NamedProfile::name);
+  return found != all.end() ? &*found : nullptr;
+}
+
+}  // namespace
+
+std::span<const NamedProfile> named_profiles() {
+  static constexpr NamedProfile all[] = {
+      {"cylinder", true, [](const Solid& solid) { return cylinder_profile(solid.radius_m, solid.length_m, 0.0); }},
+  };
+  return all;
+}
+
+void complete(Solid& solid) {
+  if (const NamedProfile* found = profile_of(solid)) solid.profile = found->profile(solid);
+}
+
 bool Body::flat_bottom() const noexcept {
-  return shape == BodyShape::box || (shape == BodyShape::revolution && scene::flat_bottom(profile));
+  if (shape != BodyShape::revolution) return shape == BodyShape::box;
+  const NamedProfile* found = profile_of(*this);
+  return found != nullptr ? found->flat_bottom : scene::flat_bottom(profile);
 }
 
 std::unique_ptr<const Shape> solid_shape(const Solid& solid, const Vec3& center_m) {
@@ -34,7 +57,7 @@ std::unique_ptr<const Shape> body_shape(const Body& body) {
     case BodyShape::ellipsoid:
       return solid_shape(body, Vec3(0.0, 0.0, body.semi_axes_m.z()));
     case BodyShape::revolution:
-      // Not through the centre: the bottom is at zero exactly.
+      // Not through the centre, so that the bottom is exactly at zero.
       return std::make_unique<Revolution>(body.profile, Vec3(0.0, 0.0, -body.profile.rz_m.front().y()));
   }
   return nullptr;

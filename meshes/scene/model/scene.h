@@ -10,7 +10,9 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace touchstone::scene {
@@ -20,6 +22,13 @@ enum class ToolShape { sphere, capsule, cylinder, box, mesh };
 enum class LengthUnit { m, cm, mm, inch };
 enum class Support { bottom };
 enum class ContactLaw { duffing, area_aware };
+struct LawName {
+  std::string_view word;   ///< in scene files
+  std::string_view title;  ///< in texts
+};
+/// In the order of the enumeration.
+inline constexpr LawName contact_law_names[] = {{"duffing", "Duffing"}, {"area_aware", "area-aware"}};
+[[nodiscard]] constexpr const LawName& name_of(ContactLaw law) { return contact_law_names[static_cast<int>(law)]; }
 enum class Formulation { published, corrected };
 enum class Kinematics { finite, small };
 
@@ -43,10 +52,22 @@ struct Material {
 struct Solid {
   BodyShape shape = BodyShape::box;
   Vec3 size_m = Vec3::Zero();       ///< box: edge lengths
-  double radius_m = 0.0;            ///< sphere
+  double radius_m = 0.0;            ///< sphere, cylinder
+  double length_m = 0.0;            ///< cylinder
   Vec3 semi_axes_m = Vec3::Zero();  ///< ellipsoid: along x, y, z
   Profile profile;                  ///< revolution: about z
+  std::string_view named = {};      ///< revolution: the NamedProfile that it follows from; empty: it is given
 };
+
+/// A solid of revolution that has a name and lengths in scene files in place of a profile.
+struct NamedProfile {
+  std::string_view name;
+  bool flat_bottom;
+  Profile (*profile)(const Solid&);
+};
+[[nodiscard]] std::span<const NamedProfile> named_profiles();
+/// Computes the profile of a solid with a name from its lengths.
+void complete(Solid& solid);
 
 inline constexpr std::size_t inclusions_max = 16;
 
@@ -96,6 +117,7 @@ struct Friction {
   double beta = 0.0;             ///< 2/3 to 1
   double mu_D = 0.0;             ///< dynamic friction coefficient
   double stiffness_ratio = 1.0;  ///< kappa = (F_t / D_t) / (F_n / D_n) of the sticking contact; corrected formulation
+  bool operator==(const Friction&) const = default;
 };
 
 /// Contact force law in identifiable constants: F = k1 D + k3 D^3, where k1 = m w0^2 and k3 = (3/4) m b0^2 eps keeps
@@ -107,6 +129,7 @@ struct Contact {
   double k1_per_radius_n_per_m2 = 0.0;    ///< area_aware
   double r_th_m = 0.0;                    ///< contact points closer than this are one region, for both solvers
   std::optional<Friction> friction = {};  ///< absent: frictionless
+  bool operator==(const Contact&) const = default;
 };
 
 /// Settings of the real-time model; names are the paper's symbols.

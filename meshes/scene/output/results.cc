@@ -124,7 +124,7 @@ void write_csv(const std::filesystem::path& path, const std::vector<Column>& col
     for (std::size_t i = 0; i < columns.size(); ++i) {
       if (i > 0) text += ',';
       const double value = columns[i].values.at(row);
-      // Without the sign that a NaN may have, which not every reader takes.
+      // Without a sign, which NaN may have and not every reader accepts.
       if (std::isnan(value)) {
         text += "nan";
       } else {
@@ -204,7 +204,7 @@ void write_manifest(const std::filesystem::path& path, const Manifest& manifest)
 
 FolderLock prepare_result_folder(const std::filesystem::path& folder) {
   require_writable(folder, "--out");
-  // Not "lock": that one a worker of a study holds while its verb takes this one.
+  // Not "lock", which a study's process holds while its command takes this one.
   FolderLock lock(folder, ".touchstone-writer");
   if (!lock.try_take()) {
     throw InputError("--out " + folder.string() +

@@ -1,4 +1,4 @@
-// The result folder: what every verb leaves behind, for people, ParaView, pandas and CI.
+// The result folder of every command, for people, ParaView, pandas and CI.
 #pragma once
 
 #include "scene/base/files.h"
@@ -32,7 +32,7 @@ struct Column {
 void write_csv(const std::filesystem::path& path, const std::vector<Column>& columns);
 
 /// One flat JSON object, dotted key to number or text, plus "units" with the same keys. A number that is not finite is
-/// null, and its text, which then says why, stands in "reasons" under the same key.
+/// null, and its text, the reason, is in "reasons" under the same key.
 void write_summary(const std::filesystem::path& path, const Figures& figures);
 
 /// A mesh tool's file as a copy of it is kept: "tool" with the file's ending. Empty for any other tool.
@@ -44,7 +44,7 @@ struct Manifest {
   std::string scene_hash;
   std::string title;                                         ///< of the scene, or its name
   std::string resolved_scene;                                ///< TOML with every value in force
-  std::vector<std::pair<std::string, std::string>> entries;  ///< version, compiler, host, date, and what a verb adds
+  std::vector<std::pair<std::string, std::string>> entries;  ///< version, compiler, host, date, and what a command adds
   std::vector<StageTime> times;
   std::string tool_name = {};                          ///< of the mesh tool's copy beside the manifest; "" without one
   std::shared_ptr<const TriangleMesh> tool_mesh = {};  ///< whose file is copied

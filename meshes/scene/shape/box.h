@@ -7,7 +7,7 @@
 
 namespace touchstone::scene {
 
-/// Way from points inside a box along one direction to its surface.
+/// Distance from points inside a box along one direction to its surface.
 class BoxExit {
  public:
   /// @param direction unit length
@@ -27,7 +27,7 @@ class BoxExit {
     return exit_m > 0.0 ? exit_m : 0.0;
   }
   [[nodiscard]] double operator()(const Vec3& p_m) const noexcept { return (*this)(p_m.x(), p_m.y(), p_m.z()); }
-  /// Outward normal of the face that the way leads to.
+  /// Outward normal of the face that is met.
   struct Face {
     double nx, ny, nz;
   };

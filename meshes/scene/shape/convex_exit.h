@@ -1,4 +1,4 @@
-// The way out of a convex shape, where it has no closed form.
+// Distance to the surface of a convex shape along a line from inside, without a closed form.
 #pragma once
 
 #include "scene/shape/box.h"
@@ -7,7 +7,7 @@
 
 namespace touchstone::scene {
 
-/// Way from points inside any convex shape along one direction to its surface, by Newton's method on its signed
+/// Distance from points inside any convex shape along one direction to its surface, by Newton's method on its signed
 /// distance. Along a line that is convex: whatever the first step from inside, it ends on the surface or beyond, and
 /// from there the steps come back without passing the surface.
 template <class Body>

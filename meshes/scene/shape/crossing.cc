@@ -5,7 +5,7 @@
 namespace touchstone::scene {
 namespace {
 
-/// The signed distance and its slope at a place on the line.
+/// Signed distance and its slope at a place on the line.
 struct Height {
   double t_m, phi_m, slope;
 };
@@ -15,13 +15,13 @@ Height height_at(const Shape& shape, const Line& line, double t_m) noexcept {
   return {t_m, query.signed_distance_m, query.normal.dot(line.direction)};
 }
 
-/// Where the signed distance vanishes between a place outside and one inside.
+/// Zero of the signed distance between a place outside and one inside.
 double surface_between(const Shape& shape, const Line& line, const Height& outside, double inside_m) noexcept {
   Height here = outside;
   double beyond_m = inside_m;
   for (int i = 0; i < 60 && std::abs(here.phi_m) > 1e-14 * line.length_m; ++i) {
     double next_m = here.slope != 0.0 ? here.t_m - here.phi_m / here.slope : beyond_m;
-    // Rounding alone can lead out of the bracket.
+    // Rounding can lead out of the bracket.
     if (!((next_m - here.t_m) * (next_m - beyond_m) < 0.0)) next_m = 0.5 * (here.t_m + beyond_m);
     const Height next = height_at(shape, line, next_m);
     if (next.phi_m < 0.0) {
@@ -41,7 +41,7 @@ Crossing cross_unit_ball(const Line& line, const Vec3& m, const Vec3& d) noexcep
   const double dd = d.squaredNorm();
   if (!(dd > 0.0)) return {};
   const double closest = -m.dot(d) / dd;
-  // From the point of closest approach: the difference of squares loses nothing there.
+  // From the point of closest approach, without cancellation.
   const double nearest = (m + closest * d).norm();
   if (!(nearest < 1.0)) return {};
   const double half = std::sqrt((1.0 - nearest) * (1.0 + nearest) / dd);
@@ -52,18 +52,18 @@ Crossing cross_convex(const Shape& shape, const Vec3& from_m, const Vec3& to_m) 
   const Line line(from_m, to_m);
   if (!(line.length_m > 0.0)) return {};
   const Height begin = height_at(shape, line, 0.0), end = height_at(shape, line, line.length_m);
-  // Somewhere inside, or the tangents say that there is no such place.
+  // A place inside, unless the tangents show that there is none.
   Height low = begin, high = end;
   double inside_m = begin.phi_m < 0.0 ? 0.0 : end.phi_m < 0.0 ? line.length_m : -1.0;
   for (int i = 0; i < 80 && inside_m < 0.0; ++i) {
-    // A line that leaves the shape at its beginning, or comes closer up to its end.
+    // The line leaves the shape at its beginning, or still approaches it at its end.
     if (low.slope >= 0.0 || high.slope <= 0.0) return {};
-    // The lines through both ends with their slopes bound the distance from below.
+    // The tangents at both ends bound the distance from below.
     const double meet_m =
         (high.phi_m - low.phi_m + low.slope * low.t_m - high.slope * high.t_m) / (low.slope - high.slope);
     if (low.phi_m + low.slope * (meet_m - low.t_m) >= 0.0) return {};
     const double middle_m = 0.5 * (low.t_m + high.t_m);
-    // Every other time the middle, so that the bracket always shrinks.
+    // Bisection in every other step, so that the bracket always shrinks.
     const bool use_meet = i % 2 == 0 && meet_m > low.t_m && meet_m < high.t_m;
     const Height here = height_at(shape, line, use_meet ? meet_m : middle_m);
     if (here.phi_m < 0.0) {

@@ -41,12 +41,12 @@ SurfacePoint Ellipsoid::at(int patch, double u, double v) const noexcept {
   const Vec3 gradient = place.cwiseQuotient(semi_axes_m_);
   const double steepness = gradient.norm();
   const Vec3 normal = gradient / steepness;
-  // The shape operator is diag(1 / a^2) between tangents, over the gradient's length.
+  // The shape operator is diag(1 / a^2) in the tangent plane, divided by the gradient's length.
   const Vec3 first = normal.unitOrthogonal(), second = normal.cross(first);
   const Vec3 along = first.cwiseQuotient(semi_axes_m_), across = second.cwiseQuotient(semi_axes_m_);
   const double mean = 0.5 * (along.squaredNorm() + across.squaredNorm()) / steepness;
   const double half_gap = std::hypot(0.5 * (along.squaredNorm() - across.squaredNorm()), along.dot(across)) / steepness;
-  // From the Gaussian curvature, which does not cancel where the two are far apart.
+  // From the Gaussian curvature, without cancellation if the two differ much.
   const double root = 1.0 / (semi_axes_m_.prod() * steepness * steepness);
   const double largest = mean + half_gap;
   return {center_m_ + semi_axes_m_.cwiseProduct(place), normal, largest, std::min(largest, root * root / largest)};
@@ -67,10 +67,10 @@ Vec3 Ellipsoid::closest_on_unit_sphere(const Vec3& local_m) const noexcept {
   const auto ratio = [&](int i) { return p[i] > 0.0 ? p[i] / (t + excess_[i]) : 0.0; };
   for (int i = 0; i < 3; ++i) q[i] = ratio(i);
   if (t == 0.0 && q.squaredNorm() <= 1.0) {
-    // On the middle plane within the focal ellipse two points are equally near.
+    // On the middle plane inside the focal ellipse two points are equally close.
     q[2] = std::sqrt(1.0 - q.squaredNorm());
   } else {
-    // 1 / |q(t)| is concave and increasing: from the left Newton never oversteps.
+    // 1 / |q(t)| is concave and increasing: starting from the left, Newton's method never overshoots.
     for (int iteration = 0; iteration < 100; ++iteration) {
       const double length = q.norm();
       double slope = 0.0;

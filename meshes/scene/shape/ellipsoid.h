@@ -38,9 +38,9 @@ class EllipsoidSearch {
     // Far outside the curve leads astray; straight on is Newton's step.
     return {over, t + 2.0 * length2 * over * s1 / (bent > s1 * s1 ? bent : 2.0 * s1 * s1)};
   }
-  /// A step from here says nothing.
+  /// A step from here is not reliable.
   [[nodiscard]] TOUCHSTONE_INLINE static bool stands(const Step& s) noexcept { return std::abs(s.over) < 4e-16; }
-  /// Further in than this, towards the surface of points with two nearest sides, Ellipsoid::query() is the safe way.
+  /// Further in than this, towards the surface of points with two nearest sides, use Ellipsoid::query().
   [[nodiscard]] TOUCHSTONE_INLINE bool lost(const Step& s) const noexcept { return stands(s) | !(s.next > deepest_); }
   /// The next step would change the last digit only.
   [[nodiscard]] TOUCHSTONE_INLINE static bool settled(const Step& s) noexcept { return std::abs(s.over) < 1e-5; }
@@ -56,7 +56,7 @@ class EllipsoidSearch {
   double ax_, ay_, az_, ax2_, ay2_, az2_, deepest_;
 };
 
-/// Way from points inside an ellipsoid along one direction to its surface.
+/// Distance from points inside an ellipsoid along one direction to its surface.
 class EllipsoidExit {
  public:
   /// @param direction unit length

@@ -11,16 +11,13 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-constexpr double quarter = 0.5 * std::numbers::pi;
-
-double cross(const Vec2& a, const Vec2& b) noexcept { return a.x() * b.y() - a.y() * b.x(); }
-
 std::string corner(const Profile& profile, std::size_t i) {
   const Vec2& p = profile.rz_m[i];
   return fmt::format("corner {} at (r, z) = ({:.6g}, {:.6g}) m", i, p.x(), p.y());
 }
 
-/// Normal of a piece of the profile at its start or end, as the angle over the horizontal. It grows along a convex one.
+/// Normal of a piece of the profile at its start or end, as the angle above the horizontal. It increases along a convex
+/// one.
 RevolutionPiece piece_between(const Vec2& start_m, const Vec2& end_m, double radius_m) noexcept {
   RevolutionPiece piece;
   piece.start_m = start_m;
@@ -38,7 +35,7 @@ RevolutionPiece piece_between(const Vec2& start_m, const Vec2& end_m, double rad
   piece.center_m = 0.5 * (start_m + end_m) + height_m * inward;
   const Vec2 out = start_m - piece.center_m, last = end_m - piece.center_m;
   piece.start_angle = std::atan2(out.y(), out.x());
-  // Counted on from the start, so that an arc over the back is not taken for one over the front.
+  // Counted on from the start, so that an arc beyond half a turn is distinguished from its complement.
   const double turn = std::atan2(cross(out, last), out.dot(last));
   piece.end_angle = piece.start_angle + turn;
   piece.length_m = radius_m * turn;
@@ -77,7 +74,7 @@ void check_pieces(const Profile& profile, std::vector<std::string>& faults) {
   }
 }
 
-/// The normal turns steadily from straight down to straight up, or the body has a dent.
+/// The normal must turn monotonically from straight down to straight up, or the body is concave.
 void check_convex(const Profile& profile, std::vector<std::string>& faults) {
   double before = -quarter;
   const std::size_t pieces = profile.rz_m.size() - 1;
@@ -145,7 +142,7 @@ Profile capsule_profile(double radius_m, double length_m) {
 
 Profile cylinder_profile(double radius_m, double length_m, double edge_radius_m) {
   const double half_m = 0.5 * length_m, face_m = radius_m - edge_radius_m;
-  // Not half_m - edge_radius_m twice: without a straight side both corners of the middle are one.
+  // Not half_m - edge_radius_m twice: without a straight side both corners in the middle coincide.
   const double side_m = std::max(0.0, half_m - edge_radius_m);
   return without_empty_pieces({{Vec2(0.0, -half_m), 0.0},
                                {Vec2(face_m, -half_m), edge_radius_m},

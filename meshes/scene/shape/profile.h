@@ -4,10 +4,19 @@
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <numbers>
 #include <string>
 #include <vector>
 
 namespace touchstone::scene {
+
+/// A right angle [rad].
+inline constexpr double quarter = 0.5 * std::numbers::pi;
+
+/// a x b of vectors in the plane.
+[[nodiscard]] inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) noexcept {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 /// A convex profile in the meridian half-plane (r, z), from its lowest point on the axis up to its highest: corners
 /// joined by straight lines or by circular arcs that bulge outwards and turn less than half a circle.

@@ -11,11 +11,9 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-constexpr double pi = std::numbers::pi, quarter = 0.5 * pi;
+constexpr double pi = std::numbers::pi;
 
-double cross(const Vec2& a, const Vec2& b) noexcept { return a.x() * b.y() - a.y() * b.x(); }
-
-/// Straight pieces in line with each other become one.
+/// Collinear straight pieces are joined.
 Profile joined(const Profile& profile) {
   Profile out;
   double angle_before = 0.0;
@@ -33,7 +31,7 @@ Profile joined(const Profile& profile) {
   return out;
 }
 
-/// Azimuth's unit vector in the plane; quadrants repeat the first one's numbers exactly, so that borders coincide.
+/// Azimuthal unit vector in the plane; the quadrants use the same numbers exactly, so that their borders coincide.
 Eigen::Vector2d around(int quadrant, double u) noexcept {
   const double c = u == 1.0 ? 0.0 : std::cos(quarter * u), s = u == 1.0 ? 1.0 : std::sin(quarter * u);
   switch (quadrant) {
@@ -55,8 +53,8 @@ int quadrant_of_point(double x, double y) noexcept {
   return y < 0.0 ? 3 : 0;
 }
 
-/// Width and height of the triangles. A disc of n rings with 1, 2, ... n segments to the quadrant has triangles that
-/// are pi / 2 as wide as high; the bands take the same measure, so that all areas are alike.
+/// Width and height of the triangles. A disc of n rings with 1, 2, ... n segments per quadrant has triangles pi / 2
+/// times as wide as high; bands use the same ratio, so that all areas are similar.
 struct Pattern {
   double width_m, height_m;
 
@@ -109,7 +107,7 @@ void add_quadrant(const Revolution& shape, int index, int quadrant, const std::v
   }
 }
 
-/// Vertices from the axis out, ring by ring.
+/// Vertices from the axis outwards, ring by ring.
 void add_cap(const Revolution& shape, int index, std::vector<Ring> rings, SurfaceBuilder& builder) {
   builder.begin_patch();
   const bool top = index > 0;
@@ -119,7 +117,7 @@ void add_cap(const Revolution& shape, int index, std::vector<Ring> rings, Surfac
   for (const Ring& ring : rings) {
     const int around = std::max(1, 4 * ring.segments);
     for (int i = 0; i < around; ++i) {
-      // Each quadrant counts its own segments, as the neighbouring patches do.
+      // Each quadrant has its own segments, as the neighbouring patches do.
       const int quadrant = ring.segments > 0 ? i / ring.segments : 0;
       const double u = ring.segments > 0 ? static_cast<double>(i % ring.segments) / ring.segments : 0.0;
       const SurfacePoint p = shape.at_quadrant(patch, quadrant, u, ring.s);
@@ -136,7 +134,7 @@ void add_cap(const Revolution& shape, int index, std::vector<Ring> rings, Surfac
       const auto inner = [&](int i) { return vertex(k, i); };
       const auto outer = [&](int i) { return vertex(k + 1, i); };
       join_rows(rings[k].segments, rings[k + 1].segments, static_cast<int>(k), inner, outer, [&](int a, int b, int c) {
-        // Seen from above, the way out from the axis is the way down.
+        // Seen from above, outwards from the axis is downwards.
         top ? builder.add_triangle(a, c, b) : builder.add_triangle(a, b, c);
       });
     }
@@ -153,7 +151,7 @@ Revolution::Revolution(Profile profile, const Vec3& offset_m) : offset_m_(offset
     const bool level_start = i == 0 && piece.start_angle <= smooth_turn - quarter;
     const bool level_end = i == last && piece.end_angle >= quarter - smooth_turn;
     piece.whole = level_end || (level_start && piece.straight());
-    // A dome is round about the axis, whatever rounding made of its centre.
+    // A dome is centred on the axis; this removes the rounding of its centre.
     if ((level_start || level_end) && !piece.straight()) piece.center_m.x() = 0.0;
     piece.first_patch = patch_count_;
     patch_count_ += piece.patch_count();
@@ -191,7 +189,7 @@ Revolution::MeridianPoint Revolution::meridian(int index, double s) const noexce
   if (p.straight()) {
     const Vec2 rz = s == 1.0 ? p.end_m : Vec2(p.start_m + s * (p.end_m - p.start_m));
     const Vec2 normal = Vec2(p.end_m.y() - p.start_m.y(), p.start_m.x() - p.end_m.x()) / p.length_m;
-    // The tip of a cone bends without bound; stay finite.
+    // The curvature at the tip of a cone is unbounded; keep it finite.
     return {rz, normal, 0.0, normal.x() / std::max(rz.x(), 1e-9 * size_m_)};
   }
   const double angle = p.start_angle + s * (p.end_angle - p.start_angle);
@@ -261,7 +259,7 @@ Revolution::Foot Revolution::foot(const Eigen::Vector2d& p_m) const noexcept {
     }
   }
   if (inside) best.signed_distance_m = -nearest_m;
-  // Outside a corner the normal is the corner's fan; on it, a piece's own.
+  // Outside a corner the normal points from the corner to p; otherwise it is the piece's own.
   if (!inside && at_corner && nearest_m > 1e-12 * size_m_) best.normal = (p_m - best.rz_m) / nearest_m;
   return best;
 }
@@ -283,7 +281,7 @@ double Revolution::signed_distance_m(const Vec3& p_m) const noexcept {
 }
 
 double Revolution::area_m2() const noexcept {
-  // Pappus: the way of the piece's centre of mass, 2 pi r, times its length.
+  // Pappus: the path of the piece's centroid, 2 pi r, times its length.
   double area_m2 = 0.0;
   for (const RevolutionPiece& p : pieces_) {
     const double moment_m2 = p.straight() ? 0.5 * (p.start_m.x() + p.end_m.x()) * p.length_m

@@ -96,7 +96,7 @@ class RevolutionExit {
   }
 
  private:
-  /// Way to a piece from a point beneath it; not above 0 where it is not met, or not for sure.
+  /// Distance to a piece from a point beneath it; at most 0 if it is not met, or not certainly.
   [[nodiscard]] double meeting_m(const RevolutionPiece& piece, const Vec3& local, double r) const noexcept {
     double way_m;
     if (!piece.straight() && piece.center_m.x() != 0.0) {

@@ -43,9 +43,9 @@ struct Surface;
 /// A closed convex surface made of smooth patches, each parametrised over (u, v) in [0,1]^2.
 /// Immutable; every query is noexcept and free of heap use, so a real-time step may call it.
 ///
-/// Loops over many points know the class and ask members that are not virtual, where the class has them: distance_at()
-/// of a point inside, beyond() or may_touch() as a cheap first question, closest(), and exit_along(), the way out.
-/// Whatever they have not is made of the virtual ones.
+/// Loops over many points use the class itself and members that are not virtual, if the class has them: distance_at()
+/// of a point inside, beyond() or may_touch() as a cheap first test, closest(), and exit_along(), the distance to the
+/// surface. Whatever they have not is made of the virtual ones.
 class Shape {
  public:
   virtual ~Shape() = default;

@@ -7,7 +7,7 @@
 
 namespace touchstone::scene {
 
-/// Way from points inside a sphere along one direction to its surface.
+/// Distance from points inside a sphere along one direction to its surface.
 class SphereExit {
  public:
   /// @param direction unit length

@@ -26,7 +26,7 @@ struct Surface {
 /// Triangles of nearly equal size; the count is the nearest the shape's regular pattern allows
 /// (box: two per cell of a grid on each face; sphere and ellipsoid: n^2 per octant; revolution: bands between rings of
 /// vertices, whose number follows the radius). Where patches meet, their vertices coincide. Vertices run row by row, so
-/// that along a row the neighbours stand at equal distances in the order.
+/// that along a row the neighbours have equal distances in the order.
 /// @param triangles requested number, at least 8
 [[nodiscard]] Surface tessellate(const Shape& shape, int triangles);
 

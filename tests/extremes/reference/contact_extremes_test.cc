@@ -5,8 +5,8 @@
 namespace touchstone::reference::extremes {
 namespace {
 
-// A track that stays away from the body: no force and no displacement, to the last bit.
-TEST(ReferenceContact, ApartIsNothing) {
+// A track that stays away from the body: no force and no displacement, exactly.
+TEST(ReferenceContact, NoContactIsNoForce) {
   scene::Scene scene = ball_on_ball();
   scene.track[1] = at(1.0, {0.0, 0.0, 0.0701});
   for (const scene::InstantRecord& instant : solved(scene).instants) {
@@ -15,8 +15,8 @@ TEST(ReferenceContact, ApartIsNothing) {
   }
 }
 
-// A tool that comes from a kilometre away: the answer of one that starts near, to the 1 % that other instants, and so
-// other meshes, make.
+// A tool that starts a kilometre away: the result of one that starts near, to the 1 % by which other instants, and so
+// other meshes, change it.
 TEST(ReferenceContact, FarAwayAtFirst) {
   scene::Scene scene = ball_on_ball();
   const double near_n = last_n(solved(scene));
@@ -26,8 +26,8 @@ TEST(ReferenceContact, FarAwayAtFirst) {
   EXPECT_NEAR(last_n(solved(scene)) / near_n, 1.0, 0.01);
 }
 
-// Depths from a nanometre on, with cells that the contact asks for: a force that rises with the depth to the power of
-// 3/2, Hertz's, within 3 %.
+// Depths from a nanometre upwards, with cells of the size that the contact needs: the force is proportional to the
+// depth to the power of 3/2 and Hertz's, within 3 %.
 TEST(ReferenceContact, FirstTouch) {
   const auto force_n = [](double depth_m) {
     scene::Scene scene = ball_on_ball();
@@ -41,7 +41,7 @@ TEST(ReferenceContact, FirstTouch) {
   }
 }
 
-// A tool that slides by and only just touches: no more force than the depth gives, and none before and after.
+// A tool that moves past and only just touches: at most the force of that depth, and none before and after.
 TEST(ReferenceContact, Grazing) {
   scene::Scene scene = ball_on_ball();
   scene.reference.element_size_m = 0.006;
@@ -54,7 +54,7 @@ TEST(ReferenceContact, Grazing) {
   EXPECT_LT(result.instants[2].force_n().norm(), 1.0);
 }
 
-// Pressed and let go: no force, and the body at rest to 1e-9 of what it had moved.
+// Pressed and released: no force, and the body at rest to 1e-9 of its largest displacement.
 TEST(ReferenceContact, LossOfContactLeavesNothing) {
   scene::Scene scene = ball_on_ball();
   scene.track.push_back(at(2.0, {0.0, 0.0, 0.0705}));
@@ -64,8 +64,8 @@ TEST(ReferenceContact, LossOfContactLeavesNothing) {
   EXPECT_LT(moved_m(result.instants.back()), 1e-9 * moved_m(result.instants[3]));
 }
 
-// The way back: without friction every depth has one force, whichever way the tool goes, to 1e-6.
-TEST(ReferenceContact, ReversalIsTheSameWay) {
+// Unloading: without friction the force depends on the depth alone, in both directions, to 1e-6.
+TEST(ReferenceContact, UnloadingEqualsLoading) {
   scene::Scene scene = ball_on_ball();
   scene.track.push_back(at(2.0, {0.0, 0.0, 0.0705}));
   scene.compare.instants = 9;
@@ -77,8 +77,8 @@ TEST(ReferenceContact, ReversalIsTheSameWay) {
   }
 }
 
-// Pressed and let go ten times over: the tenth press is the first.
-TEST(ReferenceContact, TenPressesAreAlike) {
+// Pressed and released ten times: the tenth press equals the first.
+TEST(ReferenceContact, TenPressesAreEqual) {
   scene::Scene scene = ball_on_ball();
   scene.track.clear();
   for (int press = 0; press < 10; ++press) {
@@ -90,7 +90,8 @@ TEST(ReferenceContact, TenPressesAreAlike) {
   EXPECT_NEAR(last_n(result) / result.instants[1].force_n().norm(), 1.0, 1e-6);
 }
 
-// Friction that never slips: a press along the axis keeps its direction, and is stiffer than without, by at most 20 %.
+// Friction that never slips: the force of a press along the axis keeps its direction, and is larger than without
+// friction, by at most 20 %.
 TEST(ReferenceContact, FrictionThatNeverSlips) {
   scene::Scene scene = ball_on_ball();
   scene.compare.instants = 6;
@@ -102,16 +103,16 @@ TEST(ReferenceContact, FrictionThatNeverSlips) {
   EXPECT_LT(rough.instants.back().force_n().head<2>().norm(), 1e-9 * smooth_n);
 }
 
-// Friction of next to nothing: the force without friction, to what the friction could carry.
-TEST(ReferenceContact, FrictionOfNothing) {
+// A very small coefficient of friction: the force without friction; the difference is at most the friction's limit.
+TEST(ReferenceContact, VerySmallFriction) {
   scene::Scene scene = ball_on_ball();
   const double smooth_n = last_n(solved(scene));
   scene.contact.friction = scene::Friction{.K = 1e-6, .beta = 1.0, .mu_D = 1e-6};
   EXPECT_NEAR(last_n(solved(scene)) / smooth_n, 1.0, 1e-5);
 }
 
-// A flat punch with the sharpest edge that is allowed, and a sharp one: the force rises with the depth, and the sharp
-// one is refused, since its pressure has no bound.
+// A flat punch with the smallest fillet that is allowed, and one with a sharp edge: the force rises with the depth, and
+// the sharp one is refused, since its pressure is unbounded.
 TEST(ReferenceContact, SharpEdgedPunch) {
   scene::Scene scene = ball_on_ball();
   scene.tool.shape = scene::ToolShape::cylinder;
@@ -128,7 +129,7 @@ TEST(ReferenceContact, SharpEdgedPunch) {
   EXPECT_THROW(solved(scene), scene::InputError);
 }
 
-// A disc six to fifteen times as wide as it is thick: a force, and more of it the thinner the disc is.
+// A disc six to fifteen times as wide as it is thick: a force that is larger the thinner the disc is.
 TEST(ReferenceContact, ThinDisc) {
   double before_n = 0.0;
   for (const double height_m : {0.01, 0.006, 0.004}) {
@@ -145,8 +146,9 @@ TEST(ReferenceContact, ThinDisc) {
   }
 }
 
-// Cells a hundred times as large at the far end as at the contact: the force of graded cells within 5 % of even ones.
-TEST(ReferenceContact, CellsOfTwoDecades) {
+// Cells a hundred times as large at the far end as at the contact: the force of graded cells within 5 % of that of
+// uniform ones.
+TEST(ReferenceContact, GradedCells) {
   scene::Scene scene = ball_on_ball();
   const double even_n = last_n(solved(scene));
   scene.reference.element_size_m = 0.0001;
@@ -154,7 +156,7 @@ TEST(ReferenceContact, CellsOfTwoDecades) {
   EXPECT_NEAR(last_n(solved(scene)) / even_n, 1.0, 0.05);
 }
 
-// A press of nine tenths of the tool's radius: converged, and stiffer than in proportion to the depth. With the tool's
+// A press of nine tenths of the tool's radius: converged, and the force grows faster than the depth. With the tool's
 // centre in the body it is refused.
 TEST(ReferenceContact, DeepPress) {
   scene::Scene scene = ball_on_ball();
@@ -169,8 +171,8 @@ TEST(ReferenceContact, DeepPress) {
   EXPECT_THROW(solved(scene), scene::InputError);
 }
 
-// The whole depth in one step: the force of many small ones, to the 3 % that other meshes make.
-TEST(ReferenceContact, OneGreatStep) {
+// The whole depth in one step: the force of many small steps, to the 3 % by which other meshes change it.
+TEST(ReferenceContact, OneLargeStep) {
   scene::Scene scene = ball_on_ball();
   scene.compare.instants = 2;
   const double one_n = last_n(solved(scene));
@@ -178,8 +180,8 @@ TEST(ReferenceContact, OneGreatStep) {
   EXPECT_NEAR(one_n / last_n(solved(scene)), 1.0, 0.03);
 }
 
-// Incompressible, nothing in the way, and hardly held: a body on the smallest of supports keeps its balance.
-TEST(ReferenceContact, HeldByNextToNothing) {
+// Incompressible and fixed on a very small area only: a body on the smallest support is in equilibrium.
+TEST(ReferenceContact, SmallestSupport) {
   scene::Scene scene = ball_on_ball();
   scene.body.material.poissons_ratio = 0.5;
   const double held_n = last_n(solved(scene));
@@ -189,8 +191,8 @@ TEST(ReferenceContact, HeldByNextToNothing) {
   EXPECT_LT(hardly_n, held_n);
 }
 
-// A tool that is turned: the same force to 1e-9, whichever way up a ball is.
-TEST(ReferenceContact, AnOrientationOfABallIsNothing) {
+// A ball in different orientations: the same force to 1e-9.
+TEST(ReferenceContact, OrientationOfABallHasNoEffect) {
   scene::Scene scene = ball_on_ball();
   const double upright_n = last_n(solved(scene));
   for (scene::Waypoint& w : scene.track) {

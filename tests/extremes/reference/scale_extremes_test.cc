@@ -5,7 +5,7 @@
 namespace touchstone::reference::extremes {
 namespace {
 
-// Young's modulus from 1 Pa to 1e12 Pa: the force goes with it to 1e-9, and the shape does not know it.
+// Young's modulus from 1 Pa to 1e12 Pa: the force is proportional to it, to 1e-9, and the shape does not depend on it.
 TEST(ReferenceScale, YoungsModulusOverTwelveDecades) {
   const Result usual = solved(ball_on_ball());
   for (const double modulus_pa : {1.0, 1e3, 1e9, 1e12}) {
@@ -19,7 +19,7 @@ TEST(ReferenceScale, YoungsModulusOverTwelveDecades) {
   }
 }
 
-// All lengths from 1/100 to 100 times as large: the force goes with their square to 1e-9.
+// All lengths from 1/100 to 100 times as large: the force is proportional to their square, to 1e-9.
 TEST(ReferenceScale, LengthsOverFourDecades) {
   const double usual_n = last_n(solved(ball_on_ball()));
   for (const double factor : {0.01, 0.1, 10.0, 100.0}) {
@@ -29,7 +29,7 @@ TEST(ReferenceScale, LengthsOverFourDecades) {
 }
 
 // A track that takes a microsecond or a day: the same force to 1e-9.
-TEST(ReferenceScale, TimeDoesNotEnter) {
+TEST(ReferenceScale, TimeHasNoEffect) {
   const Result usual = solved(ball_on_ball());
   for (const double seconds : {1e-6, 86400.0}) {
     scene::Scene scene = ball_on_ball();
@@ -40,7 +40,7 @@ TEST(ReferenceScale, TimeDoesNotEnter) {
   }
 }
 
-// Poisson's ratio from 0 to 0.5: the force rises without a jump, and at 0.5 the volume stays to 1e-6.
+// Poisson's ratio from 0 to 0.5: the force rises without a jump, and at 0.5 the volume is constant to 1e-6.
 TEST(ReferenceScale, PoissonsRatioFromZeroToAHalf) {
   double before_n = 0.0;
   for (const double nu : {0.0, 0.25, 0.45, 0.49, 0.499, 0.49999, 0.5}) {
@@ -58,8 +58,8 @@ TEST(ReferenceScale, PoissonsRatioFromZeroToAHalf) {
   }
 }
 
-// An inclusion from a millionth to a million times as stiff as the body around it: the force rises with it and levels
-// off at both ends, void and rigid.
+// An inclusion from a millionth to a million times as stiff as the body around it: the force rises with its modulus and
+// levels off at both ends, void and rigid.
 TEST(ReferenceScale, InclusionOverTwelveDecades) {
   const auto with_inclusion_n = [](double ratio) {
     scene::Scene scene = ball_on_ball();
@@ -80,7 +80,8 @@ TEST(ReferenceScale, InclusionOverTwelveDecades) {
   EXPECT_NEAR(forces_n[6] / forces_n[5], 1.0, 0.02) << "rigid";
 }
 
-// An inclusion of the body's own material: the force of none, to what the other integration points leave.
+// An inclusion of the body's own material: the force without an inclusion, up to the effect of other integration
+// points.
 TEST(ReferenceScale, InclusionOfTheBodysOwnMaterialIsNone) {
   scene::Scene scene = ball_on_ball();
   scene.body.material.poissons_ratio = 0.3;
@@ -94,7 +95,7 @@ TEST(ReferenceScale, InclusionOfTheBodysOwnMaterialIsNone) {
   EXPECT_NEAR(last_n(solved(scene)) / none_n, 1.0, 0.02);
 }
 
-// A tool from a tenth to a thousand times the body's size: the force rises with its radius, towards a plane's.
+// A tool from a tenth to a thousand times the body's size: the force rises with its radius, towards that of a plane.
 TEST(ReferenceScale, ToolFarLargerThanTheBody) {
   double before_n = 0.0;
   for (const double radius_m : {0.003, 0.01, 0.03, 0.3, 3.0, 10.0}) {
@@ -110,7 +111,8 @@ TEST(ReferenceScale, ToolFarLargerThanTheBody) {
   }
 }
 
-// The number of instants, to which the mesh is fitted: without friction 13, 25 or 49 lead to one force, to 1e-3.
+// The number of instants, on which the mesh depends: without friction 13, 25 and 49 instants give the same force, to
+// 1e-3.
 TEST(ReferenceScale, InstantsConverge) {
   scene::Scene scene = ball_on_ball();
   scene.compare.instants = 97;
@@ -121,7 +123,7 @@ TEST(ReferenceScale, InstantsConverge) {
   }
 }
 
-// Meshes refined three times over: the force converges, each change at most half of the one before.
+// Meshes refined three times: the force converges, each change at most half of the one before.
 TEST(ReferenceScale, MeshesConverge) {
   scene::Scene scene = ball_on_ball();
   scene.reference.levels = 4;

@@ -1,6 +1,6 @@
 // A scene with one region, without friction, inclusion and local factor, stepped in three ways whose instructions are
-// counted from outside: by the step, by nothing but the stages such a scene needs called one after the other, and by
-// the latter with a superfluous stage now and then, which the count must show.
+// counted from outside: by the step; by only the stages that such a scene needs, called in sequence; and by the latter
+// with an additional stage now and then, which the count must show.
 #include "fast/step/step.h"
 
 #include "support/press.h"
@@ -19,7 +19,7 @@ constexpr int ticks = 200;
 
 scene::Pose pose_of(int tick) { return test::pressed(-0.0005 + 2e-5 * tick, 1e-5 * tick, 0.0); }
 
-/// What the scene needs, by hand.
+/// Only the stages that the scene needs.
 void bare_tick(const FastModel& model, const scene::Pose& pose, FastState& state) {
   const fast::Placement at{pose.orientation.toRotationMatrix(), pose.position_m};
   ContactRegion& region = state.regions[0];

@@ -1,4 +1,4 @@
-// What `touchstone verify` makes of its problems: verdicts, exit codes, files.
+// Results of `touchstone verify`: verdicts, exit codes, files.
 #include "compare/app/verify_verb.h"
 
 #include "fast/command/command_line.h"
@@ -23,7 +23,7 @@ using verification::Check;
 using verification::Effort;
 using verification::Problem;
 
-/// A problem with one check of 1 N that is off by a share of its limit of 1 %.
+/// A problem with one check of 1 N, whose error is a fraction of its limit of 1 %.
 Problem off_by(const std::string& name, double share, int* runs = nullptr) {
   return {name, "title of " + name, "source <of> " + name, [=](const Effort& effort) {
             effort.tell("at work");

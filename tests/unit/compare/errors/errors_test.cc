@@ -22,7 +22,7 @@ using testing::Sides;
 
 Errors errors_of(const Sides& sides) { return compute_errors(sides.scene, sides.run, sides.result.instants); }
 
-/// Forces of 1 and (3, 0, 10) N against 2 and 10 N, with bands of 0.2 and 0.5 N.
+/// Forces of 1 and (3, 0, 10) N against 2 and 10 N, with uncertainties of 0.2 and 0.5 N.
 Sides with_forces() {
   Sides sides = testing::small();
   set_force(sides.run.instants[0], Vec3(0.0, 0.0, 1.0));
@@ -62,7 +62,7 @@ TEST(Errors, PeakForceErrorIsSigned) {
 }
 
 TEST(Errors, RelativeForceErrorCountsOnlyAboveATenthOfTheLargestDepth) {
-  // The first instant is exactly at a tenth and stays out.
+  // The first instant is exactly at a tenth and is excluded.
   const Errors e = errors_of(with_forces());
   EXPECT_FALSE(e.instants[0].deep);
   EXPECT_TRUE(e.instants[1].deep);
@@ -92,7 +92,7 @@ TEST(Errors, ShapeIsSplitAtTheLocalRadius) {
 
 TEST(Errors, EveryRegionHasALocalRadiusOfItsOwn) {
   Sides sides = with_shapes();
-  // Below point 0 and below point 2, which lie far apart.
+  // Below point 0 and below point 2, which are far apart.
   const Vec3 under_m(0.0, 0.0, -1e-3);
   sides.result.instants[1].region_middles_m = {sides.run.surface.points_m.col(0) + under_m,
                                                sides.run.surface.points_m.col(2) + under_m};
@@ -222,8 +222,8 @@ TEST(Errors, AnUnknownBandIsNotAZeroBand) {
 
 TEST(Errors, ContactAreaInCommonOverAreaOfEither) {
   Sides sides = testing::small();
-  // Point 0 is inside the tool on both sides at both instants. At the second, the fast model brings point 1 to the
-  // tool and the reference brings point 2.
+  // Point 0 is inside the tool on both sides at both instants. At the second, point 1 reaches the tool in the fast
+  // model and point 2 in the reference.
   const Vec3 equator_m = sides.run.instants[1].tool.position_m + Vec3(sides.scene.tool.radius_m, 0.0, 0.0);
   const Eigen::Matrix3Xd& rest_m = sides.run.surface.points_m;
   sides.run.instants[1].displacement_m.col(1) = equator_m - rest_m.col(1);
@@ -252,7 +252,7 @@ TEST(Errors, TouchWithinAHundredthOfTheDepth) {
 
 TEST(Errors, SeeHowFarTheFastSurfaceIsLeftInsideTheTool) {
   Sides sides = testing::small();
-  // Point 0 would have to go down 10 mm at the second instant, but goes 7.
+  // Point 0 should move down by 10 mm at the second instant, but moves by 7.
   sides.run.instants[1].displacement_m.col(0) = Vec3(0.0, 0.0, -7e-3);
   const Errors e = errors_of(sides);
   EXPECT_NEAR(e.instants[0].penetration_fast_m, 1e-3, 1e-15);
@@ -274,7 +274,7 @@ TEST(Errors, QualityOfTheReferenceIsItsWorstWhereDeep) {
   EXPECT_EQ(e.reference.volume_change_rel, -2e-6);
 }
 
-/// A tool drawn along x by 4 mm an instant at constant depth, five instants; forces and friction are to be filled in.
+/// A tool moved along x by 4 mm per instant at constant depth, five instants; forces and friction are to be set.
 Sides with_friction() {
   Sides sides = testing::small();
   sides.scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
@@ -307,13 +307,13 @@ TEST(Errors, FrictionIsRelativeToItsOwnPeakWithTheForcesBand) {
   EXPECT_NEAR(*e.force_friction_nrmse.value, std::sqrt(9.0 / 5.0) / 4.0, 1e-14);
   EXPECT_NEAR(*e.force_friction_nrmse.uncertainty, std::sqrt(0.25 / 5.0) / 4.0, 1e-14);
   EXPECT_EQ(e.instants[2].friction_fast_n, 1.0);
-  EXPECT_NEAR(e.instants[4].way_m, 16e-3, 1e-15);
+  EXPECT_NEAR(e.instants[4].path_m, 16e-3, 1e-15);
 }
 
 TEST(Errors, FrictionFiguresNeedFriction) {
   const Errors without = errors_of(with_forces());
   EXPECT_FALSE(without.friction || without.force_friction_nrmse.value || without.slip_onset_error_m.value);
-  // Pressed straight, friction in all directions leaves rounding.
+  // Pressed straight, friction in all directions leaves round-off only.
   Sides straight = with_friction();
   set_friction(straight.result.instants[2], -1e-9, false);
   EXPECT_FALSE(errors_of(straight).force_friction_nrmse.value);
@@ -321,7 +321,7 @@ TEST(Errors, FrictionFiguresNeedFriction) {
 
 TEST(Errors, WorkAgainstFrictionIsTheLoopsArea) {
   Sides sides = with_friction();
-  // There and back: 8 mm against 2 N each way on the reference's side, against 3 N on the other.
+  // Back and forth: 8 mm against 2 N each way for the reference, against 3 N for the other.
   for (std::size_t t = 0; t < 5; ++t) {
     const double x_m = 4e-3 * static_cast<double>(t < 3 ? t : 4 - t);
     sides.run.instants[t].tool.position_m.x() = sides.result.instants[t].tool.position_m.x() = x_m;
@@ -331,7 +331,7 @@ TEST(Errors, WorkAgainstFrictionIsTheLoopsArea) {
   }
   Errors e = errors_of(sides);
   EXPECT_NEAR(*e.force_friction_work_rel.value, 0.5, 1e-13);
-  // Spring-like friction gives back on the way back what it took.
+  // Spring-like friction returns its work on the way back.
   for (std::size_t t = 0; t < 5; ++t) {
     const double x_m = sides.run.instants[t].tool.position_m.x();
     set_friction(sides.run.instants[t], -1e3 * x_m, false);
@@ -342,7 +342,7 @@ TEST(Errors, WorkAgainstFrictionIsTheLoopsArea) {
 
 TEST(Errors, FrictionWorksWhereTheToolsSurfaceMoves) {
   Sides sides = with_friction();
-  // Turning about y over the contact 10 mm below its centre, which stands still.
+  // Rotation about y around the contact 10 mm below its centre, which is at rest.
   for (std::size_t t = 0; t < 5; ++t) {
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.1 * static_cast<double>(t), Vec3::UnitY()));
     for (scene::InstantRecord* record : testing::both(sides, t)) {
@@ -352,7 +352,7 @@ TEST(Errors, FrictionWorksWhereTheToolsSurfaceMoves) {
     sides.result.instants[t].region_middles_m = {Vec3(0.0, 0.0, 0.05)};
     set_friction(sides.result.instants[t], -2.0, true);
   }
-  EXPECT_NEAR(errors_of(sides).instants[4].way_m, 4 * 2 * 0.01 * std::sin(0.05), 1e-12);
+  EXPECT_NEAR(errors_of(sides).instants[4].path_m, 4 * 2 * 0.01 * std::sin(0.05), 1e-12);
 }
 
 TEST(Errors, SlipBeginsAtAWayKnownToTheInstants) {
@@ -365,7 +365,7 @@ TEST(Errors, SlipBeginsAtAWayKnownToTheInstants) {
   EXPECT_NEAR(*e.slip_onset_error_m.value, -8e-3, 1e-15);
   EXPECT_NEAR(*e.slip_onset_error_m.uncertainty, 4e-3, 1e-15);
   EXPECT_TRUE(e.slip_onset_error_m.distinguishable());
-  // A graze that slips is no onset.
+  // Slip in grazing contact is no onset.
   sides.run.instants[0].depth_m = sides.result.instants[0].depth_m = 1e-4;
   sides.result.instants[0].regions[0].sliding = true;
   EXPECT_NEAR(*errors_of(sides).slip_onset_reference_m, 12e-3, 1e-15);
@@ -382,7 +382,7 @@ TEST(Errors, TorqueIsRelativeToForceTimesDistance) {
   EXPECT_FALSE(errors_of(testing::small()).force_torque_nrmse.value);
 }
 
-/// Two regions at x = 10 and -10 mm, straight up, the reference's with 4 and 6 N and the fast model's with 5 and 6.
+/// Two regions at x = 10 and -10 mm, forces upwards: the reference's 4 and 6 N, the fast model's 5 and 6 N.
 Sides with_regions(bool swapped) {
   Sides sides = testing::small();
   for (std::size_t t = 0; t < 2; ++t) {
@@ -428,7 +428,7 @@ TEST(Errors, SideFacesAreThoseNoContactLiesOn) {
   sides.run.instants.assign(sides.result.instants.begin(), sides.result.instants.end());
   EXPECT_EQ(*errors_of(sides).shape_side_faces_rel_l2.value, 0.0);
   const scene::Surface& surface = sides.run.surface;
-  // The top's error is none of the sides'; an error in proportion on one side is that share of it.
+  // An error on the top is no error of the side faces; a proportional error on one side gives that ratio.
   const auto on_top = [&](Eigen::Index i) { return i >= surface.patch_begin[5]; };
   for (Eigen::Index i = 0; i < surface.points_m.cols(); ++i) {
     if (on_top(i)) sides.run.instants[2].displacement_m.col(i) *= 3.0;
@@ -459,7 +459,7 @@ TEST(Errors, NormalsTellTurningFromMoving) {
   Sides sides = testing::pressed(3, 2000);
   sides.run.instants.assign(sides.result.instants.begin(), sides.result.instants.end());
   EXPECT_EQ(*errors_of(sides).shape_normals_rms_rad.value, 0.0);
-  // Moved as a whole: no turn. Turned as a whole about x by 0.1 rad: that everywhere.
+  // Translation as a whole gives no angle; rotation as a whole about x by 0.1 rad gives that angle everywhere.
   sides.run.instants[2].displacement_m.colwise() += Vec3(1e-3, 2e-3, 3e-3);
   EXPECT_NEAR(*errors_of(sides).shape_normals_rms_rad.value, 0.0, 1e-9);
   const Eigen::AngleAxisd turn(0.1, Vec3::UnitX());
@@ -468,7 +468,7 @@ TEST(Errors, NormalsTellTurningFromMoving) {
     sides.result.instants[t].displacement_m.setZero();
     sides.run.instants[t].displacement_m = turn.toRotationMatrix() * rest_m - rest_m;
   }
-  // The faces -x and +x turn about their own normal, the other four by the whole angle.
+  // The faces -x and +x rotate about their own normal, the other four by the whole angle.
   EXPECT_NEAR(*errors_of(sides).shape_normals_rms_rad.value, 0.1 * std::sqrt(2.0 / 3.0), 1e-9);
 }
 

@@ -92,9 +92,9 @@ TEST(Figures, SayWhyThereIsNoSlipOnset) {
   testing::Sides sides = testing::pressed(5, 200);
   EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").text, "undefined: the scene has no friction");
   sides.scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
-  EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").text, "undefined: neither side ever slides");
+  EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").text, "undefined: neither side ever slips");
   sides.result.instants[4].regions[0].sliding = true;
-  EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").text, "undefined: the fast model never slides");
+  EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").text, "undefined: the fast model never slips");
   sides.run.instants[4].regions[0].sliding = true;
   EXPECT_EQ(find(figures_of(sides), "force.slip_onset_error_m").number, 0.0);
 }
@@ -116,7 +116,7 @@ TEST(Figures, CarryTheErrorsTheirUncertaintyAndUnits) {
   EXPECT_EQ(find(figures, "shape.volume_change_rel").number, errors.volume_change_fast_rel);
   EXPECT_EQ(find(figures, "contact.area_iou").number, *errors.contact_area_iou);
   EXPECT_EQ(find(figures, "reference.force_uncertainty_rel").number, *errors.reference.force_uncertainty_rel);
-  // The reference's own figure, by its own sums, is the one in the norm of the comparison.
+  // The reference's own figure, summed by itself, equals the one in the norm of the comparison.
   EXPECT_NEAR(find(figures, "reference.shape_uncertainty_rel").number, *errors.shape_rel_l2.uncertainty, 1e-12);
   EXPECT_EQ(find(figures, "reference.residual_penetration_rel").number, *errors.reference.residual_penetration_rel);
   EXPECT_EQ(find(figures, "reference.penetration_between_nodes_rel").number, *errors.reference.between_nodes_rel);

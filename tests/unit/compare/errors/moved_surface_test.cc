@@ -50,7 +50,7 @@ TEST(MovedSurface, HausdorffDoesNotSeePointsThatSlideAlongTheSurface) {
 }
 
 TEST(MovedSurface, HausdorffLooksBothWays) {
-  // A spike on one side only: the flat side's vertices are all near the spiky one, not the other way round.
+  // A spike on one side only: the flat side's vertices are all near the other surface, but not the reverse.
   const scene::Surface surface = cube();
   const Eigen::Index n = surface.points_m.cols();
   const Eigen::Matrix3Xd flat_m = Eigen::Matrix3Xd::Zero(3, n);
@@ -73,8 +73,8 @@ TEST(MovedSurface, HausdorffOfABrokenPlaceIsNotANumber) {
 TEST(MovedSurface, GapsAreTakenInTheToolFrame) {
   scene::Surface surface;
   surface.points_m.resize(3, 2);
-  surface.points_m.col(0) = Vec3(0.0, 3.05, 0.0);  // off the long end of the turned tool
-  surface.points_m.col(1) = Vec3(3.0, 1.0, 0.0);   // where that end would be without the turn
+  surface.points_m.col(0) = Vec3(0.0, 3.05, 0.0);  // outside the long end of the rotated tool
+  surface.points_m.col(1) = Vec3(3.0, 1.0, 0.0);   // where that end would be without the rotation
   Eigen::Matrix3Xd moved_m = Eigen::Matrix3Xd::Zero(3, 2);
   scene::Tool box;
   box.shape = scene::ToolShape::box;

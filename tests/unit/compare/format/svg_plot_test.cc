@@ -89,7 +89,7 @@ TEST(SvgPlot, InterruptsALineAtWhatIsNotFinite) {
 }
 
 TEST(SvgPlot, RangeIsThatOfThePointsShown) {
-  // A point without a y must not stretch x.
+  // A point without a y must not extend the x axis.
   const auto with = circles(to_svg(line({1, 2, 1000}, {1, 2, nan_value})));
   const auto without = circles(to_svg(line({1, 2}, {1, 2})));
   EXPECT_EQ(with, without);
@@ -145,7 +145,7 @@ TEST(SvgPlot, AsAFileIsDarkOnWhiteEverywhere) {
   const std::string file = as_file(svg);
   EXPECT_TRUE(testing::is_well_formed(file));
   EXPECT_NE(file.find("<svg color=\"#1c1e21\" xmlns="), std::string::npos);
-  // The ground lies under everything else.
+  // The background is below everything else.
   EXPECT_LT(file.find("fill=\"#ffffff\""), file.find("<text"));
   EXPECT_EQ(svg.find("#ffffff"), std::string::npos);
 }
@@ -172,7 +172,7 @@ TEST(SvgPlot, KeepsTheAxisTitleClearOfTheTickLabels) {
   for (const auto& [low, high] : {std::pair(0.0, 1.0), std::pair(1.2e5, 1.3e5), std::pair(1.234e-5, 1.235e-5)}) {
     const Plot plot = line({0, 1}, {low, high});
     const std::string svg = to_svg(plot);
-    // Tick labels end 7 px left of the axis; a letter takes 6.6 px; the title reaches to 20 px.
+    // Tick labels end 7 px left of the axis; a letter is 6.6 px wide; the title extends to 20 px.
     static const std::regex label("<text x=\"([0-9.]+)\" y=\"[0-9.]+\" text-anchor=\"end\"[^>]*>([^<]*)<");
     int labels = 0;
     for (std::sregex_iterator it(svg.begin(), svg.end(), label), end; it != end; ++it, ++labels) {
@@ -211,7 +211,7 @@ TEST(SvgPlot, BarsSayHowWellAPointIsKnownAndAHollowMarkerThatItIsNot) {
   EXPECT_EQ(count(svg, "± 8</title>"), 1u);
   EXPECT_EQ(count(svg, "± unknown</title>"), 1u);
   EXPECT_EQ(count(svg, "class=\"unknown\""), 1u);
-  // The axis has room for the longest bar.
+  // The axis includes the longest error bar.
   plot.curves[0].y_half = {0.0, 200.0, 0.0};
   EXPECT_EQ(count(to_svg(plot), ">200</text>"), 1u);
 }

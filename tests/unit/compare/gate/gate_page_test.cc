@@ -1,4 +1,4 @@
-// The page of gates: what it says first, and that every gate is on it with its numbers.
+// The page of gates: its first lines, and every gate with its numbers.
 #include "compare/gate/gate_page.h"
 
 #include "support/xml.h"
@@ -56,7 +56,7 @@ TEST(GatePage, ShowsValueUncertaintyLimitMarginAndBar) {
   const std::string page = html({truth("force", 0.01, 0.002)});
   EXPECT_THAT(page, HasSubstr("1\u00a0%, uncertain by 0.2\u00a0%; together at most 2\u00a0%"));
   EXPECT_THAT(page, HasSubstr("40\u00a0% of the limit left"));
-  // Half of the way to the mark is the value, a tenth the uncertainty.
+  // The value is half of the way to the limit, the uncertainty a tenth.
   EXPECT_THAT(page, HasSubstr("<rect x=\"0\" y=\"2\" width=\"120.00\""));
   EXPECT_THAT(page, HasSubstr("<rect x=\"120.00\" y=\"2\" width=\"24.00\""));
   EXPECT_THAT(page, HasSubstr("href=\"../../gates/ball.toml\""));

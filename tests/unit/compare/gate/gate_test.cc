@@ -1,4 +1,4 @@
-// Gates: what turns them red, what a proof proves, who may widen a limit.
+// Gates: what turns them red, what a proof shows, and who may widen a limit.
 #include "compare/gate/gate.h"
 
 #include "compare/app/gate_verb.h"

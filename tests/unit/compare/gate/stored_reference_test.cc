@@ -1,4 +1,4 @@
-// Reference data comes back as it was, or says why it cannot be compared with.
+// Reference data is read back unchanged, or the reason for a refusal is given.
 #include "compare/gate/stored_reference.h"
 
 #include "compare/errors/compute_errors.h"
@@ -122,7 +122,7 @@ TEST_F(StoredReferenceTest, ANumberWrittenOverIsNotUsed) {
 }
 
 TEST_F(StoredReferenceTest, WhatNoSolverGivesIsRefusedInPlainText) {
-  // The refusal of a file with this in the place of that, whose checksum is right.
+  // The refusal of a file in which one text is replaced by another and the checksum is right.
   const auto refusal_with = [&](const char* name, const std::string& that, const std::string& with) {
     SetUp();
     std::string text = *scene::read_file(folder() / name), about = *scene::read_file(folder() / "reference.json");

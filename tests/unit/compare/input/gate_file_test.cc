@@ -1,4 +1,4 @@
-// Gate files: what they mean, and what is said about bad ones.
+// Gate files: their meaning, and the messages about faulty ones.
 #include "compare/input/gate_file.h"
 #include "support/source_folder.h"
 
@@ -53,7 +53,7 @@ TEST(GateFile, ASecondCodeNeedsNoCommittedData) {
   const std::string both = "title = \"t\"\nrun = \"second_code\"\nscene = \"a.toml\"\n";
   EXPECT_EQ(parse_gate_file(both + gate, "gates/a.toml").run, GateRun::second_code);
   EXPECT_THAT(refusal(both + "model = \"compliance-1\"\n" + gate), HasSubstr("model is for run = \"fast\" only"));
-  EXPECT_THAT(refusal(both + "reference = \"reference/a\"\n" + gate), HasSubstr("reference is never looked at"));
+  EXPECT_THAT(refusal(both + "reference = \"reference/a\"\n" + gate), HasSubstr("reference is not used"));
 }
 
 TEST(GateFile, EveryFaultIsToldAtOnceWithItsLine) {
@@ -88,7 +88,7 @@ struct Given {
   const char *good, *bad;
 };
 
-/// The table says whether a key may be left out, and the reader agrees; a value of another type is refused.
+/// Checks that the table's defaults agree with the reader, and that a value of another type is refused.
 void expect_told_truly(const std::vector<GateKey>& keys, const std::map<std::string, Given>& given,
                        const std::function<std::string(const std::string&)>& refusal_of) {
   std::string all;

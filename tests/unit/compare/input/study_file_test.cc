@@ -1,4 +1,4 @@
-// Study files: which cases they mean, and what is said about bad ones.
+// Study files: their cases, and the messages about faulty ones.
 #include "compare/input/study_file.h"
 
 #include "scene/input/scene_io.h"
@@ -86,7 +86,7 @@ TEST_F(StudyTest, RangesEndWhereTheySayAndStepEvenly) {
   EXPECT_EQ(log.front(), 1e-3);
   EXPECT_EQ(log.back(), 1.0);
   for (std::size_t i = 1; i < 4; ++i) EXPECT_NEAR(log[i] / log[i - 1], 10.0, 1e-12);
-  // Whole ends with whole steps between stay whole, so that they suit whole keys.
+  // A range of whole numbers with whole steps stays whole, as keys with whole values need.
   const Study whole = read(head + "[[axis]]\nkey = \"fast.triangles\"\nrange = { from = 100, to = 300, count = 3 }\n");
   EXPECT_EQ(load_cases(whole).at(1).fast.triangles, 200);
 }
@@ -122,7 +122,7 @@ TEST_F(StudyTest, EveryFaultHasItsPlaceAndWhatWasExpected) {
 }
 
 TEST_F(StudyTest, ABadValueIsToldOnceWhereTheStudyGivesIt) {
-  // Two values out of range and one key that is none, in a grid where each occurs twice.
+  // Two values out of range and an unknown key, in a grid where each occurs twice.
   const std::string said = refusal(head + R"([[axis]]
 key = "body.material.poissons_ratio"
 values = [0.3, 0.6, 0.7]

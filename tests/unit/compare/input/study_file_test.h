@@ -1,4 +1,4 @@
-// A study's file for one test, and what is said about a bad one.
+// A study file for one test, and the message about a faulty one.
 #pragma once
 
 #include "scene/base/error.h"
@@ -21,7 +21,7 @@ class StudyFileTest : public testing::Test {
     std::ofstream(file_) << text;
     return file_;
   }
-  /// What is said about a file that `load` refuses, without the file's name; "accepted" where it does not.
+  /// The message with which `load` refuses a file, without the file's name; "accepted" if it does not.
   template <class Load>
   std::string refusal_of(const Load& load) {
     try {

@@ -1,4 +1,4 @@
-// Tuning studies: what they mean, and what is said about bad ones.
+// Tuning studies: their meaning, and the messages about faulty ones.
 #include "compare/input/tuning_study.h"
 
 #include "scene/input/scene_io.h"
@@ -73,10 +73,10 @@ TEST_F(TuningStudyTest, TellsEveryFaultWithItsPlaceAndWhatWasExpected) {
   EXPECT_THAT(
       refusal(head + training + held_out + "[[parameter]]\nkey = \"fast.C_n\"\nbounds = [0.0, 0.1]\nscale = \"log\"\n"),
       HasSubstr("expected bounds above 0"));
-  EXPECT_THAT(refusal(head + training + held_out + stiffness + stiffness), HasSubstr("is the same constant already"));
+  EXPECT_THAT(refusal(head + training + held_out + stiffness + stiffness), HasSubstr("stands for the same constant"));
   EXPECT_THAT(refusal(head + training + held_out + stiffness +
                       "[[parameter]]\nkey = \"contact.omega0_squared_per_s2\"\nbounds = [1.0, 2.0]\n"),
-              HasSubstr("is the same constant already"));
+              HasSubstr("stands for the same constant"));
   EXPECT_THAT(refusal(head + training + held_out + stiffness +
                       "[[parameter]]\nkey = \"contact.friction.K\"\nbounds = [0.1, 2.0]\n"),
               HasSubstr("parameter.key = \"contact.friction.K\" only applies with [contact.friction] given; expected a "
@@ -120,7 +120,7 @@ TEST_F(TuningStudyTest, WritesNothingWhereTheKeyDoesNotApply) {
 TEST_F(TuningStudyTest, AFileOfParametersGoesOverAScene) {
   const Scene scene = load_scene(scenes + "ball-on-cube-press.toml");
   const auto over = [&](const std::string& text) { return with_parameters(scene, written(text)); };
-  // In whatever order: the law decides which constants apply. Friction's are left out where there is none.
+  // In any order: the law decides which constants apply. Friction's are ignored in a scene without friction.
   const Scene tuned = over(
       "[contact]\nk1_per_radius_n_per_m2 = 5.0e6\nlaw = \"area_aware\"\n[contact.friction]\n"
       "K = 0.3\n[fast]\nC_n = 0.1\nformulation = \"published\"\n");

@@ -59,7 +59,7 @@ TEST_F(JudgeModels, ThePapersModelTheUntunedAreaLawAndTheScenesOwn) {
   EXPECT_NE(models[0].force_nrmse.value, models[1].force_nrmse.value);
   EXPECT_EQ(models[2].shape_rel_l2.value, errors_of(sides_.scene).shape_rel_l2.value);
   EXPECT_GT(models[1].step_p50_us, 0.0);
-  // What is known of the page's own model is not found again.
+  // The page's own model is not judged again.
   EXPECT_EQ(with_own[2].key, "scene");
   EXPECT_EQ(*with_own[2].force_nrmse.value, 0.5);
   EXPECT_EQ(with_own[2].trouble, "tired");

@@ -25,7 +25,7 @@ scene::Scene load(const std::string& name, std::vector<std::string> settings) {
   return scene::load_scene(scenes + name, settings);
 }
 
-/// Both at every instant of a scene.
+/// Both solutions at every instant of a scene.
 struct Pair {
   reference::Result reference;
   std::vector<scene::Vec3> force_n;
@@ -62,8 +62,8 @@ void expect_equal(const Pair& both, double force_rel, double shape_rel) {
   EXPECT_GT(peak_n, 1.0);
 }
 
-// The volume may change by what the tangent's bulk modulus lets it where the material is incompressible, see
-// MixedMaterial; a compressible one has none of that, and what is left is single precision of the shape.
+// For an incompressible material the volume may change as far as the tangent's bulk modulus allows, see MixedMaterial.
+// A compressible material has no such effect, and single precision of the shape remains.
 TEST(LinearContact, SolvesTheReferencesOwnProblemOfSmallStrain) {
   expect_equal(solve_both(load("ball-on-cube-press.toml", {"compare.instants=5", "body.material.poissons_ratio=0.3",
                                                            "reference.element_size_m=0.006"}),
@@ -80,7 +80,7 @@ TEST(LinearContact, SolvesTheRingsOfABodyOfRevolution) {
       1e-6, 1e-6);
 }
 
-// The whole body has the quarter's answer where the tool stands in its middle, off it where no mirror image would hold.
+// The whole body gives the quarter's result if the tool is at its centre; away from it no symmetry applies.
 TEST(LinearContact, KnowsTheWholeBody) {
   const std::vector<std::string> settings = {"compare.instants=3", "reference.element_size_m=0.006",
                                              "body.material.poissons_ratio=0.3"};
@@ -91,7 +91,7 @@ TEST(LinearContact, KnowsTheWholeBody) {
   expect_equal(solve_both(load("ball-on-cube-press.toml", aside), true), 1e-6, 1e-6);
 }
 
-// Hertz's closed form holds for depths small beside the ball and the body. E* = E / (1 - nu^2).
+// Hertz's closed form is valid for depths that are small beside the ball and the body. E* = E / (1 - nu^2).
 TEST(LinearContact, GivesHertzsForce) {
   const scene::Scene scene = load("hertz-sphere.toml", {"compare.instants=4"});
   const Pair both = solve_both(scene, true);

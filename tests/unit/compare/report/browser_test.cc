@@ -1,4 +1,4 @@
-// The report as a reader sees it, in headless Chromium: with WebGL by software, and without any.
+// The report in headless Chromium: with WebGL in software, and without WebGL.
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Looks at the page once it is loaded, uses it as a reader would, and leaves what it saw in an element.
+/// Inspects the loaded page, uses it as a reader would, and writes what it found to an element.
 constexpr const char* probe = R"(<script>//<![CDATA[
 const seen = { errors: [] };
 const viewer = document.getElementById('viewer');
@@ -37,7 +37,7 @@ const pixels = (canvas) => {
 const sum = (numbers) => new Uint32Array(numbers.buffer).reduce((a, b) => (a * 31 + b) % 4294967291, 7);
 const shown = ['reference', 'fast'];
 
-/// Of each side's picture: the body's box in it, from 0 to 1, and a number that changes with the picture.
+/// For each side's picture: the body's box in it, from 0 to 1, and a number that changes with the picture.
 const sides = () => {
   const image = pixels(part('canvas').querySelector('canvas'));
   const names = shown.map((name) => part(`name-${name}`)).filter((label) => !label.hidden);
@@ -147,7 +147,7 @@ const save = async () => {
   seen.size = [image.width, image.height];
   seen.canvas = [part('canvas').clientWidth, part('canvas').clientHeight];
   const data = pixels(image);
-  // Where the colour bar is, below the picture, and in the picture itself.
+  // Rows of the colour bar, below the picture, and of the picture itself.
   const row = Math.round(image.width / seen.canvas[0] * (seen.canvas[1] + 18));
   const colours = (from, to) => new Set(new Uint32Array(data.data.buffer).slice(from * image.width, to * image.width));
   seen.bar_colours = colours(row, row + 1).size;
@@ -155,7 +155,7 @@ const save = async () => {
   return seen;
 };
 
-/// The drawn scale: what it says and how many pixels of the picture it is long; the body's width beside it.
+/// The drawn scale: its text and its length in pixels of the picture; and the body's width.
 const scale = () => {
   set('instant', 0, 'input');
   part('tool').checked = false;
@@ -192,7 +192,7 @@ const colours = () => {
            maps: Object.values(ends).map((table) => [table[0], table[table.length - 1]]) };
 };
 
-/// As on paper: which of the texts about the view in space, and which pictures, are there.
+/// In print: which texts about the three-dimensional view, and which pictures, are present.
 const print = () => {
   for (const sheet of document.styleSheets) {
     for (const rule of sheet.cssRules) if (rule.media && rule.media.mediaText === 'print') rule.media.mediaText = 'all';
@@ -228,7 +228,7 @@ const looks = () => {
   return { ...found, clicked: look() };
 };
 
-/// Values beside the pointer, at once.
+/// Values beside the pointer, without delay.
 const tips = () => {
   const mark = document.querySelector('figure circle[aria-label]');
   const at = mark.getBoundingClientRect(), figure = mark.closest('figure');
@@ -269,7 +269,7 @@ std::string output_of(const std::string& command) {
 
 const std::string with_webgl = "--use-angle=swiftshader --enable-unsafe-swiftshader ";
 
-/// What the probe found at a task on the report, which must show no error and say nothing on the console.
+/// The probe's findings for a task on the report, which must show no error and write nothing to the console.
 /// @param narrow  the page is as wide as a telephone's, which a window of Chromium cannot be
 Json visit(const std::string& task, const std::string& flags, bool narrow = false) {
   const testing::Sides sides = testing::pressed(5, 600);
@@ -303,7 +303,7 @@ Json visit(const std::string& task, const std::string& flags, bool narrow = fals
 
 constexpr const char* still = "Error, on the reference's shape";
 
-/// With the view in space, drawn by software.
+/// With the three-dimensional view, drawn in software.
 Json in_space(const std::string& task, bool narrow = false, const std::string& flags = "") {
   const Json page = visit(task, with_webgl + flags, narrow);
   EXPECT_EQ(page["viewer"], true);
@@ -330,7 +330,7 @@ TEST(ReportInChromium, ShowsBothBodiesAndFollowsTheSlider) {
   EXPECT_NEAR(std::stod(looks["last"]["most"].get<std::string>()), most_mm, 0.005 * most_mm);
 }
 
-/// Of one vertex.
+/// Values of one vertex.
 Eigen::Vector3d column(const Json& values, Eigen::Index vertex) {
   const auto first = static_cast<std::size_t>(3 * vertex);
   const auto at = [&](std::size_t axis) { return values.at(first + axis).get<double>(); };
@@ -351,7 +351,7 @@ TEST(ReportInChromium, MovesAndColoursEveryVertex) {
   for (Eigen::Index i = 0; i < fast_m.cols(); ++i) {
     EXPECT_LT((column(last["points"], i) - sides.run.surface.points_m.col(i) - fast_m.col(i)).norm(), 1e-7) << i;
     EXPECT_EQ(column(error["points"], i), column(last["points"], i)) << i;
-    // Magma backwards: light where there is no error, ever darker from there.
+    // Magma reversed: light without error, darker for larger errors.
     const double brightness = column(error["colours_of_points"], i).sum();
     EXPECT_LE(brightness, column(error["colours_of_points"], least).sum()) << i;
     EXPECT_GE(brightness, column(error["colours_of_points"], most).sum()) << i;
@@ -363,7 +363,7 @@ TEST(ReportInChromium, MovesAndColoursEveryVertex) {
   }
 }
 
-/// Inside its picture, nowhere at the edge, and not small in it.
+/// Inside its picture, not at the edge, and not small.
 void expect_fits(const Json& side, const std::string& what) {
   const double left = side["left"], right = side["right"], top = side["top"], bottom = side["bottom"];
   EXPECT_GT(left, 0.01) << what;
@@ -380,7 +380,7 @@ TEST(ReportInChromium, FitsTheBodiesAtEveryWidth) {
     ASSERT_EQ(fits["alone"].size(), 1u);
     for (const Json& side : fits["both"]) expect_fits(side, narrow ? "narrow" : "wide");
     expect_fits(fits["alone"][0], narrow ? "narrow, alone" : "wide, alone");
-    // One above the other where there is no room beside.
+    // One above the other if there is no space side by side.
     EXPECT_EQ(fits["both"][0]["size"][0] == fits["alone"][0]["size"][0], narrow);
   }
 }
@@ -403,7 +403,7 @@ TEST(ReportInChromium, KeysTurnBothBodiesWhileThePictureHasTheFocus) {
       EXPECT_NE(keys[name]["sides"][side]["mark"], before["sides"][side]["mark"]) << name << " side " << side;
     }
   }
-  // Right and left of where it was; up and down undo each other.
+  // Right and left of the start; up and down cancel.
   EXPECT_GT(distance(keys["ArrowLeft"]["place"], keys["ArrowRight"]["place"]),
             1.5 * distance(keys["ArrowLeft"]["place"], before["place"]));
   EXPECT_LT(distance(keys["ArrowDown"]["place"], keys["ArrowRight"]["place"]), 1e-6);
@@ -445,7 +445,7 @@ TEST(ReportInChromium, SavesThePictureWithItsColourBar) {
   const Json saved = in_space("save");
   EXPECT_EQ(saved["type"], "data:image/png;base64,");
   EXPECT_THAT(saved["name"].get<std::string>(), ::testing::MatchesRegex("bodies-at-.*s\\.png"));
-  // The canvas may be a part of a pixel wider than the number it gives.
+  // The canvas may be a fraction of a pixel wider than the number it reports.
   EXPECT_NEAR(saved["size"][0].get<int>(), 2 * saved["canvas"][0].get<int>(), 1);
   EXPECT_GT(saved["size"][1], 2 * saved["canvas"][1].get<int>());
   EXPECT_GT(saved["picture_colours"], 50);
@@ -486,7 +486,7 @@ TEST(ReportInChromium, IsLegibleOnLightAndDarkPages) {
     }
     EXPECT_GT(contrast(colours["marks"], colours["stage"]), 4.5) << (dark ? " dark" : " light");
     for (const Json& name : colours["names"]) EXPECT_GT(contrast(name, colours["panel"]), 3.0);
-    // A body of either end of a scale is seen against what is behind it, the dark end above all.
+    // A body in the colour of either end of a scale contrasts with the background, the dark end above all.
     for (const Json& ends : colours["maps"]) {
       for (const Json& end : ends) EXPECT_GT(contrast(end, colours["stage"]), 1.25) << end << colours["stage"];
       EXPECT_GT(std::max(contrast(ends[0], colours["stage"]), contrast(ends[1], colours["stage"])), 4.5);
@@ -500,7 +500,7 @@ TEST(ReportInChromium, LeavesPaperToTheStillPicture) {
   EXPECT_FALSE(print["sentence"]);
   EXPECT_THAT(print["headings"].get<std::vector<std::string>>(),
               ::testing::Not(::testing::Contains("Both bodies in space")));
-  // What is folded would be a heading without a body.
+  // A folded section would be a heading without content.
   EXPECT_THAT(print["headings"].get<std::vector<std::string>>(),
               ::testing::AllOf(::testing::Contains("Why"), ::testing::Not(::testing::Contains("All figures"))));
   EXPECT_THAT(print["stills"].get<std::vector<std::string>>(), ::testing::Contains(still));

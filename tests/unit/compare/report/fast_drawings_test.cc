@@ -27,14 +27,14 @@ std::string svg_of(const std::vector<Drawing>& drawings, const std::string& name
   return found == drawings.end() ? "" : found->svg;
 }
 
-std::size_t count(const std::string& text, const std::string& part) {
+std::size_t count_of(const std::string& text, const std::string& part) {
   std::size_t found = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
   return found;
 }
 
 /// Lines within the axes: the curves of a plot without markers or bands.
-std::size_t curves(const std::string& svg) { return count(svg, "<path d=\"M"); }
+std::size_t curves(const std::string& svg) { return count_of(svg, "<path d=\"M"); }
 
 scene::RegionRecord region(int id, double depth_m, const Vec3& force_n, bool sliding = false) {
   scene::RegionRecord out;
@@ -46,7 +46,7 @@ scene::RegionRecord region(int id, double depth_m, const Vec3& force_n, bool sli
   return out;
 }
 
-/// The ball pressed on the cube, one instant per letter: '.' apart, 's' stuck, 'S' sliding.
+/// The ball pressed on the cube, one instant per letter: '.' no contact, 's' sticking, 'S' slipping.
 testing::Sides with_friction(const std::string& letters) {
   testing::Sides sides = testing::pressed(static_cast<int>(letters.size()), 200);
   sides.scene.contact.friction = scene::Friction{1.0, 0.75, 0.5};
@@ -60,7 +60,7 @@ testing::Sides with_friction(const std::string& letters) {
   return sides;
 }
 
-/// The same with as many regions as the digits say.
+/// The same with the number of regions given by the digits.
 testing::Sides with_regions(const std::string& digits) {
   testing::Sides sides = testing::pressed(static_cast<int>(digits.size()), 200);
   for (std::size_t t = 0; t < digits.size(); ++t) {
@@ -117,7 +117,7 @@ TEST(FastDrawings, SpansSayOfEveryInstantWhetherItSlides) {
   ASSERT_EQ(spans.size(), 5u);
   for (std::size_t i = 1; i < 4; ++i) EXPECT_DOUBLE_EQ(spans[i - 1].to, spans[i].from);
   EXPECT_DOUBLE_EQ(spans.back().to, sides.run.instants.back().time_s);
-  // Grey print tells them apart.
+  // They differ in a grey print.
   EXPECT_GT(spans[1].shade, 2.0 * spans[0].shade);
 }
 
@@ -127,7 +127,7 @@ TEST(FastDrawings, ShadeForceAndFrictionWhereTheSceneHasFriction) {
   EXPECT_THAT(names_of(drawings), ElementsAre("force", "friction", "depth", "area"));
   for (const char* name : {"force", "friction"}) {
     for (const char* word : {">stuck</text>", ">sliding</text>"}) {
-      EXPECT_EQ(count(svg_of(drawings, name), word), 1u) << name << word;
+      EXPECT_EQ(count_of(svg_of(drawings, name), word), 1u) << name << word;
     }
   }
 }
@@ -157,7 +157,7 @@ TEST(FastDrawings, FollowThePathAlongTheAxisTheToolTravels) {
   EXPECT_NE(svg_of(force_drawings(sides.scene, sides.run), "path").find(">y of the tool [mm]</text>"),
             std::string::npos);
   EXPECT_THAT(instants_shown(sides.run), ElementsAre(4u, 2u, 0u));
-  // On the way down it is no travel.
+  // While the depth grows this is no lateral motion.
   for (std::size_t t = 0; t < 4; ++t) sides.run.instants[t].depth_m = 0.0017;
   EXPECT_EQ(svg_of(force_drawings(sides.scene, sides.run), "path"), "");
   EXPECT_THAT(instants_shown(sides.run), ElementsAre(4u));
@@ -169,24 +169,25 @@ TEST(FastDrawings, HaveACurvePerRegion) {
   for (const char* name : {"regions", "depth", "area"}) {
     const std::string svg = svg_of(drawings, name);
     for (const char* legend : {">region 0</text>", ">region 1</text>", ">region 2</text>"}) {
-      EXPECT_EQ(count(svg, legend), 1u) << name << legend;
+      EXPECT_EQ(count_of(svg, legend), 1u) << name << legend;
     }
-    EXPECT_EQ(count(svg, ">region 3</text>"), 0u) << name;
+    EXPECT_EQ(count_of(svg, ">region 3</text>"), 0u) << name;
     EXPECT_EQ(curves(svg), 3u) << name;
   }
   for (const char* legend : {">1 region</text>", ">2 regions</text>", ">3 regions</text>"}) {
-    EXPECT_EQ(count(svg_of(drawings, "regions"), legend), 1u) << legend;
+    EXPECT_EQ(count_of(svg_of(drawings, "regions"), legend), 1u) << legend;
   }
-  EXPECT_EQ(count(svg_of(drawings, "regions"), ">0 regions</text>"), 0u);
+  EXPECT_EQ(count_of(svg_of(drawings, "regions"), ">0 regions</text>"), 0u);
   EXPECT_EQ(svg_of(force_drawings(sides.scene, with_regions("01110").run), "regions"), "");
 }
 
 TEST(FastDrawings, ShowEachStageOfSeveralRegions) {
   testing::Sides sides = with_regions("0112222100");
-  // The two are even at the fifth instant, although the record is deeper later.
+  // The two are equal at the fifth instant, although the depth is larger later.
   sides.run.instants[4].regions[0].depth_m = sides.run.instants[4].regions[1].depth_m = 0.0012;
   EXPECT_THAT(instants_shown(sides.run), ElementsAre(2u, 4u, 7u));
-  EXPECT_EQ(count(svg_of(shape_drawings(sides.scene, sides.run), "section"), "<g transform=\"translate("), 3u + 3u * 3u)
+  EXPECT_EQ(count_of(svg_of(shape_drawings(sides.scene, sides.run), "section"), "<g transform=\"translate("),
+            3u + 3u * 3u)
       << "three panels with three names each";
 }
 
@@ -245,7 +246,7 @@ TEST(FastDrawings, DrawTheDentAsDeepAsItIs) {
   testing::Sides sides = testing::pressed(3, 600);
   Eigen::Matrix3Xd& displacement_m = sides.run.instants[2].displacement_m;
   displacement_m.setZero();
-  // A trough to one side; the bottom moves too, but is not the upper side.
+  // A trough on one side; the bottom moves too, but is not the upper side.
   for (Eigen::Index i = 0; i < displacement_m.cols(); ++i) {
     if (sides.run.surface.points_m(0, i) < -0.001) displacement_m(2, i) = -0.003;
   }

@@ -18,7 +18,7 @@
 namespace touchstone::compare {
 namespace {
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool page_has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 std::string content_of(const std::filesystem::path& path) {
   std::ostringstream out;
@@ -26,7 +26,7 @@ std::string content_of(const std::filesystem::path& path) {
   return out.str();
 }
 
-/// Files the folder holds of this ending, without it.
+/// Names of the folder's files with this extension, without it.
 std::set<std::string> files(const std::filesystem::path& folder, const std::string& ending) {
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -52,15 +52,15 @@ TEST_P(FastReportOfAShippedScene, IsWholeAndHasWhatTheSceneHas) {
   const std::string html = content_of(folder.path() / "report.html");
   EXPECT_TRUE(testing::is_well_formed(html));
   EXPECT_FALSE(testing::shows_not_a_number(html));
-  EXPECT_FALSE(has(html, "not finite"));
-  EXPECT_FALSE(has(html, "nothing to show"));
+  EXPECT_FALSE(page_has(html, "not finite"));
+  EXPECT_FALSE(page_has(html, "nothing to show"));
   EXPECT_FALSE(
       std::regex_search(html, std::regex("src\\s*=|href\\s*=\\s*\"[^#]|<(script \\w|link|iframe)\\b|url\\(|@import")));
-  EXPECT_TRUE(has(html, GetParam().formulation == scene::Formulation::published ? "published formulation"
-                                                                                : "corrected formulation"));
-  for (const scene::Figure& figure : fast::figures(run)) EXPECT_TRUE(has(html, figure.key)) << figure.key;
-  // No figure goes without its meaning.
-  EXPECT_FALSE(has(html, "<td><br/>"));
+  EXPECT_TRUE(page_has(html, GetParam().formulation == scene::Formulation::published ? "published formulation"
+                                                                                     : "corrected formulation"));
+  for (const scene::Figure& figure : fast::figures(run)) EXPECT_TRUE(page_has(html, figure.key)) << figure.key;
+  // No figure is without its meaning.
+  EXPECT_FALSE(page_has(html, "<td><br/>"));
 
   std::set<std::string> expected = {"force", "depth", "area", "section", "contact", "dent", "view"};
   const bool friction = scene.contact.friction.has_value();
@@ -77,8 +77,8 @@ TEST_P(FastReportOfAShippedScene, IsWholeAndHasWhatTheSceneHas) {
     EXPECT_TRUE(testing::is_well_formed(svg)) << name;
     EXPECT_LT(svg.size(), name == "view" ? 100'000u : 60'000u) << name;
   }
-  EXPECT_EQ(has(html, "inclusion, at rest"), !scene.body.inclusions.empty());
-  EXPECT_EQ(has(html, ">sliding</text>"), friction);
+  EXPECT_EQ(page_has(html, "inclusion, at rest"), !scene.body.inclusions.empty());
+  EXPECT_EQ(page_has(html, ">sliding</text>"), friction);
 }
 
 std::vector<Case> cases() {
@@ -119,8 +119,8 @@ TEST(FastReport, SaysWhenTheToolNeverTouches) {
   for (scene::InstantRecord& record : sides.run.instants) record.regions.clear();
   const std::string html = fast_report_html(sides.scene, sides.run, sides.manifest);
   EXPECT_TRUE(testing::is_well_formed(html));
-  EXPECT_TRUE(has(html, "never touches the body"));
-  EXPECT_FALSE(has(html, "<h2>Force</h2>"));
+  EXPECT_TRUE(page_has(html, "never touches the body"));
+  EXPECT_FALSE(page_has(html, "<h2>Force</h2>"));
 }
 
 TEST(FastReport, ShowsStepTimesStatusPlanAndScene) {
@@ -128,7 +128,7 @@ TEST(FastReport, ShowsStepTimesStatusPlanAndScene) {
   const std::string html = fast_report_html(sides.scene, sides.run, sides.manifest);
   for (const char* part : {"11.2\u00a0µs", "14.9\u00a0µs", "21.7\u00a0µs", "<b>ok</b>", "contact detection", "left out",
                            "<h2>Force</h2>", "GNU 12.2.0"}) {
-    EXPECT_TRUE(has(html, part)) << part;
+    EXPECT_TRUE(page_has(html, part)) << part;
   }
 }
 

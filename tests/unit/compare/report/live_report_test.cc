@@ -1,4 +1,4 @@
-// The page of a live run: numbers first, faults in words, a histogram per duration.
+// The page of a live run: numbers first, a sentence for every fault, a histogram per duration.
 #include "compare/report/live_report.h"
 
 #include "support/synthetic.h"
@@ -27,8 +27,8 @@ scene::Scene ball() {
   return scene;
 }
 
-/// 2000 ticks at 1 kHz, a force that rises to 3 N at 1 s and falls again; a lateness of 40 us, but 0.9 ms once. The
-/// ledger knows a percentile to 1 %, a maximum exactly.
+/// 2000 ticks at 1 kHz, a force that rises to 3 N at 1 s and falls again; a lateness of 40 us, once 0.9 ms. The ledger
+/// has percentiles to 1 % and exact maxima.
 live::LiveResult two_seconds() {
   live::LiveResult result;
   result.rate_hz = 1000;
@@ -84,7 +84,7 @@ TEST(LiveReport, TheForceIsDrawnOverTimeWithItsLimit) {
   EXPECT_THAT(page, HasSubstr("<title>sent to the device | time [s]: 1.002; force [N]: 3</title>"));
   EXPECT_THAT(page, HasSubstr(">limit</text>"));
   EXPECT_THAT(page, Not(HasSubstr(">of the model</text>")));
-  // Where the limits cut it off, the model's stands beside it.
+  // Where a limit applied, the model's force is drawn, too.
   live::TickRecord record;
   record.sequence = record.tick.index = 2000;
   record.model.force_n.z() = 9.0;
@@ -94,7 +94,7 @@ TEST(LiveReport, TheForceIsDrawnOverTimeWithItsLimit) {
   result.ledger.model_force_max_n = 9.0;
   page = html(result);
   EXPECT_THAT(page, HasSubstr(">of the model</text>"));
-  EXPECT_THAT(page, HasSubstr("In 1\u00a0tick the limits changed the model's force before it was sent."));
+  EXPECT_THAT(page, HasSubstr("In 1\u00a0tick a safety limit changed the model's force before it was sent."));
   EXPECT_THAT(page, HasSubstr("the force sent is not the model's, whose largest is 9\u00a0N"));
 }
 
@@ -127,7 +127,7 @@ TEST(LiveReport, CountsMissedTicksAndDrawsWhen) {
   result.ledger.ticks = 2001;
   result.ledger.lateness.add(7'200'000);
   const std::string page = html(result);
-  EXPECT_THAT(page, HasSubstr("10 of 2011 ticks were missed: the loop came to them more than a period late"));
+  EXPECT_THAT(page, HasSubstr("10 of 2011 ticks were missed: the loop reached them more than a period late"));
   EXPECT_THAT(page, HasSubstr("<b>10</b><span>0.497\u00a0% of those due</span>"));
   EXPECT_THAT(page, HasSubstr("<title>Missed ticks over time</title>"));
   EXPECT_THAT(page, HasSubstr("ticks missed: 7</title>"));
@@ -152,7 +152,7 @@ TEST(LiveReport, SaysFaultsInWords) {
   EXPECT_THAT(page, HasSubstr("The model reported: contact law saturated at its peak."));
   EXPECT_THAT(page, HasSubstr("In 12\u00a0ticks the device gave no usable pose"));
   EXPECT_THAT(page, HasSubstr("live.csv lacks 5\u00a0ticks"));
-  EXPECT_THAT(page, HasSubstr("ended by a signal (Ctrl-C)"));
+  EXPECT_THAT(page, HasSubstr("ended early by a signal (Ctrl-C)"));
   EXPECT_THAT(page, HasSubstr("(Operation not permitted): &lt;ask&gt;"));
   EXPECT_THAT(page, HasSubstr("3 of 2000\u00a0answers differ from the log's, the first on line 43 of the log"));
 }

@@ -25,7 +25,7 @@ std::vector<NextStep> steps_of(const testing::Sides& sides) {
                     sides.call);
 }
 
-/// The first whose reason or command has this part; an empty one where there is none.
+/// The first step whose reason or command contains this part; an empty one if there is none.
 NextStep find(const std::vector<NextStep>& steps, const std::string& part) {
   for (const NextStep& step : steps) {
     if (step.why.find(part) != std::string::npos || step.command.find(part) != std::string::npos) return step;
@@ -33,7 +33,7 @@ NextStep find(const std::vector<NextStep>& steps, const std::string& part) {
   return {};
 }
 
-/// The synthetic reference with the fast model's own answer.
+/// The synthetic reference with the real result of the fast model.
 testing::Sides really_run() {
   testing::Sides sides = testing::pressed(5, 200);
   sides.run = fast::run(sides.scene);
@@ -55,7 +55,7 @@ TEST(NextSteps, OfferTheAreaAwareLawWhereItIsNearerAndSayByHowMuch) {
             "touchstone compare meshes/scenes/ball-on-cube-press.toml --parameters "
             "out/ball-on-cube-press-compare/area-aware.toml --level 3 --out "
             "out/ball-on-cube-press-compare-area-aware");
-  // What was promised is what the command gives.
+  // The command gives the errors that were promised.
   const testing::TemporaryFolder folder;
   scene::write_file(folder.path() / step.file_name, step.file_text);
   const scene::Scene changed = with_parameters(sides.scene, folder.path() / step.file_name);
@@ -121,7 +121,7 @@ TEST(NextSteps, DoNotRefineWhereNoMeshHelps) {
   sides.scene.reference.levels.reset();
   sides.call.reference = {};
   sides.run.instants.assign(sides.result.instants.begin(),
-                            sides.result.instants.end());  // no error is larger than the uncertainty
+                            sides.result.instants.end());  // then no error is larger than the uncertainty
   EXPECT_THAT(find(steps_of(sides), "Refine the reference").command, HasSubstr(" --error "));
   sides.result.refinement.ended_by = reference::EndedBy::sensitivity;
   EXPECT_EQ(find(steps_of(sides), "Refine the reference").command, "");

@@ -40,9 +40,9 @@ TEST(Picture, AndItsScaleSurviveAFastModelGoneWild) {
   testing::Sides sides = testing::pressed(3, 600);
   sides.run.instants[2].displacement_m *= 0.5;
   const std::string before = half_cuts(sides, 2);
-  EXPECT_EQ(before.find("last colour also stands for more"), std::string::npos);
+  EXPECT_EQ(before.find("larger values have the last colour"), std::string::npos);
   sides.run.instants[2].displacement_m *= 50.0;
-  // Broken places on the cut and off it.
+  // Non-finite positions on the cut and off it.
   Eigen::Index on_cut = 0;
   sides.run.surface.points_m.row(1).cwiseAbs().minCoeff(&on_cut);
   sides.run.instants[2].displacement_m(0, on_cut) = std::numeric_limits<double>::quiet_NaN();
@@ -50,8 +50,8 @@ TEST(Picture, AndItsScaleSurviveAFastModelGoneWild) {
   const std::string svg = half_cuts(sides, 2);
   EXPECT_TRUE(testing::is_well_formed(svg));
   EXPECT_FALSE(testing::shows_not_a_number(svg));
-  EXPECT_NE(svg.find("last colour also stands for more"), std::string::npos);
-  // The reference's panel is what it was: its own displacement sets the scale.
+  EXPECT_NE(svg.find("larger values have the last colour"), std::string::npos);
+  // The reference's panel is unchanged: its own displacement determines the scale.
   const std::size_t panel = svg.find("<g stroke-width"), end = svg.find("</g>", panel);
   EXPECT_EQ(svg.substr(panel, end - panel), before.substr(panel, end - panel));
   EXPECT_FALSE(testing::shows_not_a_number(section_svg(sides.scene, sides.run, sides.result, 2, false)));
@@ -78,10 +78,10 @@ TEST(Picture, SectionDrawsTheReferenceOnItsOwnMesh) {
   const std::string reference = path_of(whole, Look::reference), fast = path_of(whole, Look::fast);
   ASSERT_FALSE(reference.empty());
   ASSERT_FALSE(fast.empty());
-  // Nineteen thousand triangles of its own against six hundred.
+  // Nineteen thousand triangles of the reference's own against six hundred.
   EXPECT_GT(count(reference, "L"), 4 * count(fast, "L"));
 
-  // Nodes as dots, and the fast model's own points as squares, where they can be told apart.
+  // Nodes as dots, and the fast model's own points as squares, if they can be distinguished.
   const auto dots = [](const std::string& svg) {
     return count(svg, "<circle [^>]*r=\"1.8\" fill=\"" + colour(Look::reference));
   };
@@ -94,7 +94,7 @@ TEST(Picture, SectionDrawsTheReferenceOnItsOwnMesh) {
   EXPECT_GT(squares(near), 3);
   EXPECT_LT(squares(near), dots(near));
 
-  // What is known of the reference at the fast model's points does not matter, its own surface does.
+  // The reference's values at the fast model's points have no effect; its own surface has.
   sides.result.instants[2].displacement_m *= 1.5;
   EXPECT_EQ(section(false), whole);
   sides.result.deepest_surface.displacement_m *= 1.5;

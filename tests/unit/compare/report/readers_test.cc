@@ -1,4 +1,4 @@
-// What the verbs leave, read by VTK's own readers, as ParaView does: with a known uncertainty and without one.
+// The files of the commands, read by VTK's own readers, as ParaView does: with a known uncertainty and without one.
 #include "compare/comparison/compare.h"
 #include "compare/report/vtk_out.h"
 #include "compare/solve/reference_run.h"
@@ -28,7 +28,7 @@ namespace {
 
 using std::filesystem::path;
 
-/// Columns of a CSV file by their names. A column that VTK takes for text fails the test.
+/// Columns of a CSV file by their names. A column that VTK reads as text fails the test.
 std::map<std::string, std::vector<double>> read_csv(const path& file) {
   vtkNew<vtkDelimitedTextReader> reader;
   reader->SetFileName(file.c_str());
@@ -78,7 +78,7 @@ class Readers : public ::testing::TestWithParam<bool> {
       instant.displacement_uncertainty_m.setConstant(unknown);
     sides_.result.force_uncertainty_rel = sides_.result.shape_uncertainty_rel = unknown;
   }
-  /// Is it as the parameter says: a number where it is known, else NaN?
+  /// Checks that a value is a number if it is known by the test's parameter, else NaN.
   static void expect_known(double value) {
     EXPECT_TRUE(GetParam() ? std::isfinite(value) : std::isnan(value)) << value;
   }
@@ -94,7 +94,7 @@ TEST_P(Readers, OfAComparison) {
   EXPECT_EQ(columns.at("fast_force_n")[3], sides_.run.instants[3].force_n().norm());
   expect_known(columns.at("reference_force_uncertainty_n")[3]);
   expect_known(columns.at("reference_shape_uncertainty_rel_l2")[3]);
-  EXPECT_TRUE(std::isnan(columns.at("error_force_rel")[0])) << "apart: nothing to relate the error to";
+  EXPECT_TRUE(std::isnan(columns.at("error_force_rel")[0])) << "no contact: no reference value for the error";
   const auto surfaces = read_series(folder_.path() / "surface.pvd");
   ASSERT_EQ(surfaces.size(), 4u);
   vtkPolyData* last = surfaces.rbegin()->second;

@@ -20,7 +20,7 @@ using testing::report_of;
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-/// The page without what its scripts hold.
+/// The page without the content of its scripts.
 std::string markup_of(const std::string& html) {
   std::string out;
   std::size_t from = 0;
@@ -77,7 +77,7 @@ TEST(Report, ShowsCurvesPicturesLevelsPlansAndScene) {
 }
 
 TEST(Report, DoesNotStretchTheLogarithmicAxesToAGrazingInstant) {
-  // With 23 instants one of them touches by rounding alone.
+  // With 23 instants one of them touches only by round-off.
   const testing::Sides sides = testing::pressed(23, 200);
   ASSERT_GT(sides.result.instants[2].depth_m, 0.0);
   ASSERT_LT(sides.result.instants[2].depth_m, grazing_depth_m);
@@ -104,7 +104,7 @@ TEST(Report, OfAReferenceWithoutABandIsStillWhole) {
   EXPECT_FALSE(testing::shows_not_a_number(markup_of(html)));
   EXPECT_FALSE(has(markup_of(html), "not finite"));
   EXPECT_TRUE(has(html, "<b>unknown</b>"));
-  // No band, so none is named or spoken of, and the caption says so.
+  // Without a band none is named, and the caption says so.
   EXPECT_FALSE(has(html, ">reference's uncertainty<"));
   EXPECT_FALSE(has(html, ">reference's own uncertainty<"));
   EXPECT_FALSE(has(html, "narrower than"));
@@ -140,9 +140,8 @@ TEST(Report, CaptionOfTheForceSaysWhyTheErrorAskedForWasNotReached) {
   testing::Sides sides = testing::pressed(5, 600);
   sides.result.refinement.error_asked = 0.001;
   sides.result.refinement.why_ended = "there is no mesh 4: it would take 3 h";
-  EXPECT_TRUE(
-      has(caption_of(report_of(sides), "Force over depth"),
-          "An uncertainty of 0.1\u00a0% was asked for and not reached: there is no mesh 4: it would take 3 h."));
+  EXPECT_TRUE(has(caption_of(report_of(sides), "Force over depth"),
+                  "The requested uncertainty of 0.1\u00a0% was not reached: there is no mesh 4: it would take 3 h."));
   sides.result.refinement.error_asked = 0.5;
   EXPECT_FALSE(has(report_of(sides), "not reached"));
 }
@@ -233,7 +232,7 @@ TEST(Report, OfATrackWithoutContactIsStillWhole) {
   EXPECT_TRUE(testing::is_well_formed(html));
   EXPECT_FALSE(testing::shows_not_a_number(markup_of(html)));
   EXPECT_TRUE(has(html, "never touches the body"));
-  EXPECT_TRUE(has(html, "Figures that have no meaning in this scene are left out"));
+  EXPECT_TRUE(has(html, "Figures that are undefined in this scene are left out"));
 }
 
 TEST(Page, LeavesOutAPartWithoutContent) {

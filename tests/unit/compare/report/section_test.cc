@@ -13,7 +13,7 @@ namespace {
 
 using scene::Vec3;
 
-/// Area of outlines in the plane of x and z; a hole, wherever it is wound, counts as area too.
+/// Area of outlines in the plane of x and z; a hole counts as area too, in either orientation.
 double area_m2(const Outlines& outlines_m) {
   double sum = 0.0;
   for (const auto& outline_m : outlines_m) {
@@ -39,7 +39,7 @@ Vec3 extent_m(const Outlines& outlines_m) {
   return high - low;
 }
 
-/// Somewhere, a hair beside its own middle plane.
+/// A pose whose centre plane is slightly beside the cut plane.
 constexpr double hair_m = 6e-9;
 scene::Pose somewhere() { return {Vec3(0.012, -0.004, 0.07)}; }
 double beside(const scene::Pose& pose) { return pose.position_m.y() - hair_m; }
@@ -100,7 +100,7 @@ TEST(Section, MissesABodyElsewhere) {
   EXPECT_TRUE(cut_at_y(surface, 1.5).empty());
 }
 
-/// Where a plane cuts a reference's mesh of a body, graded so that some nodes hang.
+/// Section of a reference's mesh of a body, graded so that some nodes hang.
 template <int dim>
 std::vector<std::vector<EdgePoint>> cut_of_mesh(const reference::Mesh<dim>& mesh, bool mirrored, double y_m,
                                                 scene::Surface& rest) {
@@ -133,7 +133,7 @@ TEST(Section, OfAReferencesMeshIsOneClosedOutline) {
       EXPECT_NEAR(perimeter_m(rest, outlines[0]), true_m, 2e-3 * true_m) << mirrored << ' ' << y_m;
     }
   }
-  // Turned from the meridian, whose ends lie on the axis.
+  // Revolved from the meridian, whose ends lie on the axis.
   reference::Grading<2> grading;
   grading.largest_m = 0.006;
   grading.discs.push_back({{0.0, 0.05}, {0.0, 1.0}, 0.002, 0.001});

@@ -62,11 +62,11 @@ TEST(Verdict, SaysHowWrongTheForceIsAndWhy) {
   EXPECT_TRUE(says(text, "gives 37.7 N at D = 5 mm")) << text;
   EXPECT_TRUE(says(text, "Hertz's formula about 189 N.")) << text;
   EXPECT_TRUE(says(text, "the paper's Table I for rubber")) << text;
-  EXPECT_TRUE(says(text, "no single factor would put it right")) << text;
+  EXPECT_TRUE(says(text, "no constant factor can correct it")) << text;
   EXPECT_TRUE(says(text, "The reference took 5.32 min for 23 instants on 3 meshes")) << text;
 }
 
-/// Both sides with the fast model's force off by a constant factor.
+/// Both sides with the fast model's force multiplied by a factor.
 testing::Sides with_force_times(double factor) {
   testing::Sides sides = testing::pressed(5, 200);
   for (std::size_t t = 0; t < 5; ++t) {
@@ -96,7 +96,7 @@ TEST(Verdict, GivesNoReasonTheNumbersDoNotGive) {
   EXPECT_TRUE(says(text, "not tuned to this contact. The fast model gives 80 % to 80 %")) << text;
   EXPECT_FALSE(says(text, "material")) << text;
   EXPECT_FALSE(says(text, "Table I")) << text;
-  EXPECT_FALSE(says(text, "single factor")) << text;
+  EXPECT_FALSE(says(text, "constant factor")) << text;
 }
 
 TEST(Verdict, OtherConstantsAreNotCalledThePapers) {
@@ -147,35 +147,35 @@ TEST(Verdict, NoticesAForceInTheWrongDirection) {
   testing::Sides sides = testing::pressed(5, 200);
   const double size_n = sides.result.instants[4].force_n().norm();
   set_force(sides.run.instants[4], 1.05 * size_n * scene::Vec3(1.0, 0.0, 1.0).normalized());
-  EXPECT_TRUE(says(told(sides), "mostly the direction is wrong")) << told(sides);
+  EXPECT_TRUE(says(told(sides), "the error is mostly one of direction")) << told(sides);
 }
 
 TEST(Verdict, NoticesASurfaceLeftInsideTheTool) {
   testing::Sides sides = testing::pressed(5, 200);
   for (std::size_t t = 0; t < 5; ++t) sides.run.instants[t].displacement_m = sides.result.instants[t].displacement_m;
-  EXPECT_FALSE(says(told(sides), "left inside")) << told(sides);
+  EXPECT_FALSE(says(told(sides), "still penetrates")) << told(sides);
   for (std::size_t t = 0; t < 5; ++t) sides.run.instants[t].displacement_m.setZero();
-  EXPECT_TRUE(says(told(sides), "is left inside it by up to 100 % of the depth")) << told(sides);
+  EXPECT_TRUE(says(told(sides), "still penetrates it by up to 100 % of the depth")) << told(sides);
 }
 
 TEST(Verdict, SaysWhenTheForceIsLessThanTheLawAtTheDepth) {
   testing::Sides sides = testing::pressed(5, 200);
-  EXPECT_FALSE(says(told(sides), "mean depth")) << told(sides);
+  EXPECT_FALSE(says(told(sides), "is less than that")) << told(sides);
   set_force(sides.run.instants[4], scene::Vec3(0.0, 0.0, 17.5));
-  EXPECT_TRUE(says(told(sides), "The model's force of 17.5 N is less than the law's")) << told(sides);
+  EXPECT_TRUE(says(told(sides), "The model's force of 17.5 N is less than that")) << told(sides);
 }
 
 TEST(Verdict, SaysWhenTheShapeIsWorseThanNoDeformation) {
   testing::Sides sides = testing::pressed(5, 200);
-  EXPECT_TRUE(says(told(sides), "a surface that never moves is 100 % off")) << told(sides);
+  EXPECT_TRUE(says(told(sides), "a surface that never moves has an error of 100 %")) << told(sides);
   EXPECT_FALSE(says(told(sides), "worse than no deformation")) << told(sides);
   for (std::size_t t = 0; t < 5; ++t) {
     sides.run.instants[t].displacement_m = 3.0 * sides.result.instants[t].displacement_m;
   }
   const std::string text = told(sides);
-  EXPECT_TRUE(says(text, "off by 200 % ± 1")) << text;
+  EXPECT_TRUE(says(text, "shape error is 200 % ± 1")) << text;
   EXPECT_TRUE(says(text, "That is worse than no deformation")) << text;
-  EXPECT_TRUE(says(text, "In the mean the surface moves 3 times as far as the reference's.")) << text;
+  EXPECT_TRUE(says(text, "On average the surface moves 3 times as far as the reference's.")) << text;
 }
 
 TEST(Verdict, PassesOnWhatTheFastModelSaysOfItsSteps) {
@@ -184,7 +184,7 @@ TEST(Verdict, PassesOnWhatTheFastModelSaysOfItsSteps) {
   for (const auto& [bit, words] : {std::pair(fast::StepStatus::not_finite, "were not finite numbers"),
                                    std::pair(fast::StepStatus::contact_missed, "Raise fast.tool_samples"),
                                    std::pair(fast::StepStatus::depth_limited, "half of the body's thickness"),
-                                   std::pair(fast::StepStatus::law_saturated, "past its peak"),
+                                   std::pair(fast::StepStatus::law_saturated, "exceeds the peak of the contact law"),
                                    std::pair(fast::StepStatus::regions_full, "fast.max_regions = 1"),
                                    std::pair(fast::StepStatus::anchors_limited, "fast.s_c_m2 = 0.001 m²")}) {
     sides.run.status = static_cast<std::uint32_t>(bit);
@@ -205,11 +205,11 @@ TEST(Verdict, TellsOfFrictionWhereThereIsSome) {
   const std::string text = told(sides);
   EXPECT_TRUE(says(text, "Friction: The error is ")) << text;
   EXPECT_TRUE(says(text, "of the reference's peak friction")) << text;
-  EXPECT_TRUE(says(text, "The fast model never slides, the reference slides after ")) << text;
+  EXPECT_TRUE(says(text, "The fast model never slips, the reference slips after ")) << text;
   for (std::size_t t = 1; t < 5; ++t) {
     if (!sides.run.instants[t].regions.empty()) sides.run.instants[t].regions[0].sliding = true;
   }
-  EXPECT_TRUE(says(told(sides), "Sliding begins after ")) << told(sides);
+  EXPECT_TRUE(says(told(sides), "Slip begins after ")) << told(sides);
 }
 
 TEST(Verdict, SaysWhyRefinementEnded) {

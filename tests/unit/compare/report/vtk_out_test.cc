@@ -34,7 +34,7 @@ class VtkOut : public ::testing::Test {
   }
   vtkPolyData* load(const std::string& name) {
     reader_->SetFileName((folder_.path() / name).c_str());
-    reader_->Modified();  // the file may be another one of the same name
+    reader_->Modified();  // the file may be a new one of the same name
     reader_->Update();
     return reader_->GetOutput();
   }

@@ -20,7 +20,7 @@ using ::testing::Not;
 
 class ResultsPage : public ::testing::Test {
  protected:
-  /// A result folder of the made-up sides.
+  /// A result folder of the synthetic sides.
   ResultFolder make(const std::string& name, const std::function<void(testing::Sides&)>& change = nullptr) {
     testing::Sides sides = testing::pressed(5, 200);
     sides.manifest.command = "touchstone compare";
@@ -45,7 +45,7 @@ TEST_F(ResultsPage, IsWellFormedAndLinksEveryResultRelatively) {
   const std::string html = results_page_html({make("a b/x"), make("c/x")}, folder_.path() / "pages");
   EXPECT_TRUE(testing::is_well_formed(html));
   EXPECT_FALSE(testing::shows_not_a_number(html));
-  // Once in the table, once at the picture; the folder's space encoded, alike names told apart.
+  // Once in the table, once at the picture; the folder's space encoded, equal names made unique.
   EXPECT_EQ(count(html, "href=\"../a%20b/x/report.html\""), 2u);
   EXPECT_EQ(count(html, "href=\"../c/x/report.html\""), 2u);
   EXPECT_EQ(count(html, "src=\"../c/x/shape.svg\""), 1u);
@@ -82,7 +82,7 @@ TEST_F(ResultsPage, CallsTheCasesOfAStudyByTheirNamesInItsOrder) {
   EXPECT_NE(place("stiff"), std::string::npos);
   EXPECT_EQ(place("aaa"), std::string::npos);
   EXPECT_THAT(html, HasSubstr(">stiff</text>")) << "the legend";
-  // Of two studies alike, which one.
+  // With two equal studies, which of them.
   std::filesystem::copy(study, folder_.path() / "again", std::filesystem::copy_options::recursive);
   const std::string both =
       results_page_html({soft, read_result_folder(folder_.path() / "again/results/fff")}, folder_.path());

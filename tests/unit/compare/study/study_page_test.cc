@@ -1,4 +1,4 @@
-// The page of a study whose cases are run by a verb that only leaves figures.
+// The page of a study whose cases are run by a command that only writes figures.
 #include "compare/study/study_page.h"
 
 #include "compare/study/study_parameters.h"
@@ -79,7 +79,7 @@ TEST_F(StudyPage, DrawsOneAxisAsALineWithBars) {
   EXPECT_THAT(html, HasSubstr("Hollow marks: its uncertainty is unknown."));
   EXPECT_THAT(html, HasSubstr("unknown in 1 of 3 cases"));
   EXPECT_THAT(html, HasSubstr("from 10\u00a0% ± 0.2\u00a0% (fast.C_n = 0.1) to 30\u00a0% ± unknown (fast.C_n = 0.3)"));
-  // Along the axis, whatever the order of the cases: the line goes right.
+  // Sorted along the axis, whatever the order of the cases.
   const std::regex path_of("<path d=\"M([0-9.]+) [0-9.]+L([0-9.]+) [0-9.]+L([0-9.]+) ");
   std::smatch found;
   ASSERT_TRUE(std::regex_search(html, found, path_of));

@@ -1,4 +1,4 @@
-// A study's folder under workers that race, fail, are killed and come back; the verb of a case is one that counts.
+// A study's folder with workers that compete, fail, are killed and restarted; a case's command only counts its runs.
 #include "compare/study/study.h"
 
 #include "compare/study/study_run.h"
@@ -49,7 +49,7 @@ class StudyFolderTest : public ::testing::Test {
   }
   [[nodiscard]] path study() const { return folder_.path() / "study"; }
 
-  /// Leaves a line in a ledger and a summary. The ledger is appended to in one write, so that processes do not mix.
+  /// Appends a line to a log and writes a summary. The line is one write, so that processes do not mix.
   CaseRun counting_run(std::chrono::milliseconds takes = std::chrono::milliseconds(0)) {
     return [this, takes](const path& scene_file, const path& result) {
       std::ofstream(folder_.path() / "ledger", std::ios::app) << scene_file.stem().string() + "\n";
@@ -93,7 +93,7 @@ TEST_F(StudyFolderTest, TheManifestReadsBackAndNamesCasesByContent) {
     EXPECT_EQ(case_id("fast", scene), read.cases[k].id);
     EXPECT_NE(case_id("compare", scene), read.cases[k].id);
   }
-  // More values, in another order: the same cases keep their address.
+  // More values in another order: the same cases keep their identity.
   const StudyManifest more = expanded("[0.3, 0.2, 0.1]");
   EXPECT_EQ(more.cases[1].id, written.cases[2].id);
   EXPECT_EQ(more.cases[2].id, written.cases[1].id);
@@ -117,7 +117,7 @@ TEST_F(StudyFolderTest, EveryShippedSceneSurvivesTheWayThroughTheFolder) {
     if (entry.path().extension() != ".toml") continue;
     ++count;
     const StudyManifest manifest = expanded("[0.0, 0.1]", entry.path().stem());
-    // A folder that is moved takes its mesh tools along.
+    // A moved folder contains its mesh tools.
     const path moved = folder_.path() / "moved";
     std::filesystem::rename(study(), moved);
     const StudyManifest read = read_manifest(moved);
@@ -133,7 +133,7 @@ TEST_F(StudyFolderTest, EveryShippedSceneSurvivesTheWayThroughTheFolder) {
 
 TEST_F(StudyFolderTest, WhatASolverCannotDoIsRefusedBeforeAnythingIsWritten) {
   const path file = folder_.path() / "study.toml";
-  // An edge too sharp for the reference.
+  // An edge that is too sharp for the reference.
   std::ofstream(file) << "scene = \"" << scenes << "ball-on-cube-press.toml\"\nrun = \"reference\"\n[[case]]\n"
                       << "name = \"sharp\"\nset = { tool.shape = \"cylinder\", tool.length_m = 0.02, "
                       << "tool.edge_radius_m = 0.0, \"track[0].position_m[2]\" = 0.09, "
@@ -158,15 +158,15 @@ TEST_F(StudyFolderTest, WhatIsDoneIsNotRunAgain) {
   EXPECT_THAT(states(manifest), ElementsAre("done", "done", "done"));
   for (const auto& [id, times] : ledger()) EXPECT_EQ(times, 1) << id;
   EXPECT_EQ(ledger().size(), 3u);
-  // Expanded again with one value more: only that one is left.
+  // Expanded again with one more value: only that case is left.
   const StudyManifest more = expanded("[0.3, 0.2, 0.1, 0.0]");
   EXPECT_THAT(states(more), ElementsAre("waiting", "done", "done", "done"));
-  // A result that is not what it was is no result.
+  // A result that was altered does not count.
   std::ofstream(more.result_folder(more.cases[2]) / "summary.json", std::ios::app) << " ";
   EXPECT_THAT(states(more), ElementsAre("waiting", "done", "interrupted", "done"));
   EXPECT_EQ(run_all(more, counting_run()), fast::done);
   EXPECT_EQ(ledger().at(more.cases[2].id), 2);
-  // Nor is one whose mark somebody wrote over.
+  // Nor does one whose marker file was overwritten.
   std::ofstream(more.result_folder(more.cases[2]) / "done.json") << "{\"id\": 3, \"summary\": []}";
   EXPECT_THAT(states(more), ElementsAre("done", "done", "interrupted", "done"));
 }
@@ -250,7 +250,7 @@ TEST_F(StudyFolderTest, WorkersThatRaceRunEveryCaseOnce) {
 
 TEST_F(StudyFolderTest, AFailureIsNotRepeatedByEveryWorkerOfOneRace) {
   const StudyManifest manifest = expanded("[0.0]");
-  // Nobody fails before both are there.
+  // Neither fails before both have started.
   int both_there[2];
   ASSERT_EQ(::pipe(both_there), 0);
   const auto fails = [&](const path& scene_file, const path& result) -> int {
@@ -332,7 +332,7 @@ TEST_F(StudyFolderTest, TheBatchScriptRunsEveryCaseOnceAndIsShell) {
   const std::string script = *scene::read_file(study() / "array.sbatch");
   EXPECT_THAT(script, HasSubstr("#SBATCH --array=1-3\n"));
   EXPECT_TRUE(std::filesystem::is_directory(study() / "logs"));
-  // A program of ours in place of the real one keeps what it is asked.
+  // A program in place of the real one records its arguments.
   const path program = folder_.path() / "it's a program";
   std::ofstream(program) << "#!/bin/sh\necho \"$@\" >> '" << (folder_.path() / "asked").string() << "'\n";
   std::filesystem::permissions(program, std::filesystem::perms::owner_all);

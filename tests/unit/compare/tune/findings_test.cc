@@ -51,7 +51,7 @@ TEST(Findings, SayWhatThePartsOfTheShapeAreGoodFor) {
   EXPECT_GT(parts.without_local_factor, parts.whole + 0.01);
   EXPECT_GT(parts.anchors_at_rest, parts.whole + 0.01);
   EXPECT_GT(parts.hat_alone, parts.whole + 0.01);
-  EXPECT_THAT(model.limits.back(), HasSubstr("What its parts are good for, on the training contact pole"));
+  EXPECT_THAT(model.limits.back(), HasSubstr("Shape error by parts of the model, on the training contact pole"));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Bounded least squares on functions whose answers are known: does it find them, and does it say what it cannot know?
+// Bounded least squares on functions with known solutions: does it find them, and does it report what is not
+// determined?
 #include "compare/tune/fit.h"
 
 #include <Eigen/LU>
@@ -18,7 +19,7 @@ using Values = Eigen::VectorXd;
 
 constexpr int points = 30;
 
-/// Residuals of y(x) at points in (0, 1] against data, each known to `uncertainty`.
+/// Residuals of y(x) at points in (0, 1] against data with the given uncertainty.
 template <class Curve>
 Residuals against(const Curve& curve, const Values& truth, double uncertainty, double misfit = 0.0) {
   return [=](const Values& values) -> std::optional<Values> {
@@ -129,7 +130,7 @@ TEST(Profile, StaysFlatForAParameterWithoutEffect) {
   EXPECT_FALSE(known.open_low || known.open_high);
 }
 
-/// A line through the data, and beside it a comb in one parameter: a descent ends in the tooth it begins in.
+/// A line through the data, and a comb in one parameter with many local minima: a descent ends where it began.
 std::optional<Values> comb(const Values& p) {
   return Values(Eigen::Vector3d(p[0] - 3.0, 0.2 * (p[1] - 8.0), 2.0 * std::sin(std::numbers::pi * p[1])));
 }

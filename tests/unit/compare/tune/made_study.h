@@ -1,4 +1,4 @@
-// Small studies whose reference a model made: the constants are known.
+// Small studies whose reference was computed by a model with known constants.
 #pragma once
 
 #include "compare/model/judge.h"
@@ -22,7 +22,7 @@ namespace touchstone::compare::testing {
   return scene::load_scene(source_folder() + "/meshes/scenes/sphere-on-sphere-body.toml", settings);
 }
 
-/// What a model with these constants answers, as a reference with narrow bands.
+/// Results of a model with these constants, as a reference with a small uncertainty.
 [[nodiscard]] inline SolveReference made_with(const std::map<std::string, double>& constants,
                                               const ModelEntry& model = fast_model()) {
   return [constants, model](const scene::Scene& asked, const scene::Surface& surface) {

@@ -40,7 +40,7 @@ TEST(TuningFigures, HeldOutFiguresAreTheWorstContactsAndNoneOfTraining) {
   EXPECT_GT(nrmse(1), nrmse(0));
 }
 
-/// A model with one value found by the fit of one contact.
+/// A model with one fitted value, for one contact.
 std::string parameters_with(const std::string& scene, const std::string& key, double value) {
   Tuning tuning{study({}), {}, {}};
   for (const std::string& name : {std::string("ball-on-cube-press"), scene})
@@ -58,7 +58,7 @@ TEST(Parameters, HoldTheModelItsLawAndWhatWasTuned) {
   EXPECT_THAT(force, HasSubstr("\n\n[contact]\nlaw = \"duffing\"\nk1_n_per_m = 7.0\nk3_n_per_m3 = 3e+08\n\n[fast]\n"
                                "formulation = \"corrected\"\n"));
   EXPECT_THAT(force, ::testing::Not(HasSubstr("reference reads")));
-  // Friction's table is whole, with the values of a contact that has it.
+  // Friction's table is complete, with the values of a contact that has friction.
   const std::string friction = parameters_with("ball-on-cube-slide", "contact.friction.stiffness_ratio", 0.5);
   EXPECT_THAT(friction, HasSubstr("\n[contact.friction]\nK = 1.0\nbeta = 0.75\nmu_D = 0.5\nstiffness_ratio = 0.5\n"));
   EXPECT_THAT(friction, HasSubstr("# The reference reads contact.friction.K, contact.friction.beta, "
@@ -98,7 +98,7 @@ TEST(WriteTuning, LeavesAFolderWhoseParametersASceneTakesOver) {
                            "manifest.json", "report.html"}) {
     EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
   }
-  // The scene without the constants, and one line more.
+  // The scene without the constants, and one more line.
   std::string text = scene::resolved_toml(asked.training[0].scene);
   for (const char* key : {"k1_n_per_m", "k3_n_per_m3", "s_c_m2", "formulation", "law"}) {
     const std::size_t at = text.find(std::string("\n") + key + " = ");
@@ -119,7 +119,7 @@ TEST(WriteTuning, LeavesAFolderWhoseParametersASceneTakesOver) {
        {"Made &amp; tuned", "Profile of fast.s_c_m2", "Regime map", "Correlation", "What limits"}) {
     EXPECT_THAT(html, HasSubstr(text_there));
   }
-  // Nobody's material is judged by what another model once reached, and what limits the first model stands there once.
+  // The findings do not refer to other models, and the first model's are on the page once.
   EXPECT_THAT(html, ::testing::Not(HasSubstr("prototype")));
   const std::string limit = escape_xml(tuning.models.front().limits.front());
   EXPECT_NE(html.find(limit), std::string::npos);

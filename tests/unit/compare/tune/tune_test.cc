@@ -1,4 +1,4 @@
-// Tuning against references that a model itself made: the constants come back.
+// Tuning against references computed by a model: the constants are recovered.
 #include "compare/tune/tune.h"
 
 #include "fast/run/replay.h"
@@ -62,7 +62,7 @@ TEST_P(Replays, EqualTheRunBitForBitWithTheConstantsOfTheCall) {
   }
 }
 
-// A tool that may have several regions is recorded only while its constants cannot say how many.
+// A tool that may have several regions is recorded only while its number of regions does not depend on its constants.
 INSTANTIATE_TEST_SUITE_P(
     Scenes, Replays,
     ::testing::Values(std::tuple("sphere-on-sphere-body", false, true), std::tuple("sphere-on-sphere-body", true, true),
@@ -95,7 +95,7 @@ TEST(Replay, MemoryDoesNotHangOnTheTicks) {
   GTEST_SKIP() << "the sanitizer keeps memory of its own";
 #endif
   scene::Scene scene = coarse("ball-on-cube-slide");
-  // A long way off, where a tick costs least.
+  // Far away, where a tick takes least time.
   for (scene::Waypoint& row : scene.track) row.pose.position_m.z() += 0.5;
   scene.track.back().time_s = 1e4;
   EXPECT_TRUE(done_within(std::size_t{32} << 20, [&] {
@@ -115,7 +115,7 @@ TEST(Tune, BringsBackTheConstantsOfForceAndShape) {
   EXPECT_NEAR(found(model, "contact.k3_n_per_m3").value, 2.0e9, 1e6);
   EXPECT_NEAR(found(model, "fast.s_c_m2").value, 6.0e-3, 1e-5);
   EXPECT_NEAR(found(model, "fast.C_n").value, 0.1, 1e-3);
-  // What made the reference is right everywhere.
+  // The true constants are right for every contact.
   for (const TuningOutcome& outcome : model.outcomes) {
     EXPECT_LT(*outcome.errors.force_nrmse.value, 1e-3);
     EXPECT_LT(*outcome.errors.shape_rel_l2.value, 1e-2);

@@ -1,4 +1,4 @@
-// The window under Xvfb: keys as a person presses them, and pictures without any display.
+// The window under Xvfb: key presses as from a user, and pictures without any display.
 #include "compare/view/view.h"
 
 #include "compare/comparison/compare.h"
@@ -28,7 +28,7 @@
 #include <limits>
 #include <set>
 
-// After all others: its macros take common words.
+// Included last: its macros use common words.
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 #include <X11/keysym.h>
@@ -71,7 +71,7 @@ class ViewTest : public ::testing::Test {
   testing::TemporaryFolder folder_;
 };
 
-/// Share of the pixels that differ.
+/// Fraction of the pixels that differ.
 double difference(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
   if (a.size() != b.size()) return 1.0;
   std::size_t count = 0;
@@ -220,7 +220,7 @@ TEST_F(ViewTest, RefusesAPictureOfAnotherEndingBeforeAnyWork) {
     const Ended refused =
         run(std::string(TOUCHSTONE_BINARY) + " view /no/such/result --screenshot " + (folder_.path() / name).string());
     EXPECT_EQ(refused.code, 2);
-    EXPECT_THAT(refused.text, HasSubstr(std::string(name) + ": unknown ending; expected .png, .jpg or .jpeg"));
+    EXPECT_THAT(refused.text, HasSubstr(std::string(name) + ": unknown extension; expected .png, .jpg or .jpeg"));
   }
 }
 
@@ -258,7 +258,7 @@ Window find_window(Display* display, Window below, const std::string& name) {
   return found;
 }
 
-/// Nothing of a window that is not shown yet.
+/// Empty for a window that is not shown yet.
 std::vector<unsigned long> window_pixels(Display* display, Window window) {
   XWindowAttributes size;
   std::vector<unsigned long> out;
@@ -273,7 +273,7 @@ std::vector<unsigned long> window_pixels(Display* display, Window window) {
   return out;
 }
 
-/// Looks again until it is so or a minute has passed.
+/// Repeats a check until it holds or a minute has passed.
 template <class IsSo>
 bool comes_true(IsSo is_so) {
   for (int i = 0; i < 600; ++i) {
@@ -283,7 +283,7 @@ bool comes_true(IsSo is_so) {
   return false;
 }
 
-/// A program that does not outlive its test, whose output the test's runner would wait for.
+/// A program that is stopped with its test; the test runner would wait for its output.
 class Program {
  public:
   explicit Program(const char* const* arguments) {

@@ -1,4 +1,4 @@
-// What a user sees of every verb that writes results: exit codes, one clear message, nothing half-written.
+// Every command that writes results, as a user sees it: exit codes, one clear message, no partial files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -59,7 +59,7 @@ class Verb : public testing::TestWithParam<std::string> {
   }
   void TearDown() override { std::filesystem::remove_all(dir_); }
 
-  /// The shipped scene with one text replaced, in a file of its own.
+  /// The shipped scene with one text replaced, in a new file.
   std::string edited(const std::string& from, const std::string& to) {
     std::ifstream in(scene);
     std::stringstream text;
@@ -220,7 +220,7 @@ TEST(FastVerb, AFullDiskIsOneMessageAndTheNextRunGoesOn) {
     const std::filesystem::path out = std::filesystem::path(testing::TempDir()) / "fast-verb-full";
     std::filesystem::remove_all(out);
     const std::string command = verb + " " + scene + " --quiet --out " + out.string();
-    // Files of more than 4 KiB do not fit.
+    // Files of more than 4 KiB cannot be written.
     const Answer full = run("trap '' XFSZ; ulimit -f 8; " + command);
     EXPECT_EQ(full.exit_code, 2) << full.output;
     EXPECT_THAT(full.output, HasSubstr("cannot write: File too large [" + out.string()));
@@ -235,7 +235,7 @@ TEST(FastVerb, AFullDiskIsOneMessageAndTheNextRunGoesOn) {
   }
 }
 
-/// The executable that solves references, or nothing in a build without.
+/// The executable that solves references, or nothing in a build without it.
 std::string full_program() {
   for (const std::string& verb : verbs()) {
     if (verb.ends_with(" compare")) return verb.substr(0, verb.rfind(' '));
@@ -310,7 +310,7 @@ TEST_F(NewVerb, RefusesInOneLineAndWritesNothing) {
   refused(block + "--tool capsule 10mm", "expected radius and length of the straight part, such as 6x20mm");
   refused(block + "--tool mesh none.stl --unit mm", "tool.file: cannot read none.stl: there is no such file");
   refused(block + "--tool mesh none.stl", "--unit is missing: expected the unit of the mesh file's coordinates");
-  refused(block + "--tool sphere 10mm --at 50x0mm", "moved straight down the tool never meets the body");
+  refused(block + "--tool sphere 10mm --at 50x0mm", "moved straight down the tool never touches the body");
   refused("--body box 60x60x40mm --youngs-modulus 3 --poissons-ratio 0.4 --tool sphere 10mm --depth 2mm",
           "--youngs-modulus 3: expected a number with its unit");
   refused("--body box 60x60x4mm --youngs-modulus 3MPa --poissons-ratio 0.4 --tool sphere 10mm --depth 3mm",
@@ -324,7 +324,7 @@ TEST_F(NewVerb, RefusesInOneLineAndWritesNothing) {
   std::ofstream(dir_ / "there.toml") << "mine";
   const Answer answer = make(program, "there.toml " + block + "--tool sphere 10mm");
   EXPECT_EQ(answer.exit_code, 2);
-  EXPECT_THAT(answer.output, HasSubstr("there.toml: there is such a file already"));
+  EXPECT_THAT(answer.output, HasSubstr("there.toml: the file exists already"));
   EXPECT_EQ(text("there.toml"), "mine");
 }
 
@@ -334,11 +334,11 @@ TEST(Help, WithoutArgumentsIsTheOverview) {
     EXPECT_EQ(alone.exit_code, 0);
     EXPECT_EQ(alone.output, run(program + " --help").output);
     EXPECT_THAT(alone.output, HasSubstr("\n  new "));
-    EXPECT_THAT(alone.output, HasSubstr("VERB --help"));
+    EXPECT_THAT(alone.output, HasSubstr("COMMAND --help"));
   }
 }
 
-/// The verbs and the verbs below them, as the help lists them.
+/// All commands and subcommands, as the help lists them.
 std::vector<std::string> all_verbs(const std::string& program) {
   std::vector<std::string> list;
   std::istringstream in(run(program).output);
@@ -372,20 +372,20 @@ TEST(Misspelt, VerbsAndOptionsGetTheNearestName) {
       EXPECT_EQ(answer.exit_code, 2) << arguments;
       EXPECT_EQ(answer.output, name + message + "\n");
     };
-    refused("paln " + scene, ": unknown verb \"paln\"; did you mean \"plan\"?");
+    refused("paln " + scene, ": unknown command \"paln\"; did you mean \"plan\"?");
     refused("plan " + scene + " --quite", " plan: unknown option --quite; did you mean \"--quiet\"?");
     refused("plan --quite", " plan: unknown option --quite; did you mean \"--quiet\"?");
     refused("fast " + scene + " --uot=x", " fast: unknown option --uot; did you mean \"--out\"?");
     refused("fast " + scene + " --zzzzzzzz", " fast: unknown option --zzzzzzzz; see " + name + " fast --help");
-    refused(scene, ": expected a verb before " + scene + ", such as: " + name + " plan " + scene);
-    EXPECT_THAT(run(program + " zzzzzz").output, HasSubstr("unknown verb \"zzzzzz\"; expected one of new, plan, "));
+    refused(scene, ": expected a command before " + scene + ", such as: " + name + " plan " + scene);
+    EXPECT_THAT(run(program + " zzzzzz").output, HasSubstr("unknown command \"zzzzzz\"; expected one of new, plan, "));
   }
   if (full_program().empty()) return;
   const Answer far = run(full_program() + " view out --set");
   EXPECT_EQ(far.output, "touchstone view: unknown option --set; see touchstone view --help\n") << "--help is not meant";
   const Answer nested = run(full_program() + " study expnd x.toml");
   EXPECT_EQ(nested.exit_code, 2);
-  EXPECT_EQ(nested.output, "touchstone study: unknown verb \"expnd\"; did you mean \"expand\"?\n");
+  EXPECT_EQ(nested.output, "touchstone study: unknown command \"expnd\"; did you mean \"expand\"?\n");
 }
 
 TEST(Misspelt, AFileThatIsNotThereGetsTheNearestInItsFolder) {
@@ -398,7 +398,7 @@ TEST(Misspelt, AFileThatIsNotThereGetsTheNearestInItsFolder) {
                 HasSubstr("; there is no folder " + folder + "sceens"));
     EXPECT_THAT(run(program + " plan " + folder + "scenes/quite-another.toml").output,
                 HasSubstr("expected a TOML file of at most 4 MiB\n"));
-    // Another ending.
+    // Another extension.
     EXPECT_THAT(run(program + " plan " + folder + "scenes/hertz-sphere.tml").output,
                 HasSubstr("; did you mean \"" + folder + "scenes/hertz-sphere.toml\"?"));
   }
@@ -416,22 +416,22 @@ TEST(WrongFile, IsCalledWhatItIsWithTheVerbThatTakesIt) {
     EXPECT_THAT(answer.output, HasSubstr(message));
     EXPECT_EQ(std::count(answer.output.begin(), answer.output.end(), '\n'), 1) << answer.output;
   };
-  const std::string for_scene = "the verb for it is: touchstone compare " + scene;
+  const std::string for_scene = "the command for it is: touchstone compare " + scene;
   refused("tune " + scene, "this is a scene, expected a tuning study; " + for_scene);
   refused("study expand " + scene, "this is a scene, expected a study of many cases; " + for_scene);
   refused("gate " + scene, "this is a scene");
   refused("tune " + sweep,
-          "this is a study of many cases, expected a tuning study; the verb for it is: touchstone "
+          "this is a study of many cases, expected a tuning study; the command for it is: touchstone "
           "study expand " +
               sweep);
   refused("study expand " + tuning, "this is a tuning study");
   refused("compare " + sweep, "this is a study of many cases, expected a scene");
-  refused("compare " + tuning, "expected a scene; the verb for it is: touchstone tune " + tuning);
-  refused("compare " + gates, "this is a gate file, expected a scene; the verb for it is: touchstone gate --gates " +
+  refused("compare " + tuning, "expected a scene; the command for it is: touchstone tune " + tuning);
+  refused("compare " + gates, "this is a gate file, expected a scene; the command for it is: touchstone gate --gates " +
                                   source + "/tests/gates");
 }
 
-/// What bash would offer for the last of the words, with the program's script.
+/// The words that bash offers in place of the last word, with the program's script.
 std::set<std::string> offered(const std::string& program, const std::vector<std::string>& words,
                               const std::string& folder = "/") {
   const std::string name = std::filesystem::path(program).filename();
@@ -535,7 +535,7 @@ TEST(StudyVerb, ExpandWarnsOfCasesWithoutContact) {
   EXPECT_THAT(answer.output, HasSubstr("warning: case 2 (track[1].position_m[2] = 0.0701): the tool never touches the "
                                        "body on this track; the least gap is 0.1 mm"));
   EXPECT_THAT(answer.output, testing::Not(HasSubstr("warning: case 5")));
-  EXPECT_THAT(answer.output, HasSubstr("warning: 4 cases of 5 are without contact like these"));
+  EXPECT_THAT(answer.output, HasSubstr("warning: 4 of 5 cases are without contact"));
   std::filesystem::remove_all(dir);
 }
 
@@ -580,7 +580,7 @@ TEST(StudyVerb, TwoWorkersOverTheSameIndicesLeaveOneTable) {
   std::filesystem::remove_all(dir);
 }
 
-/// The program of a verb, with its path.
+/// The program that has a command, with its path.
 std::string program_of(const std::string& ending) {
   for (const std::string& verb : verbs()) {
     if (verb.ends_with(ending)) return verb.substr(0, verb.rfind(' '));

@@ -1,4 +1,4 @@
-// What a user sees of limits: exit codes, what is kept, and why refinement ended.
+// Limits as a user sees them: exit codes, what is kept, and why refinement ended.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -100,7 +100,7 @@ TEST_F(LimitsVerb, RequireErrorExitsThreeWithItsResultsWritten) {
     EXPECT_TRUE(std::filesystem::exists(dir_ / "out" / "summary.json"));
     std::filesystem::remove_all(dir_ / "out");
   }
-  // Without a number of meshes or an error of its own it is what refinement goes for.
+  // Without --level or --error, --require-error is the target of the refinement.
   const Answer reached = run("reference", "--set reference.error=0.4 --require-error 0.05");
   EXPECT_EQ(reached.exit_code, 0) << reached.errors;
   EXPECT_EQ(reached.errors, "");

@@ -1,5 +1,6 @@
-// What the machine may do to a run: no space, no memory, no descriptors, a closed output, signals, another writer.
-// Every verb ends at once with one sentence and an exit code, loses nothing that was finished, and runs the next time.
+// Faults of the machine during a run: no disk space, memory or descriptors, a closed output, signals, another writer.
+// Every command ends at once with one sentence and an exit code, loses nothing that was finished, and works the next
+// time.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -39,12 +40,12 @@ std::string text_of(const path& file) {
 
 /// How a run ended.
 struct End {
-  int exit_code = -1;  ///< 128 + the signal that killed it, as a shell has it
+  int exit_code = -1;  ///< 128 + the signal that ended it, as in a shell
   std::string output, errors;
   double seconds = 0.0;
 };
 
-/// A verb on a small scene.
+/// A command on a small scene.
 struct Case {
   std::string program, verb;
   [[nodiscard]] bool full() const { return !program.ends_with("touchstone-fast"); }
@@ -127,19 +128,19 @@ class MachineFaults : public testing::TestWithParam<Case> {
             text_of(dir_ / "errors"), seconds()};
   }
 
-  /// One run of the verb, which a study thinks it still has to do.
+  /// One run of the command; a study must consider it not done.
   End run_verb(const std::string& before, const std::string& after = "", int signal = 0, double signal_s = 0.0) const {
     std::filesystem::remove(out_ / "done.json");
     return run(before, command(), after, signal, signal_s);
   }
 
-  /// The sentence that a run ended with: the only line of its errors but for warnings; of a study what it says of the
-  /// case.
+  /// The sentence with which a run ended: the only line of its error output apart from warnings; for a study, what it
+  /// says about the case.
   [[nodiscard]] std::string sentence(const End& end) const {
     std::istringstream in(end.errors.empty() ? end.output.substr(end.output.rfind("failed: ") + 1) : end.errors);
     std::string sentence;
     for (std::string line; std::getline(in, line);) {
-      // FCL has a word of its own about the memory.
+      // FCL prints its own message about memory.
       if (line.starts_with("warning: ") || line.starts_with("BVH Error!")) continue;
       EXPECT_EQ(sentence, "") << "more than one line: " << end.errors;
       sentence = line;
@@ -148,7 +149,7 @@ class MachineFaults : public testing::TestWithParam<Case> {
     return sentence;
   }
 
-  /// What was finished is there and whole, whoever wrote it.
+  /// Everything that was finished exists and is complete, whoever wrote it.
   void expect_results() const {
     for (const char* name : {"summary.json", "manifest.json"}) {
       EXPECT_TRUE(nlohmann::json::accept(text_of(out_ / name))) << out_ / name;
@@ -176,7 +177,7 @@ TEST_P(MachineFaults, EndInASentenceAndTheNextRunWorks) {
     std::string name, before, after, sentence;
     std::vector<int> exit_codes;
   };
-  // What happens to the output and to descriptors is one rule of the program, whatever the verb.
+  // Faults of the output and of descriptors are handled by one part of the program, whatever the command.
   const bool every = GetParam().verb == "fast" || GetParam().verb == "live" || GetParam().verb == "compare";
   std::vector<Fault> faults = {
       {"no space for a file", "ulimit -f 1;", "", "cannot write: File too large \\[", {2}},
@@ -212,7 +213,7 @@ TEST_P(MachineFaults, EndInASentenceAndTheNextRunWorks) {
   for (const int signal : every ? std::vector{SIGINT, SIGTERM, SIGHUP, SIGKILL} : std::vector{SIGTERM, SIGKILL}) {
     SCOPED_TRACE("signal " + std::to_string(signal));
     const End end = run_verb("", "", signal, 0.7 * first.seconds);
-    // Or it was over before.
+    // Or it had ended before.
     EXPECT_THAT(end.exit_code, AnyOf(Eq(130), Eq(128 + signal), Eq(0))) << end.errors;
     expect_results();
   }
@@ -279,7 +280,7 @@ TEST(MachineFaultsLive, OfTwoWritersTheSecondIsRefusedAndTheFirstGoesOn) {
 
 TEST(MachineFaultsLive, RunsWhateverTheLimitForStacksAndTakesNoMoreMemoryForIt) {
   for (Case one : cases()) {
-    // The other program's libraries have threads of their own, and it has the verb, too.
+    // The other program's libraries have threads of their own, and it has the command, too.
     if (one.verb == "compare") one.verb = "live";
     if (one.verb != "live") continue;
     const path dir = path(testing::TempDir()) / ("stacks-" + std::to_string(::getpid()));

@@ -18,7 +18,7 @@ namespace {
 
 const std::string scene = touchstone::source_folder() + "/meshes/scenes/pin-on-cylinder.toml";
 
-/// The executable of the first verb with this name, or nothing in a build without.
+/// The first executable that has the command, or nothing in a build without it.
 std::string program_of(const std::string& verb) {
   std::istringstream in(TOUCHSTONE_VERBS);
   for (std::string one; std::getline(in, one, '|');) {

@@ -1,4 +1,4 @@
-// What a user sees of `bench`: the folder it leaves, every figure finite and above zero. Never how long anything takes.
+// Results of `bench`: its folder, every figure finite and above zero. Times are not judged.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>

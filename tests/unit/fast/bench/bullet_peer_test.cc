@@ -62,7 +62,7 @@ TEST(BulletPeer, TellsHowFarEveryPlaceOfItsSurfaceMoved) {
 
 TEST(BulletPeer, ABallInsideItIsSeenToPierceIt) {
   BulletPeer peer(small_block());
-  // One step is too short for the body to make way.
+  // One step is too short for the body to move away.
   peer.step(peer.top_node_m() - scene::Vec3(0, 0, 0.01));
   EXPECT_GT(peer.pierced_m(), 0.001);
 }

@@ -14,7 +14,7 @@ PeerResult peer(const std::string& name, double step_us) {
   result.ticks = 10;
   result.sound = result.touching = true;
   result.step.cpu_us = step_us;
-  result.step.wall.p50_us = 3.0 * step_us;  // others came in between
+  result.step.wall.p50_us = 3.0 * step_us;  // other processes took time in between
   result.our_step_us = 10.0;
   return result;
 }

@@ -29,7 +29,7 @@ CaseResult result_of(const std::string& size, int regions, double step_us, doubl
   return c;
 }
 
-/// All five figures stand exactly at their targets.
+/// All five figures are exactly at their targets.
 BenchResult at_the_targets() {
   BenchResult result;
   result.counters = "counted";
@@ -93,7 +93,7 @@ TEST(Verdicts, TheForceIsThatOfTheWorstNumberOfRegions) {
   EXPECT_DOUBLE_EQ(verdict(verdicts(result), "force_us_p50_per_region").number, 17.0);
   result.cases[1].force.p50_us = 18.0;
   EXPECT_DOUBLE_EQ(verdict(verdicts(result), "force_us_p50_per_region").number, 18.0);
-  // Other sizes do not count.
+  // Other sizes have no effect.
   result.cases[0].force.p50_us = 99.0;
   EXPECT_DOUBLE_EQ(verdict(verdicts(result), "force_us_p50_per_region").number, 18.0);
 }
@@ -135,7 +135,7 @@ TEST(BenchFigures, HoldTheTargetsFirstAndEveryCase) {
 
 TEST(BenchReport, SaysOfAMissedTargetWhereTheTimeGoes) {
   BenchResult result = at_the_targets();
-  EXPECT_THAT(report_text(result), Not(HasSubstr("Where the time goes")));
+  EXPECT_THAT(report_text(result), Not(HasSubstr("Stages of the cases that missed")));
   result.cases[1].step.wall.p50_us = 24.0;
   const std::string text = report_text(result);
   EXPECT_THAT(text, HasSubstr("12.0  <= 10.0  missed"));

@@ -22,7 +22,7 @@ TEST(Workload, EveryCaseIsASceneThatBreaksNoRule) {
   std::set<std::string> names;
   for (const Case& which : cases) {
     names.insert(which.name());
-    if (which.size != "1k") continue;  // the size is not a matter of the rules
+    if (which.size != "1k") continue;  // the rules do not depend on the size
     for (const scene::Violation& v : scene::broken_rules(scene_of(which))) {
       ADD_FAILURE() << which.name() << ": " << v.key << ": " << v.message;
     }
@@ -81,7 +81,7 @@ TEST(Workload, PlacesStandApart) {
   EXPECT_EQ(contact_places_m(5).size(), 5u);
 }
 
-/// How deep the ball at each place stands in the body.
+/// Depth of the ball at each place.
 std::vector<double> ball_depths_m(const Case& which, std::int64_t tick) {
   const scene::Scene scene = scene_of(which);
   const auto body = scene::body_shape(scene.body);

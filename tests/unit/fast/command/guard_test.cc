@@ -1,4 +1,4 @@
-// What ends a program: every failure is one message and an exit code.
+// Ways in which a program ends: every failure is one message and an exit code.
 #include "fast/command/command_line.h"
 #include "fast/command/stop_signals.h"
 #include "scene/base/error.h"
@@ -29,7 +29,7 @@ TEST(Guard, EveryExceptionIsAMessageAndAnExitCode) {
       std::filesystem::filesystem_error("cannot write", "/x", std::make_error_code(std::errc::no_space_on_device)),
       bad_input, "filesystem error: cannot write: No space left on device [/x]\n");
   expect_end(std::ios_base::failure("cannot read"), bad_input, "cannot read: iostream error\n");
-  const std::string memory = "the memory does not suffice; expected more of it, or a smaller scene\n";
+  const std::string memory = "not enough memory; expected more memory, or a smaller scene\n";
   expect_end(std::bad_alloc(), not_converged, memory);
   expect_end(std::length_error("vector"), not_converged, memory);
   expect_end(std::runtime_error("two\n   lines\n"), not_converged, "two lines\n");
@@ -43,9 +43,9 @@ TEST(Guard, AFailureThatNothingCatchesIsAMessageAndAnExitCode) {
                 std::thread([] { throw std::bad_alloc(); }).join();
                 return 0;
               })),
-              testing::ExitedWithCode(not_converged), "^cannot go on: the memory does not suffice; expected [^\n]*\n$");
+              testing::ExitedWithCode(not_converged), "^cannot continue: not enough memory; expected [^\n]*\n$");
   EXPECT_EXIT(static_cast<void>(guarded([]() -> int { std::terminate(); })), testing::ExitedWithCode(not_converged),
-              "^cannot go on: an unknown error\n$");
+              "^cannot continue: an unknown error\n$");
 }
 
 TEST(Guard, TextThatIsNotTakenIsAFailure) {
@@ -88,7 +88,7 @@ TEST(StopSignals, AreARequestWhileItLives) {
     };
     EXPECT_EXIT(twice(), testing::KilledBySignal(signal), "");
   }
-  // Started by nohup.
+  // As when started by nohup.
   std::signal(SIGHUP, SIG_IGN);
   const StopSignals signals(StopSignals::Again::nothing);
   std::raise(SIGHUP);

@@ -53,7 +53,7 @@ class Terminal {
   int master_ = -1, slave_ = -1;
 };
 
-/// What stands in each redrawing of the line, without the blanks that wipe out an earlier one.
+/// The text of each redrawing of the line, without the blanks that erase an earlier one.
 std::vector<std::string> redrawings(const std::string& seen) {
   std::vector<std::string> list;
   std::istringstream in(seen);
@@ -72,7 +72,7 @@ TEST(ProgressLine, FitsTheTerminalAndIsRedrawnInPlace) {
     const std::string seen = terminal.seen();
     EXPECT_EQ(seen.find('\n'), std::string::npos) << "redrawn in place, not below";
     EXPECT_EQ(redrawings(seen), (std::vector<std::string>{std::string(76, 'a') + "...", "short"}));
-    // The second wipes out the first.
+    // The second erases the first.
     EXPECT_EQ(seen.substr(seen.rfind('\r') + 1), "short" + std::string(74, ' '));
   }
   EXPECT_EQ(terminal.seen(), "\r\n") << "what follows begins on a line of its own";

@@ -96,7 +96,7 @@ TEST(DeviceLoop, ANonFinitePoseHoldsAndFadesAndComesBack) {
   EXPECT_EQ(force_n(999), run.records[999].model.force_n.z());
   EXPECT_EQ(run.ledger.bad_poses, 200);
   for (std::size_t k = 0; k < 1000; ++k) EXPECT_EQ((run.records[k].flags & bad_pose) != 0, k >= 500 && k < 700);
-  // The last good answer stays the model's meanwhile.
+  // Meanwhile the model keeps its last valid result.
   EXPECT_EQ(run.records[650].model.force_n, run.records[499].model.force_n);
 }
 
@@ -156,7 +156,7 @@ TEST(DeviceLoop, PublishesForceBeforeShape) {
   WrenchLimiter limiter(WrenchLimits::of(scene.live, engine.tool_reach_m()), time.period_s());
   VirtualClock clock;
 
-  /// At each write the engine's shape must still be that of the tick before.
+  /// At each write the engine's shape must still be that of the previous tick.
   class Watch final : public Device {
    public:
     explicit Watch(const fast::Engine& watched) : engine(watched) {}
@@ -186,7 +186,7 @@ TEST(DeviceLoop, PublishesForceBeforeShape) {
   EXPECT_LT(device.jump_n, 0.1 * ledger.force_max_n);
   EXPECT_EQ(device.last.force_n, Vec3::Zero());
 
-  // The shape reaches the reader whole.
+  // The reader gets a complete shape.
   ASSERT_TRUE(shapes.take());
   EXPECT_EQ(shapes.front().tick, 299);
   EXPECT_EQ(shapes.front().field.displacement_m, engine.field().displacement_m);

@@ -1,6 +1,6 @@
-// What goes between threads. To be run under ThreadSanitizer by hand when these headers change:
-//   g++ -std=c++20 -O1 -g -fsanitize=thread -I. tests/unit/fast/live/exchange_test.cc -lgtest -lgtest_main -o
-//   /tmp/exchange
+// Data exchange between threads. Run under ThreadSanitizer by hand when these headers change:
+// g++ -std=c++20 -O1 -g -fsanitize=thread -I. tests/unit/fast/live/exchange_test.cc -lgtest -lgtest_main
+// -o /tmp/exchange
 #include "fast/live/record_ring.h"
 #include "fast/live/triple_buffer.h"
 
@@ -13,7 +13,7 @@
 namespace touchstone::live {
 namespace {
 
-/// A value that a torn read would give away.
+/// A value that shows a torn read.
 struct Block {
   std::array<std::uint64_t, 64> copies{};
   void fill(std::uint64_t n) { copies.fill(n); }

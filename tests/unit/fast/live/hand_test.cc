@@ -1,4 +1,4 @@
-// The closed loop: a virtual hand that feels the force, in virtual time.
+// The closed loop: a virtual hand that reacts to the force, in virtual time.
 #include "fast/live/hand_device.h"
 
 #include "unit/fast/live/lock_step.h"
@@ -45,14 +45,14 @@ TEST(Hand, SettlesWhereItsSpringEqualsTheContact) {
     EXPECT_NEAR(end.published.force_n.z(), stiffness_n_per_m * (asked_m - low_m),
                 1e-3 * stiffness_n_per_m * (asked_m - low_m));
     EXPECT_GT(low_m, 1e-4);
-    EXPECT_LT(low_m, 0.0059) << "it gives way";
+    EXPECT_LT(low_m, 0.0059) << "it moves back";
     EXPECT_NEAR((end.pose.position_m - run.records[7990].pose.position_m).norm(), 0.0, 1e-9) << "at rest";
     EXPECT_LE(run.ledger.force_max_n, scene.live.force_max_n);
   }
 }
 
 TEST(Hand, InFreeSpaceItIsADampedOscillator) {
-  // Let go 20 mm from where the track holds it: x(t) in closed form.
+  // Released 20 mm from its place on the track: x(t) in closed form.
   scene::Scene scene = live_scene();
   const scene::Pose target = touchstone::test::at(0.02, 0.0, 0.2);
   scene.track = {{0.0, touchstone::test::at(0.0, 0.0, 0.2)}, {1e-9, target}, {1.0, target}};
@@ -63,14 +63,14 @@ TEST(Hand, InFreeSpaceItIsADampedOscillator) {
   for (std::size_t i = 100; i < run.records.size(); i += 100) {
     const double t = run.records[i].tick.time_s;
     const double x = 0.02 * (1.0 - std::exp(-decay * t) * (std::cos(w * t) + decay / w * std::sin(w * t)));
-    // The damper feels the step of the track too: an impulse c dx, spread over the first period.
+    // The damper reacts to the step of the track too: an impulse c dx, spread over the first period.
     const double jump = 0.02 * c / m * std::exp(-decay * t) * std::sin(w * t) / w;
     EXPECT_NEAR(run.records[i].pose.position_m.x(), x + jump, 1e-4) << t;
   }
 }
 
 TEST(Hand, EnergyOnlyFalls) {
-  // Dropped onto the cube from 10 mm above, towards 3 mm inside; the track rests.
+  // Dropped onto the cube from 10 mm above, with the track 3 mm inside, at rest.
   scene::Scene scene = live_scene();
   scene.live.force_max_n = 200.0;
   scene.live.force_slew_n_per_s = 1e6;
@@ -99,8 +99,9 @@ TEST(Hand, EnergyOnlyFalls) {
       std::vector<double>& energy_;
     } device(inner, energy_j);
     const LockStep run = lock_step(scene, device, 30000, rate_hz);
-    // Stored in the contact: not negative. So the hand never has more than at first, and without damping has it all
-    // again at the top of every bounce. The spring and the first tick's jump of the damper make the start.
+    // Energy stored in the contact is not negative. So the hand never has more than at first, and without damping has
+    // all of it again at the top of every bounce. The spring and the first tick's jump of the damper give the initial
+    // energy.
     const double start_j = energy_j[2];
     EXPECT_GT(start_j, 0.5 * 500.0 * 0.012 * 0.012);
     double most_j = 0.0, least_j = start_j;
@@ -138,7 +139,7 @@ TEST(Hand, MovesOnUnderTheLastForceThroughMissedTicks) {
     EXPECT_EQ(a.pose.position_m, b.pose.position_m) << k;
     EXPECT_EQ(a.twist.linear_m_per_s, b.twist.linear_m_per_s) << k;
   }
-  // A gap of hours is a second.
+  // A gap of hours counts as one second.
   ASSERT_TRUE(some.read({10'000'300, 10000.3}, b));
   for (std::int64_t k = 301; k <= 1300; ++k) ASSERT_TRUE(every.read({k, static_cast<double>(k) / 1000}, a));
   EXPECT_EQ(a.pose.position_m, b.pose.position_m);
@@ -163,7 +164,7 @@ TEST(Hand, RefusesAHandThatIsUnstableAtTheRate) {
     EXPECT_THAT(error.what(), testing::HasSubstr("live.hand_mass_kg = 0.0001"));
     EXPECT_THAT(error.what(), testing::HasSubstr("expected at least 0.00262"));
   }
-  // Just above what it asks for, the hand comes to rest; just below, it would not have.
+  // Just above the required mass the hand comes to rest; just below, it would not.
   scene.live.hand_mass_kg = 0.00263;
   HandDevice hand(scene.track, scene.live, 1e-3);
   DeviceSample sample;

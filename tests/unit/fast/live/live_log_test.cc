@@ -98,7 +98,7 @@ TEST_F(LiveLogTest, ComesBackToTheLastBit) {
   std::mt19937_64 random(11);
   std::vector<TickRecord> records;
   const auto any = [&](bool may_be_odd) {
-    // Random bits are every kind of number.
+    // Random bits give every kind of number.
     double value;
     do {
       const std::uint64_t bits = random();
@@ -187,7 +187,7 @@ TEST_F(LiveLogTest, RefusesWithFileLineAndRange) {
   expect_refused(0, "cannot read the log");
 }
 
-/// A closed loop with all that may happen to it: the hand, bad poses, missed ticks.
+/// A closed loop with everything that may happen: the hand, invalid poses, missed ticks.
 LockStep eventful(const scene::Scene& scene) {
   VirtualClock clock;
   HandDevice hand(scene.track, scene.live, 1e-3);
@@ -272,7 +272,7 @@ TEST_F(LiveLogTest, AReplaySeesAnAnswerThatIsNotTheLogs) {
     EXPECT_GT(device.unequal(), 100);
     EXPECT_GT(device.first_unequal(), 0);
   }
-  // One bit in one row, of the published wrench alone.
+  // One bit in one row, in the published wrench alone.
   std::vector<TickRecord> edited = first.records;
   edited[700].published.torque_nm.y() = std::nextafter(edited[700].published.torque_nm.y(), 1.0);
   ReplayDevice device(edited);

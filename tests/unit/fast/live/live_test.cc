@@ -1,4 +1,4 @@
-// Whole runs in the wall clock. How long anything took is never judged: only that all of it ended, and was written.
+// Whole runs in real time. Times are not judged: only that everything ended and was written.
 #include "fast/live/live.h"
 
 #include "fast/live/live_log.h"

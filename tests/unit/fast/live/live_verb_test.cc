@@ -1,4 +1,4 @@
-// What a user sees of `live`: exit codes, the folder, the answer to a replay.
+// The command `live` as a user sees it: exit codes, the folder, the result of a replay.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>

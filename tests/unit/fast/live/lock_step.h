@@ -1,4 +1,4 @@
-// The device loop in virtual time, with devices made for a test.
+// The device loop in virtual time, with test devices.
 #pragma once
 
 #include "fast/live/device_loop.h"
@@ -23,7 +23,7 @@ inline scene::Scene live_scene() {
   return scene;
 }
 
-/// A device whose poses and wrenches are a test's.
+/// A device with poses and a reaction to wrenches given by a test.
 class FakeDevice final : public Device {
  public:
   using Read = std::function<bool(const Tick&, DeviceSample&)>;

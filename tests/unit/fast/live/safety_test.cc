@@ -48,7 +48,7 @@ TEST(WrenchLimiter, KeepsTheDirectionOfWhatIsTooMuch) {
 }
 
 TEST(WrenchLimiter, ScalesForceAndTorqueAlike) {
-  // A wrench's line of action stays: one factor for both, here from the torque.
+  // A wrench's line of action is kept: one factor for both parts, here from the torque.
   WrenchLimiter limiter(limits, period_s);
   const Wrench asked{Vec3(0, 0, 10), Vec3(4, 0, 0)};  // 400 N at the lever
   Wrench sent;
@@ -86,7 +86,7 @@ TEST(WrenchLimiter, HoldsItsLimitsWhateverComesIn) {
     const double lever_m = std::max(l.lever_m, 1e-6);
     for (int i = 0; i < 20000; ++i) {
       Wrench asked{Vec3(number(), number(), number()), Vec3(number(), number(), number())};
-      if (i % 3 != 0) asked = {100.0 * Vec3::Random(), Vec3::Random()};  // mostly what may come through
+      if (i % 3 != 0) asked = {100.0 * Vec3::Random(), Vec3::Random()};  // mostly within the limits
       const Wrench sent = limiter.next(asked, kind(random) != 0);
       ASSERT_TRUE(sent.force_n.allFinite() && sent.torque_nm.allFinite());
       ASSERT_LE(sent.force_n.norm(), l.force_max_n);
@@ -105,7 +105,7 @@ TEST(WrenchLimiter, FadesToZeroInTheReleaseTimeAndBack) {
   for (int i = 0; i < 10; ++i) sent = limiter.next(push(30.0), true);
   ASSERT_EQ(sent.force_n.z(), 30.0);
   for (int i = 1; i <= 100; ++i) {
-    // What the model says meanwhile does not count.
+    // The model's output has no effect meanwhile.
     sent = limiter.next(i % 2 == 0 ? push(nan) : push(1e9), false);
     EXPECT_NEAR(sent.force_n.z(), 30.0 * (1.0 - i / 100.0), 1e-9);
     EXPECT_TRUE(limiter.limited());
@@ -117,7 +117,7 @@ TEST(WrenchLimiter, FadesToZeroInTheReleaseTimeAndBack) {
 }
 
 TEST(WrenchLimiter, SlewComesBeforeTheRelease) {
-  // 1 N per tick, although the release asks for 4.
+  // 1 N per tick, although the release would allow 4.
   WrenchLimiter limiter({40.0, 1000.0, 0.01, 0.01}, period_s);
   for (int i = 0; i < 100; ++i) (void)limiter.next(push(40.0), true);
   double before_n = limiter.next(push(40.0), true).force_n.z();

@@ -42,7 +42,7 @@ TEST(DurationHistogram, PercentilesAreWithinTwoPercentOfTheExact) {
 }
 
 TEST(DurationHistogram, EveryDurationFallsIntoABinThatHoldsIt) {
-  // One at a time, across every edge of a doubling.
+  // One at a time, across every octave's boundary.
   for (int bit = 0; bit < 40; ++bit) {
     for (std::int64_t offset : {-1, 0, 1}) {
       const std::int64_t value = (std::int64_t{1} << bit) + offset;

@@ -1,4 +1,4 @@
-// The fast model's answer follows from the keys that the table gives it.
+// The fast model's result depends on the keys for which the table says so, and on no others.
 #include "fast/run/run.h"
 
 #include "support/key_changes.h"

@@ -31,7 +31,7 @@ TEST(Run, RecordsEveryInstantAtItsExactPose) {
       EXPECT_EQ(record.depth_m, scene::rest_depth_m(*body, scene.tool, pose));
       EXPECT_EQ(record.displacement_m.cols(), result.surface.points_m.cols());
       EXPECT_EQ(result.instants[i].normal.cols(), result.surface.points_m.cols());
-      // A touch may be either.
+      // First touch may count as either.
       if (record.depth_m == 0.0 || record.depth_m > 1e-12) {
         EXPECT_EQ(record.regions.empty(), record.depth_m == 0.0) << record.depth_m;
       }
@@ -88,7 +88,7 @@ TEST(Run, MemoryDoesNotHangOnTheTicks) {
   GTEST_SKIP() << "the sanitizer keeps memory of its own";
 #endif
   scene::Scene scene = test::ball_on_cube();
-  // A long way off, where a tick costs least.
+  // Far away, where a tick takes least time.
   for (scene::Waypoint& row : scene.track) row.pose.position_m.z() += 0.5;
   scene.track.back().time_s = 1e4;
   scene.fast.triangles = 100;
@@ -182,7 +182,7 @@ TEST(Run, PublishedLeavesAResidualOffTheAxis) {
   for (scene::Waypoint& w : scene.track) w.pose.position_m += Vec3(0.013, 0.005, 0.0);
   const scene::InstantRecord last = run(scene).instants.back();
   const double residual = (last.support_force_n - last.force_n()).norm() / last.force_n().norm();
-  EXPECT_GT(residual, 1e-4);  // errata E8; the corrected form is at rounding
+  EXPECT_GT(residual, 1e-4);  // errata E8; corrected: round-off
   EXPECT_LT(residual, 1.0);
 }
 
@@ -216,7 +216,8 @@ TEST(ConvexMeshTool, TakesTheStepOfItsShape) {
   for (const scene::PlanLine& line : plan(scene)) {
     if (line.part == "several regions") {
       EXPECT_FALSE(line.modelled);
-      EXPECT_NE(line.reason.find("the tool's mesh has no dent deeper than 0.035 mm"), std::string::npos) << line.reason;
+      EXPECT_NE(line.reason.find("the tool's mesh has no concavity deeper than 0.035 mm"), std::string::npos)
+          << line.reason;
     }
   }
 }
@@ -264,7 +265,7 @@ TEST(Plan, SaysWhatIsModelledAndWhatIsNot) {
   EXPECT_EQ(line(compass, "several regions").reason.find("FALL"), std::string::npos);
   scene::Scene coarse = test::shipped_scene("compass-two-pins", scene::Formulation::corrected);
   coarse.fast.tool_samples = 500;
-  EXPECT_NE(line(plan(coarse), "several regions").reason.find("ONE CONTACT MAY FALL INTO SEVERAL"), std::string::npos);
+  EXPECT_NE(line(plan(coarse), "several regions").reason.find("ONE CONTACT MAY SPLIT INTO SEVERAL"), std::string::npos);
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ struct Standing {
     for (std::size_t k = 0; k < corner.size(); ++k) by_anchor[static_cast<std::size_t>(corner[k])] += at.weight[k];
     return by_anchor;
   }
-  /// On held surface by its definition, and clear of its border by more than rounding.
+  /// Whether a point is on the fixed surface by its definition, with a margin for rounding.
   [[nodiscard]] bool below_support(const Vec3& p_m, int patch) const {
     if (body.shape == scene::BodyShape::box) return patch == 4;
     return body.flat_bottom() ? patch == 0 : p_m.z() < body.support_height_m - 1e-12;
@@ -72,7 +72,7 @@ TEST_P(EveryBody, WeightsArePartsOfOne) {
     for (const double weight : at.weight) EXPECT_GE(weight, 0.0);
     EXPECT_GE(at.free, 0.0);
     EXPECT_LE(at.free, 1.0 + 1e-15);
-    // What is not held can move.
+    // A point that is not fixed can move.
     if (!on.below_support(p, patch) && p.z() > on.body.support_height_m + 1e-9) {
       EXPECT_GT(at.free, 1e-4) << on.name;
     }
@@ -87,7 +87,7 @@ TEST_P(EveryBody, FreeAnchorsOwnTheirPlace) {
       const Vec3& p = anchors.points_m()[static_cast<std::size_t>(self)];
       EXPECT_NEAR(on.shape->signed_distance_m(p), 0.0, 1e-12) << on.name;
       if (anchors.held()[static_cast<std::size_t>(self)] || !anchors.first_between_its_anchors(patch)) continue;
-      // Where a band has several patches the anchor point may lie on another one of them.
+      // If a band has several patches, the anchor point may lie on another one of them.
       if (on.name.starts_with("pill") || on.name.starts_with("capsule of five")) continue;
       const std::vector<double> weight = on.weights(patch, p);
       for (std::size_t i = 0; i < weight.size(); ++i) {
@@ -112,7 +112,7 @@ TEST_P(EveryBody, HeldSurfaceHangsOnHeldAnchorsOnly) {
     } else {
       ++above;
     }
-    // Just over the support the displacement begins at zero.
+    // Just above the support the displacement starts from zero.
     if (!on.body.flat_bottom() && std::abs(p.z() - on.body.support_height_m) < 1e-9) {
       EXPECT_LT(free, 1e-6) << on.name;
     }
@@ -141,14 +141,15 @@ TEST_P(EveryBody, NeighbouringPatchesAgreeOnTheirBorder) {
       const std::vector<double> first = on.weights(vertices[0].first, vertices[0].second),
                                 other = on.weights(vertices[k].first, vertices[k].second);
       for (std::size_t i = 0; i < first.size(); ++i) {
-        if (on.anchors->held()[i]) continue;  // which held anchor point carries held surface does not matter
+        if (on.anchors->held()[i])
+          continue;  // which fixed anchor point has the weight of fixed surface does not matter
         EXPECT_NEAR(other[i], first[i], 1e-6) << on.name << " patches " << vertices[0].first << " and "
                                               << vertices[k].first << " at " << vertices[0].second.transpose();
         ++compared;
       }
     }
   }
-  // With every anchor point held there is nothing to compare.
+  // If every anchor point is fixed there is nothing to compare.
   const auto& held = on.anchors->held();
   if (std::count(held.begin(), held.end(), false) > 0) {
     EXPECT_GT(compared, 50) << on.name;
@@ -156,7 +157,7 @@ TEST_P(EveryBody, NeighbouringPatchesAgreeOnTheirBorder) {
 }
 
 TEST_P(EveryBody, LinearInBetweenAndWithoutJumps) {
-  // Displacements change little over a small way: no kink of a patch hides a jump.
+  // The displacement is continuous: it changes little over a small distance.
   const Standing on(GetParam());
   for (int patch = 0; patch < on.patches(); ++patch) {
     for (const double v : {0.05, 0.37, 0.74, 0.97}) {
@@ -187,7 +188,7 @@ TEST_P(EveryBody, HalfwayPointsLieOnTheSurfaceBetweenTheirAnchors) {
         EXPECT_LT((half - on.anchors->halfway_m(patch, j, i)).norm(), 1e-9) << on.name;
         const Vec3 &p_i = on.anchors->points_m()[static_cast<std::size_t>(i)],
                    &p_j = on.anchors->points_m()[static_cast<std::size_t>(j)];
-        // Half way from either; the longest way leads over the pole of a cap that is more than a hemisphere.
+        // Half way from either; the longest distance is across the pole of a cap that is more than a hemisphere.
         EXPECT_LT((half - p_i).norm() + (half - p_j).norm(), 1.8 * (p_i - p_j).norm()) << on.name;
       }
     }
@@ -304,7 +305,7 @@ TEST(RevolutionAnchors, ACapIsLinearOverItsDiamond) {
   const int cap = shape->patch_count() - 1;
   const PatchPlace pole = anchors->at(cap, Vec3(0.0, 0.0, 0.07));
   for (const double weight : pole.weight) EXPECT_NEAR(weight, 0.25, 1e-15);
-  // A displacement that is linear over the diamond is kept: +x rises by 1, -x falls by 1, half way out by half.
+  // A displacement that is linear over the square is reproduced: +x rises by 1, -x falls by 1, half way out by half.
   const Vec3 half(0.02 * std::sqrt(0.5), 0.0, 0.05 + 0.02 * std::sqrt(0.5));
   const PatchPlace at = anchors->at(cap, half);
   EXPECT_NEAR(at.weight[0] - at.weight[2], 0.5, 1e-12);

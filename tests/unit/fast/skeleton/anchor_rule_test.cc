@@ -88,7 +88,7 @@ TEST(AnchorRule, NearlyEqualAxesLoseNoPoint) {
   }
 }
 
-/// Another shape, turned about the origin: the rule has no axes to go by.
+/// Another shape, rotated about the origin: the rule must not depend on the axes.
 class Turned final : public scene::Shape {
  public:
   Turned(const scene::Shape& inner, const Eigen::Quaterniond& turn) : inner_(inner), turn_(turn) {}
@@ -129,7 +129,7 @@ TEST(AnchorRule, FollowsATurnedEllipsoidAndATurnedSpheroid) {
       EXPECT_NE(at(found, turn * Vec3(sign * a[axis] * Vec3::Unit(axis)), 1e-4), nullptr) << axis;
     }
   }
-  // A spheroid keeps its two poles; the four points of its equator stand on two perpendicular axes.
+  // A spheroid keeps its two poles; the four points of its equator are on two perpendicular axes.
   const scene::Ellipsoid spheroid(Vec3::Zero(), Vec3(0.03, 0.03, 0.02));
   const std::vector<FoundAnchor> around = find_anchor_points(Turned(spheroid, turn));
   ASSERT_EQ(around.size(), 6u);
@@ -191,13 +191,13 @@ TEST(AnchorRule, OfSurfacesOfRevolutionAreFourPerCircleAndTheTips) {
       EXPECT_EQ(here->reason, natural_vertex) << expected.name;
     }
   }
-  // Of one curvature everywhere: a sphere, however it is written.
+  // Constant curvature: a sphere, however it is written.
   const std::vector<FoundAnchor> sphere = on_profile(test::sphere_profile());
   EXPECT_EQ(sphere.size(), 6u);
   EXPECT_EQ(count(sphere, sphere_axis), 6);
 }
 
-/// A curve by its normal's angle over the horizontal: normal angle(s), curvature its rate. Places do not matter.
+/// A curve by its normal's angle above the horizontal; the curvature is the derivative. Positions do not matter.
 CurvePiece piece(double length_m, const std::function<double(double)>& angle,
                  const std::function<double(double)>& rate) {
   return {length_m, [=](double s) {
@@ -239,7 +239,8 @@ TEST(AnchorRule, LooksInsideThePiecesOfAProfile) {
                             return a.reason == AnchorReason::curvature_rate_jump && a.piece == 0 && a.s == 1.0;
                           }),
             1);
-  // The middle of a symmetric curve, written as two pieces, is still its minimum; an even stretch is none.
+  // The middle of a symmetric curve, written as two pieces, is still its minimum; a stretch of constant curvature is
+  // none.
   const auto bowl = [](double x) { return 1.0 + x * x; };
   const std::vector<CurvePiece> halves{piece(1.0, turning, [&](double s) { return bowl(s - 1.0); }),
                                        piece(

@@ -24,7 +24,7 @@ TEST(BeamAreas, OfABoxCoverItsSurface) {
   const BoxAnchors anchors(box);
   const std::vector<double> areas_m2 = voronoi_areas_m2(area_triangles(anchors));
   EXPECT_NEAR(sum(areas_m2), box.area_m2(), 1e-15);
-  // By symmetry each corner owns a quarter of each of its three faces.
+  // By symmetry each corner has a quarter of each of its three faces.
   for (const double area_m2 : areas_m2) EXPECT_NEAR(area_m2, box.area_m2() / 8.0, 1e-15);
 }
 
@@ -48,7 +48,7 @@ TEST(BeamAreas, OfACylinderAreThoseOfItsFlatTriangles) {
 }
 
 TEST(BeamAreas, OfAPieceWrittenTwiceCountOnce) {
-  // The half round rim in two arcs has the areas it would have in one.
+  // The half-round rim as two arcs has the areas that it has as one.
   const auto anchors = anchors_of(test::round_body(test::pill_profile()));
   const AreaTriangles triangles = area_triangles(*anchors);
   // Two caps of four corners, and four bands of four; four corners make two triangles each.
@@ -73,7 +73,7 @@ TEST(BeamAreas, AtRestTheCurrentSurfaceIsTheRestSurface) {
     std::vector<double> current(rest.size());
     voronoi_shares(triangles, std::vector<Vec3>(rest.size(), Vec3::Zero()), current);
     EXPECT_EQ(current, rest) << name;
-    // Moving as a whole changes nothing.
+    // A translation as a whole changes nothing.
     voronoi_shares(triangles, std::vector<Vec3>(rest.size(), Vec3(0.01, -0.02, 0.005)), current);
     for (std::size_t i = 0; i < rest.size(); ++i) EXPECT_NEAR(current[i], rest[i], 1e-15) << name;
   }
@@ -86,11 +86,11 @@ TEST(BeamAreas, FollowAStretchedBoxExactly) {
   const AreaTriangles triangles = area_triangles(anchors);
   std::vector<Vec3> u;
   for (std::size_t i = 0; i < 8; ++i) u.push_back(goal.points_m()[i] - anchors.points_m()[i]);
-  // One corner moves further than the stretch, or all shares would be equal.
+  // One corner moves further than the stretch; otherwise all fractions would be equal.
   u[7] += Vec3(0.004, 0.002, 0.003);
   std::vector<double> shares(8);
   voronoi_shares(triangles, u, shares);
-  // On flat faces p_ij is the middle of the corners: compare with triangles built anew.
+  // On flat faces p_ij is the middle of the corners: compare with newly built triangles.
   std::vector<double> anew(8, 0.0);
   for (int patch = 0; patch < 6; ++patch) {
     const std::vector<int> around = anchors.around(patch);
@@ -118,7 +118,7 @@ TEST(BeamAreas, StayPositiveWhenAnchorPointsFallTogether) {
   for (std::size_t i = 0; i < 8; ++i) u[i] = -anchors.points_m()[i];
   voronoi_shares(triangles, u, shares);
   for (const double share : shares) EXPECT_EQ(share, 0.125);
-  // Corner 0 with its neighbours in one point, the rest in place.
+  // Corner 0 and its neighbours at one point, the rest unchanged.
   std::fill(u.begin(), u.end(), Vec3::Zero());
   for (const std::size_t i : {1u, 2u, 3u, 4u, 5u, 6u}) u[i] = anchors.points_m()[0] - anchors.points_m()[i];
   voronoi_shares(triangles, u, shares);

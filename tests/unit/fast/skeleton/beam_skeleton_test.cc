@@ -119,7 +119,7 @@ TEST(SplitForcePublished, NeverPullsABeamAgainstItsDisplacement) {
     split_force_published(cube.skeleton, p0, F, 0.002 * F, cube.ends);
     for (const Vec3& F_i : cube.ends.force_n) {
       ASSERT_TRUE(F_i.allFinite());
-      EXPECT_GE(F_i.dot(F), -0.02 * F.squaredNorm());  // delta x alone may turn a nearly unloaded beam
+      EXPECT_GE(F_i.dot(F), -0.02 * F.squaredNorm());  // delta x alone may reverse the force of a nearly unloaded beam
     }
     worst = std::max(worst, (sum(cube.ends.force_n) - F).norm() / F.norm());
   }
@@ -199,7 +199,7 @@ TEST(SplitForce, AnchorPointsNeverOutrunTheContact) {
   }
 }
 
-/// The cube with balls of another material in it.
+/// The cube with balls of another material inside.
 scene::Scene with_balls(std::initializer_list<std::tuple<Vec3, double, double>> center_radius_modulus) {
   scene::Scene scene = test::ball_on_cube();
   for (const auto& [center_m, radius_m, youngs_modulus_pa] : center_radius_modulus) {
@@ -242,7 +242,7 @@ TEST(SplitForceInParts, AnInclusionOfTheBodysOwnMaterialChangesNothing) {
 
 TEST(SplitForceInParts, BalancesAndFollowsEachBeamsOwnStiffness) {
   Cube cube;
-  // On beams to the bottom and, under the pressed-in top, to a free corner.
+  // On beams to the bottom and, under the indented top, to a free corner.
   const Vec3 p0(0.004, -0.003, 0.05), F(0.2, 0.1, -3.0);
   const BeamSkeleton parts = beam_skeleton(cube.anchors, with_balls({{Vec3(-0.013, -0.0165, 0.025), 0.008, 33.77e3},
                                                                      {Vec3(0.017, 0.0135, 0.054), 0.004, 5.0e7}}));
@@ -259,7 +259,7 @@ TEST(SplitForceInParts, BalancesAndFollowsEachBeamsOwnStiffness) {
     const Vec3 x = (p0 - parts.anchor_m[i]).normalized();
     const Vec3 F_x = ends.force_n[i].dot(x) * x, F_y = ends.force_n[i] - F_x;
     if (!parts.held[i]) {
-      // The beam released at the anchor and held at the contact: x from the anchor.
+      // The beam free at the anchor and fixed at the contact: x from the anchor.
       const Vec3 expected =
           F_x * axial_compliance_m_per_n(segments.all()) + F_y * released_bending_compliance_m_per_n(segments.all());
       EXPECT_LT((ends.displacement_m[i] - expected).norm(), 1e-12 * expected.norm());
@@ -307,11 +307,12 @@ TEST(SplitForceInParts, ASoftBallLeansTheShapeOnlyInTheCorrectedForm) {
     EXPECT_LT(ends.displacement_m[1].z(), 0.0);
     return ends.displacement_m[1].z() / ends.displacement_m[0].z();  // at -x over at +x
   };
-  // On the contact's half of its beam the ball counts most by its distance from the anchor: deeper on the soft side.
+  // On the contact's half of its beam the distance from the anchor gives the ball a large effect: larger displacements
+  // on the soft side.
   EXPECT_GT(soft_over_other(split_force_in_parts_corrected), 1.2);
-  // As printed both ends of a beam have one compliance, which the split takes out again.
+  // As printed both ends of a beam have one compliance, which cancels in the split.
   EXPECT_NEAR(soft_over_other(split_force_in_parts_published), 1.0, 1e-9);
-  // On the anchor's half it is the other way round.
+  // On the anchor's half the opposite holds.
   scene.body.inclusions[0].radius_m = 0.006;
   scene.body.inclusions[0].center_m = Vec3(-0.028, 0.0, 0.029);
   EXPECT_LT(soft_over_other(split_force_in_parts_corrected), 0.8);

@@ -73,7 +73,7 @@ TEST(BeamStress, InverseElasticityIsSymmetricAndRightUpToIncompressible) {
     EXPECT_NEAR((D * press).head<3>().sum(), -3.0 * (1.0 - 2.0 * nu) / E, 1e-20);
     EXPECT_NEAR((D * turn)(3), 2.0 * (1.0 + nu) / E, 1e-20);
   }
-  // The form that (9) is the inverse of.
+  // (9) is the inverse of this.
   const double E = 3.0e6, nu = 0.3, lambda = E * nu / ((1 + nu) * (1 - 2 * nu)), G = E / (2 * (1 + nu));
   Eigen::Matrix<double, 6, 6> stiffness = Eigen::Matrix<double, 6, 6>::Zero();
   stiffness.topLeftCorner<3, 3>().setConstant(lambda);
@@ -93,11 +93,11 @@ TEST(BeamStress, BelongsToTheForcesOfTheSplit) {
       const Vec3 x = cube.ends.beam[i].x;
       EXPECT_LT((end.axes.transpose() * end.axes - Mat3::Identity()).norm(), 1e-12);
       EXPECT_NEAR(end.axes.determinant(), 1.0, 1e-12);
-      // Traction on the section: F_x / s along, the centre's share of F_y / s across.
+      // Traction on the section: F_x / s along, and the stress of F_y at the centre across.
       const Vec3 F_x = cube.ends.force_n[i].dot(x) * x, F_y = cube.ends.force_n[i] - F_x;
       const Vec3 traction = end.stress_W_pa * x;
       EXPECT_LT((traction - F_x / s - centre_shear_factor(0.5) * F_y / s).norm(), 1e-10 * traction.norm());
-      // What the section does not carry is free of stress.
+      // Directions that the section does not load are free of stress.
       const Vec3 z = end.axes.col(2);
       EXPECT_LT((end.stress_W_pa * z).norm(), 1e-10 * traction.norm());
       EXPECT_LT((end.stress_W_pa - end.stress_W_pa.transpose()).norm(), 1e-12 * traction.norm());

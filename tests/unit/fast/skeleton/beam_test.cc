@@ -87,7 +87,7 @@ TEST(Beam, ReleasedAtTheAnchorIsTheBeamTurnedRound) {
   const std::array<BeamSegment, 3> turned{beam[2], beam[1], beam[0]};
   const double released = released_bending_compliance_m_per_n(beam);
   EXPECT_NEAR(released, bending_compliance_m_per_n(turned), 1e-14 * released);
-  // By an independent integration, and not the compliance of the other end.
+  // By an independent integration, and different from the compliance of the other end.
   const double integrated = integrated_tip_m({turned.begin(), turned.end()}, 4000);
   EXPECT_NEAR(released, integrated, 1e-6 * released);
   EXPECT_LT(released, 0.4 * bending_compliance_m_per_n(beam));
@@ -126,7 +126,7 @@ TEST(Beam, PrintedAxialFormIsThatOfEqualStrain) {
   // (12) with every shortening in proportion to its length.
   const double dx = 1e-3, F_x = s / l * (rubber_pa * 0.7 * dx + pvc_pa * 0.3 * dx);
   EXPECT_NEAR(printed_axial_compliance_m_per_n(beam), dx / F_x, 1e-12 * dx / F_x);
-  // Equal strain is an upper bound of the stiffness, equal force the truth.
+  // Equal strain is an upper bound of the stiffness; equal force is exact.
   EXPECT_LT(printed_axial_compliance_m_per_n(beam), axial_compliance_m_per_n(beam));
 }
 
@@ -150,7 +150,7 @@ TEST(Beam, ExtremeModulusRatiosStayFinite) {
       for (double ratio = 1e6; ratio >= 1e-6; ratio /= 10.0) {
         const double here = compliance(with_core(0.06, a, b, rubber_pa, ratio * rubber_pa));
         EXPECT_TRUE(std::isfinite(here));
-        EXPECT_GE(here, before);  // a stretch next to the loaded end may be too short to tell
+        EXPECT_GE(here, before);  // a segment next to the loaded end may have an effect below round-off
         EXPECT_GT(here, 0.0);
         before = here;
       }

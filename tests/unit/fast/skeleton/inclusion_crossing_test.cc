@@ -15,7 +15,7 @@ Inclusion ball(double x_m, double radius_m, double youngs_modulus_pa) {
 }
 
 TEST(CutBeam, SegmentsStandInOrderAndAddUp) {
-  // Given out of order, and the last one hit off its centre.
+  // In arbitrary order, and the last one crossed off its centre.
   std::vector<Inclusion> inclusions{ball(0.05, 0.005, 2.0), ball(0.02, 0.004, 3.0)};
   const BeamSegments cut = cut_beam(inclusions, Vec3::Zero(), Vec3(0.06, 0.0, 0.0), {0.06, 1.0, 1e-4});
   ASSERT_EQ(cut.count, 5u);

@@ -1,5 +1,5 @@
-// The measured effects that reports/departures.md states, measured: every figure must stand in the row it belongs to
-// and be what comes out here.
+// Measures the effects that reports/departures.md states: every figure must be in its row and equal the value computed
+// here.
 #include "fast/contact/friction.h"
 #include "fast/contact/separation.h"
 #include "fast/run/run.h"
@@ -34,7 +34,7 @@ using scene::Vec3;
 constexpr std::array both{Formulation::published, Formulation::corrected};
 constexpr double rubber_pa = 3.0e6, pvc_pa = 33.77e3;
 
-/// The rows of its tables.
+/// The rows of the report's tables.
 const std::vector<std::string>& rows() {
   static const std::vector<std::string> all = [] {
     std::vector<std::string> lines;
@@ -47,7 +47,8 @@ const std::vector<std::string>& rows() {
   return all;
 }
 
-/// Expects a row that begins like this to state the figure, and the value to be it, to one unit of its last digit.
+/// Expects that a row with this beginning states the figure, and that it equals the value to one unit of its last
+/// digit.
 void states(const std::string& row, const std::string& figure, double value) {
   testing::Test::RecordProperty(row + " " + figure, testing::PrintToString(value));
   EXPECT_TRUE(std::any_of(
@@ -62,7 +63,7 @@ void states(const std::string& row, const std::string& figure, double value) {
   EXPECT_NEAR(value, std::stod(number), 1.0001 * scale * std::pow(10.0, -decimals)) << row << " " << figure;
 }
 
-/// A scene walked through in as few ticks as the figure allows.
+/// Runs a scene in as few ticks as the figure allows.
 struct Walk {
   explicit Walk(const scene::Scene& scene_in) : scene(scene_in), model(scene), state(model) {
     step_to(scene.track.front().pose);
@@ -70,7 +71,7 @@ struct Walk {
   Walk(const std::string& name, Formulation formulation) : Walk(test::shipped_scene(name, formulation)) {}
 
   void step_to(const scene::Pose& pose) { status |= step(model, pose, state); }
-  /// Along the track in even ticks. @param look called after every one
+  /// Moves along the track in equal ticks. @param look called after every tick
   void go(
       double to_s, int ticks, const std::function<void()>& look = [] {}) {
     const double from_s = time_s;
@@ -137,7 +138,7 @@ TEST(Departures, E3) {
   states("E3 |", "0.38 N", hertz_n(0.00008));
 }
 
-/// A stuck single point, stretched at 45 degrees under a purely cubic law.
+/// A sticking single point, stretched at 45 degrees under a purely cubic law.
 TEST(Departures, E4) {
   const FrictionLaw friction({1e6, 0.75, 0.5});
   const DuffingLaw law(0.0, 3e8);
@@ -157,8 +158,9 @@ TEST(Departures, E4) {
   states("E4 |", "2.00 times", force_n(resolve_friction_corrected) / force_n(resolve_friction_published));
 }
 
-/// Along ball-on-cube-slide until the ball slides: by milliseconds, since the published friction hangs on the ticks.
-/// @returns tangential force in the last stuck tick [N]
+/// Along ball-on-cube-slide until the ball slips, in ticks of a millisecond, since the published friction depends on
+/// the ticks.
+/// @returns tangential force in the last sticking tick [N]
 double drag_until_it_slides(Walk& walk) {
   double stuck_n = 0.0;
   for (walk.go(0.4, 4); !walk.region().friction.sliding && walk.time_s < 1.4; walk.go(walk.time_s + 0.001, 1))
@@ -199,7 +201,7 @@ TEST(Departures, E5_TableI) {
   states("E5 |", "1.5 mm", onset_of_sliding(Formulation::corrected, 1.0).travel_m * 1e3);
 }
 
-/// Turned round in the midst of the slide, then back by 5 mm in steps of 50 um.
+/// Reversed during slip, then back by 5 mm in steps of 50 um.
 struct TurnBack {
   explicit TurnBack(Formulation formulation) {
     Walk walk("ball-on-cube-slide", formulation);
@@ -215,7 +217,7 @@ struct TurnBack {
     }
   }
   double jump_n = 0.0;   ///< in the first step
-  double stuck_m = 0.0;  ///< of the way back
+  double stuck_m = 0.0;  ///< distance until it slips back
 };
 
 TEST(Departures, E5_TurningBack) {
@@ -240,7 +242,7 @@ TEST(Departures, E5_RoundingTurnsNoRestingToolRound) {
   }
 }
 
-/// Past the bound F_n*: 1.42 N for these constants.
+/// Beyond the bound F_n*: 1.42 N for these constants.
 TEST(Departures, E5_ImpossibleCase) {
   std::array<double, 2> over{};
   for (const Formulation formulation : both) {
@@ -271,7 +273,7 @@ TEST(Departures, E6) {
   states("E6 |", "18.9 N", force_n(500, Formulation::corrected));
   states("E6 |", "19.1 N", force_n(8000, Formulation::corrected));
   states("E6 |", "7.5 N", force_n(500, Formulation::published));
-  // Without r_0 every ring of the cap counts the same: the mean of the force over r.
+  // Without r_0 every ring of the cap has the same weight: the mean of the force over r.
   const DuffingLaw law(40.0, 3e8);
   const double a_m = std::sqrt(2.0 * 0.010 * 0.005 - 0.005 * 0.005);
   double mean_n = 0.0;
@@ -339,7 +341,7 @@ TEST(Departures, E7) {
   states("E7 |", "1.26 N", mallet_n("tail", true));
 }
 
-/// Stiffness of a contact's common end.
+/// Stiffness of the beams' common end.
 Mat3 stiffness_n_per_m(const BeamEnds& ends) {
   Mat3 K = Mat3::Zero();
   for (const Beam& beam : ends.beam) {
@@ -349,7 +351,7 @@ Mat3 stiffness_n_per_m(const BeamEnds& ends) {
   return K;
 }
 
-/// F_i by equations (4) to (6) where the factors of the least squares may be negative, with the last split's beams.
+/// F_i by equations (4) to (6) if the least-squares factors may be negative, with the beams of the last split.
 std::vector<Vec3> split_freely(const BeamEnds& ends, const Vec3& force_n, const Vec3& displacement_m) {
   std::vector<Vec3> along, across;
   Eigen::Matrix<double, 3, 2> sums = Eigen::Matrix<double, 3, 2>::Zero();
@@ -385,7 +387,7 @@ TEST(Departures, E8_RandomContacts) {
     const auto left_rel = [&] { return (F + support_force_n(ends)).norm() / F.norm(); };
     split_force_published(skeleton, at.point_m, F, D, ends);
     published_rel = std::max(published_rel, left_rel());
-    // Against its own displacement by more than the delta x of a bent beam.
+    // Opposite to its own displacement by more than the delta x of a bent beam.
     const auto wrong = [&](const Vec3& F_i) { return F_i.dot(D) < -0.01 * F.dot(D); };
     ASSERT_TRUE(std::none_of(ends.force_n.begin(), ends.force_n.end(), wrong));
     const std::vector<Vec3> free_n = split_freely(ends, F, D);
@@ -426,7 +428,7 @@ TEST(Departures, E9) {
     split_force_corrected(skeleton, p0, -Vec3::UnitZ(), -0.001 * Vec3::UnitZ(), ends);
     return ends.beam[7];
   };
-  // R begins at r_R, and so does the beam's least length: nothing jumps.
+  // R begins at r_R, and so does the smallest beam length: no jump.
   const double rim_m = skeleton.r_R_m;
   EXPECT_NEAR(beam(rim_m * (1.0 - 1e-9)).l_m, beam(rim_m * (1.0 + 1e-9)).l_m, 2e-9 * rim_m);
   EXPECT_EQ(beam(0.001).l_m, rim_m);
@@ -440,7 +442,7 @@ TEST(Departures, E10_Released) {
   for (const Formulation formulation : both) {
     Walk walk("ellipsoid-pvc-inside", formulation);
     walk.go_to_the_end();
-    const std::vector<Vec3>& u_m = walk.region().ends.displacement_m;  // of +x, then of -x, where the PVC is
+    const std::vector<Vec3>& u_m = walk.region().ends.displacement_m;  // at +x, then at -x, where the PVC is
     left_over_right[formulation == Formulation::corrected ? 1 : 0] = u_m[1].norm() / u_m[0].norm();
     if (formulation == Formulation::published) continue;
     const Vec3 end_m = stiffness_n_per_m(walk.region().ends).ldlt().solve(-walk.force_n());
@@ -562,7 +564,7 @@ TEST(Departures, E15_Direction) {
   const Off mallet = direction_off(TwoFields("mallet-along-ellipsoid", 0.9));
   states("E15 |", "16.9 degrees", mallet.mean_deg);
   states("E15 |", "43.4 degrees", mallet.worst_deg);
-  // Its cost is only told: times are no matter for a test.
+  // The report only names its cost: times are not tested.
   TwoFields fields("ball-on-cube-press", 1.1);
   const auto& u_m = fields.walk.region().ends.displacement_m;
   const double angles_us =
@@ -630,7 +632,7 @@ TEST(Departures, E18) {
 }
 
 TEST(Departures, E19) {
-  // Two beams at right angles, the second one bent only: its F_x over the first one's is delta x / D.
+  // Two perpendicular beams, the second one only bent: its F_x over the first one's is delta x / D.
   BeamSkeleton skeleton;
   const double l = 0.05, D = 0.001;
   skeleton.anchor_m = {Vec3(0.0, 0.0, -l), Vec3(-l, 0.0, 0.0)};
@@ -641,7 +643,7 @@ TEST(Departures, E19) {
   BeamEnds ends(2);
   split_force_published(skeleton, Vec3::Zero(), Vec3(0.1, 0.0, -1.0), Vec3(0.0, 0.0, -D), ends);
   const double printed_m = ends.force_n[1].x() / -ends.force_n[0].z() * D;
-  // An inextensible cantilever's tip comes nearer by what the arc is longer.
+  // The tip of an inextensible cantilever moves inwards by the excess length of the arc.
   double shortened_m = 0.0;
   for (int i = 0; i < 1000; ++i) {
     const double x = (i + 0.5) / 1000.0, slope = D / l * (3.0 * x - 1.5 * x * x);
@@ -650,7 +652,7 @@ TEST(Departures, E19) {
   states("E19 |", "17 %", 100.0 * (1.0 - printed_m / shortened_m));
 }
 
-// Where the paper is silent.
+// Where the paper says nothing.
 
 TEST(Departures, AnswerHangsOnThePoseNotOnTheWay) {
   Walk walk("ball-on-cube-press", Formulation::corrected);
@@ -662,7 +664,7 @@ TEST(Departures, AnswerHangsOnThePoseNotOnTheWay) {
 }
 
 TEST(Departures, DirectionOfAFastTool) {
-  // From outside to beneath the middle within one tick: the nearest surface is a side.
+  // From outside to below the centre within one tick: the nearest surface is a side.
   const scene::Pose inside = test::pressed(0.0295, 0.018);
   Walk walk(test::ball_on_cube());
   walk.step_to(test::pressed(-0.0005, 0.018));
@@ -703,7 +705,7 @@ TEST(Departures, TorqueIsThatOfTheForceAtTheLoadCentre) {
   states("none | VIII", "0.038 N m", total_torque_nm(walk.state).norm());
 }
 
-/// The ball rolls 5 mm without slipping, or is dragged as far.
+/// The ball rolls 5 mm without slip, or is moved as far without rotation.
 TEST(Departures, RollingBallFeelsNoFriction) {
   const auto tangential_n = [](bool roll) {
     Walk walk("ball-on-cube-slide", Formulation::corrected);
@@ -741,8 +743,8 @@ TEST(Departures, AreasOfASphere) {
   states("none | App. IV, adjacency", "55.3 %", 100.0 * covered_m2 / (4.0 * std::numbers::pi * 0.030 * 0.030));
 }
 
-/// The compass 2 mm deep in the ball of sphere-on-sphere-body. On a cube all free anchor points move alike and the
-/// shares stay.
+/// The compass 2 mm deep in the ball of sphere-on-sphere-body. On a cube all free anchor points move equally and the
+/// fractions stay the same.
 TEST(Departures, AreasOfTheCurrentBody) {
   scene::Scene scene = test::shipped_scene("compass-two-pins", Formulation::corrected);
   scene.body = test::shipped_scene("sphere-on-sphere-body", Formulation::corrected).body;
@@ -757,7 +759,7 @@ TEST(Departures, AreasOfTheCurrentBody) {
   states("none | App. IV, current body", "0.02 %", 100.0 * change);
 }
 
-/// At the rest in the midst of the track.
+/// During the pause in the middle of the track.
 TEST(Departures, RegionsOfTheCompass) {
   const auto force_n = [](int max_regions) {
     scene::Scene scene = test::shipped_scene("compass-two-pins", Formulation::corrected);
@@ -797,7 +799,7 @@ TEST(Departures, FreeAnchorPointsMoveAlike) {
   for (std::size_t i = 0; i < 5; ++i) states("none | structure, skeleton", "0.161 mm", u_m[i].norm() * 1e3);
 }
 
-/// The law of Hertz by the paper's two terms, by least squares up to a depth of 1.
+/// Hertz's law by the paper's two terms, by least squares up to a depth of 1.
 TEST(Departures, HertzByTwoTerms) {
   constexpr int places = 1000;
   Eigen::MatrixX2d terms(places, 2);

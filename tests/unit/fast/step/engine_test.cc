@@ -15,7 +15,7 @@ namespace {
 
 using scene::Formulation;
 
-/// A press that slides on, and that friction remembers.
+/// A press followed by sliding, with a friction state.
 const std::vector<scene::Pose> poses{test::pressed(-0.001), test::pressed(0.002), test::pressed(0.003, 0.001),
                                      test::pressed(0.003, 0.004)};
 
@@ -95,7 +95,7 @@ TEST(Engine, RecordsWhatTheRunLeaves) {
         EXPECT_EQ(m.force_n, l.force_n);
         EXPECT_EQ(m.torque_nm, l.torque_nm);
         EXPECT_EQ(m.friction_n, l.friction_n);
-        // Of this scene at this instant, and no default.
+        // Of this scene at this instant, and not a default.
         const ContactRegion& region = engine.state().regions[i];
         EXPECT_EQ(m.force_n, region.force.force_n);
         EXPECT_EQ(m.area_m2, region.extent.area_m2);

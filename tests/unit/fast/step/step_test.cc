@@ -120,7 +120,7 @@ TEST(Step, FormulationsDiffer) {
   Rig published(test::ball_on_cube(scene::Formulation::published)), corrected(test::ball_on_cube());
   published.step_to(test::pressed(0.003, 0.01, 0.0));
   corrected.step_to(test::pressed(0.003, 0.01, 0.0));
-  // The printed masses sit at the rim, where the ball is shallow (errata E6).
+  // The printed masses are at the contact's edge, where the depth is small (errata E6).
   EXPECT_LT(published.force_n().z(), 0.7 * corrected.force_n().z());
 }
 
@@ -161,7 +161,7 @@ TEST(Step, SlidingOverAnEdgeTurnsTheForceGradually) {
   double turned_rad = 0.0;
   for (int i = 0; s.force_n().norm() > 0.5; ++i) {
     s.step_to(test::pressed(0.003, 0.0001 * i));
-    // A tenth of a millimetre moves no more than a few samples from the top's share to the side's.
+    // A tenth of a millimetre moves only a few samples from the top to the side.
     EXPECT_LT((s.force_n() - before_n).norm(), 0.3) << i;
     before_n = s.force_n();
     turned_rad = std::max(turned_rad, std::atan2(before_n.x(), before_n.z()));

@@ -18,7 +18,7 @@ ContactPoint contact_at(const Rig& s, const Vec3& p_m, const Vec3& displacement_
   return {displacement_m, at.normal, at.patch, s.model.anchors->at(at.patch, at.point_m)};
 }
 
-/// Sum of the hats by coefficient at a contact point.
+/// Sum of the kernel functions times their coefficients at a contact point.
 template <class Value>
 Value sum_at(const ContactHats& hats, const std::vector<Value>& c, const ContactPoint& at) {
   Value sum = c[0] - c[0];

@@ -15,7 +15,7 @@ namespace {
 
 using scene::Vec3;
 
-/// A body, and hats over the points of its mesh.
+/// A body, and kernel functions at the points of its mesh.
 struct Hatted {
   explicit Hatted(const test::NamedBody& named)
       : name(named.name),
@@ -34,7 +34,7 @@ struct Hatted {
   [[nodiscard]] PatchPlace place(std::int32_t v) const {
     return anchors->at(static_cast<int>(patch_of[static_cast<std::size_t>(v)]), surface.points_m.col(v));
   }
-  /// Heights at every vertex of the hat over one of them.
+  /// Values at every vertex of the kernel function at one of them.
   [[nodiscard]] std::vector<float> over(std::int32_t top, decltype(hat_part)* part_of = hat_part) const {
     return over(patch_of[static_cast<std::size_t>(top)], place(top), part_of);
   }
@@ -105,7 +105,7 @@ TEST_P(HatOver, ABorderIsTheSameSeenFromEveryPatchThere) {
       for (std::size_t v = 0; v < first.size(); ++v) ASSERT_NEAR(other[v], first[v], 1e-5) << on.name;
     }
   }
-  // A single cap on held surface has no border that moves.
+  // A single cap on the fixed surface has no border that moves.
   if (on.moving_patches() > 1) {
     EXPECT_GT(compared, 20) << on.name;
   }
@@ -179,7 +179,7 @@ TEST(Hat, OverAPoleSpreadsOverAllItsPatchesAlike) {
 
 TEST(Hat, ChangesLittleWhenItsPointComesToAnEdgeOrAnAnchorPoint) {
   for (const auto& body : {std::pair("box", 5), std::pair("sphere", 0)}) {
-    // clang 14 lets no lambda capture a structured binding.
+    // clang 14 cannot capture a structured binding in a lambda.
     const int patch = body.second;
     const Hatted on(body_named(body.first));
     // Towards an edge and towards a corner of the patch.

@@ -38,7 +38,7 @@ struct Rig {
     const auto k = static_cast<std::size_t>(v);
     return Vec3(field.displacement_m[0][k], field.displacement_m[1][k], field.displacement_m[2][k]);
   }
-  /// Greatest difference between vertices of different patches at one place.
+  /// Largest difference between vertices of different patches at one place.
   [[nodiscard]] double tear_m() const {
     std::map<std::array<long, 3>, int> first_at;
     double worst_m = 0.0;
@@ -169,7 +169,7 @@ TEST(Interpolation, PublishedKeepsLengthsAndAnglesOfItsVectors) {
 }
 
 TEST(Interpolation, PublishedPointsAsTheVectorsDoBesideTheSupport) {
-  // Every free anchor sinks alike: the lengths fall towards the support, the direction stays.
+  // All free anchors move down equally: the lengths decrease towards the support, the direction stays.
   Rig s(test::ball_on_sphere());
   for (std::size_t i = 0; i < 5; ++i) s.anchor_m[i] = Vec3(0.0, 0.0, -1e-3);
   interpolate_corrected(s.model.rest, s.anchor_m, s.contact, s.field);
@@ -189,7 +189,7 @@ TEST(Interpolation, PublishedPointsAsTheVectorsDoBesideTheSupport) {
 }
 
 TEST(Interpolation, PublishedLosesTheAzimuth) {
-  // Two corners pulled apart sideways: the vectors cancel half way, the lengths do not (errata E15).
+  // Two corners move apart laterally: the vectors cancel half way, the lengths do not (errata E15).
   Rig s(test::ball_on_cube());
   for (std::size_t i = 4; i < 8; ++i) s.anchor_m[i] = Vec3(i & 1 ? 1e-3 : -1e-3, 0.0, -1e-4);
   interpolate_corrected(s.model.rest, s.anchor_m, s.contact, s.field);

@@ -58,7 +58,7 @@ TEST(LocalFactor, CorrectedHangsOnTheAreaAndNotOnTheSamples) {
   const double A_0 = std::numbers::pi * 0.002 * 0.002;
   EXPECT_EQ(local_factor_corrected(constants, {10, 1e-4}, 0.009),
             local_factor_corrected(constants, {1000, 1e-4}, 0.009));
-  // Both radii are more than a core outside the rim.
+  // Both radii are more than a core radius outside the contact.
   const double small = 0.004, large = 0.006, t = large / 0.015, fade = t * t * (3.0 - 2.0 * t);
   EXPECT_NEAR(local_factor_corrected(constants, {10, 0.5 * A_0}, small), 1.0 + 0.2 * std::log((small + 0.002) / 0.017),
               1e-15);
@@ -78,7 +78,7 @@ TEST(LocalFactor, CorrectedIsNeverNegative) {
 TEST(LocalFactor, ActsInsideRAndNowhereElse) {
   const FastModel model(test::ball_on_cube());
   SurfaceField field(model.rest);
-  // Near an edge, so that R reaches over to the side face.
+  // Near an edge, so that R extends to the side face.
   const Vec3 p0(0.022, 0.0, 0.06);
   for (auto& column : field.displacement_m) column.assign(column.size(), 1e-3f);
   const RegionSize region{100, 1e-4};

@@ -88,7 +88,7 @@ TEST(Normals, KeepTheRestNormalWhereTheSurfaceIsCrushed) {
   displace(model, field, [](const Vec3& p) { return Vec3(-p); });
   update_normals(model.normals, field);
   for (int v = 0; v < model.surface.vertex_count(); ++v) {
-    // Single precision leaves a little of the surface.
+    // Single precision keeps only part of the surface's geometry.
     EXPECT_GT(vector_at(field.normal, v).dot(Vec3(model.surface.normals.col(v))), 0.9);
     EXPECT_NEAR(vector_at(field.normal, v).norm(), 1.0, 1e-6);
   }
@@ -120,7 +120,7 @@ TEST(Normals, StencilsStayInTheirPatchAndCoverEveryVertex) {
       }
     }
     for (const int count : times) EXPECT_GE(count, 1);
-    // Most of a mesh is worked off in runs, or the pass is slow.
+    // Most vertices must be in runs, or the pass is slow.
     EXPECT_LT(model.normals.singles.size(), times.size() / 3);
   }
 }

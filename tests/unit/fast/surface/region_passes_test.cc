@@ -43,7 +43,7 @@ TEST(RegionPasses, OneRegionIsTheSingleRegionsShape) {
   }
 }
 
-/// Increment i of section VI-B by its definition: a dense solve of its own, region by region.
+/// Increment i of section VI-B by its definition: a dense solve region by region.
 TEST(RegionPasses, FusedEqualsRegionUponRegion) {
   Rig s(test::ball_on_cube());
   press_four(s, 4);
@@ -135,7 +135,7 @@ TEST(RegionPasses, RegionsAtOnePlaceAndOnEdgesStayFiniteAndBounded) {
       }
     }
   }
-  // Ten regions with as many D; what they were to take at one place is not added up.
+  // Ten regions with ten displacements D: at one place their increments do not add up.
   EXPECT_LT(worst, 8.0 * D);
   RecordProperty("worst_over_D", std::to_string(worst / D));
 }
@@ -149,7 +149,7 @@ TEST(RegionPasses, AnEmptyOrForcelessStackIsTheRestShape) {
     for (const auto& column : s.field.displacement_m) EXPECT_EQ(column, std::vector<float>(column.size(), 0.0f));
     EXPECT_EQ(s.at(*form.several, &local, Vec3(0.0, 0.0, 0.06)), Vec3::Zero());
 
-    // A region without force, between two that press, changes nothing.
+    // A region without force, between two with force, changes nothing.
     press_four(s, 2);
     s.stack_up(*form.several);
     s.shape(*form.several, &local);

@@ -38,7 +38,7 @@ TEST(RegionPoint, APointMovesAsAVertexThere) {
             const scene::SurfaceQuery at = s.rest_vertex(v);
             const Vec3 point_m = form.several->displacement_at(s.model.rest, *s.model.anchors, s.stack, factor, at);
             ASSERT_LT((s.vertex_m(v) - point_m).norm(), 1e-7) << form.name << ' ' << count << ' ' << v;
-            // As one of a block, whose other points lie anywhere on the patch.
+            // As one point of a block, whose other points are anywhere on the patch.
             if (v % 7 != 0) continue;
             const Patch& patch = s.model.rest.patches[static_cast<std::size_t>(at.patch)];
             const auto lane = static_cast<std::size_t>(v) % PointLanes::size;
@@ -60,7 +60,7 @@ TEST(RegionPoint, APointMovesAsAVertexThere) {
   }
 }
 
-/// Shape_i of a rig as the pull-back asks for it.
+/// Shape_i of a rig, in the form that the rest-point search needs.
 class Displaced final : public DisplacedSurface {
  public:
   Displaced(const Form& form, Rig& rig) : form_(form), rig_(rig) {}
@@ -73,8 +73,8 @@ class Displaced final : public DisplacedSurface {
   Rig& rig_;
 };
 
-/// Where the tool of a later region stands against the surface that the passes over the vertices would show: the
-/// closest point of that surface by its own triangles, over randomised scenes.
+/// The rest-point search of a later region against the surface that the passes over the vertices give: the closest
+/// point of that surface by its own triangles, over random scenes.
 TEST(RegionPoint, ALaterRegionMeetsTheShapeOfTheEarlierOnes) {
   std::mt19937 random(5);
   const auto between = [&](double low, double high) {
@@ -90,7 +90,7 @@ TEST(RegionPoint, ALaterRegionMeetsTheShapeOfTheEarlierOnes) {
     double worst_m = 0.0;
     for (int trial = 0; trial < 12; ++trial) {
       Rig s(scene);
-      // Within a patch: on its border the surface has an edge, and no single closest point near it.
+      // Within a patch: at its border the surface has an edge, where the closest point is not unique.
       const bool box = s.model.rest.patches.size() == 6;
       const Vec3 middle_m = s.model.body->query(box ? Vec3(0.004, 0.003, 0.1) : Vec3(0.05, 0.045, 0.085)).point_m;
       const scene::SurfaceQuery middle = s.model.body->query(middle_m);
@@ -155,7 +155,7 @@ TEST(RegionPoint, EveryRegionTakesItsDisplacementOnTopOfTheEarlierShape) {
         s.stack_up(*form.several, i + 1);
         const RegionShape& own = s.regions[i];
         const Vec3 rise_m = s.at(*form.several, factor, own.p0_W_m) - before[i];
-        // The printed form has the length and the angle of D, not its azimuth (E15).
+        // The printed form has the length and the angle of D, but not its azimuth (E15).
         EXPECT_NEAR(rise_m.norm(), own.contact.displacement_m.norm(), 1e-15) << form.name << ' ' << i;
         EXPECT_NEAR(rise_m.dot(own.contact.normal), own.contact.displacement_m.dot(own.contact.normal), 1e-15);
         if (form.several == &several_regions_corrected) {
@@ -171,7 +171,7 @@ TEST(RegionPoint, EveryRegionTakesItsDisplacementOnTopOfTheEarlierShape) {
 }
 
 TEST(RegionPoint, TheLocalFactorActsOnItsOwnIncrement) {
-  // Far apart on opposite sides: each region's R sees its own factor on its own increment and nothing else.
+  // Far apart on opposite sides: each region's R applies its own factor to its own increment only.
   Rig s(test::ball_on_cube());
   s.press(Vec3(0.03, 0.0041, 0.0333), Vec3(-0.002, 0.0, 0.0));
   s.press(Vec3(-0.03, 0.0027, 0.0311), Vec3(0.0013, 0.0, 0.0), 8e-5);

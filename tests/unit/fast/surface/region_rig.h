@@ -32,7 +32,7 @@ struct Rig {
   std::vector<std::vector<scene::Vec3>> anchor_m;  ///< U_i
   std::vector<fast::RegionShape> regions;
 
-  /// A region at the surface point nearest to p, its anchor displacements drawn at random.
+  /// A region at the surface point nearest to p, with random anchor displacements.
   void press(const scene::Vec3& p_m, const scene::Vec3& displacement_m, double area_m2 = 3e-5) {
     const std::size_t i = regions.size();
     std::mt19937 random(static_cast<unsigned>(17 + i));
@@ -70,7 +70,7 @@ struct Rig {
     const auto k = static_cast<std::size_t>(v);
     return scene::Vec3(field.displacement_m[0][k], field.displacement_m[1][k], field.displacement_m[2][k]);
   }
-  /// The vertex as a point of its own patch: on an edge a query may answer with the neighbour.
+  /// The vertex as a point of its own patch: on an edge a query may return the neighbouring patch.
   [[nodiscard]] scene::SurfaceQuery rest_vertex(int v) const {
     int patch = 0;
     while (v >= model.rest.patches[static_cast<std::size_t>(patch)].end) ++patch;

@@ -1,4 +1,4 @@
-// `mpirun -np N touchstone reference SCENE` against the same solve by one process.
+// `mpirun -np N touchstone reference SCENE` compared with the same solve by one process.
 #include "reference/linear/ranks.h"
 #include "reference/solver.h"
 #include "scene/input/scene_io.h"
@@ -50,11 +50,11 @@ Process process(pid_t pid) {
 }
 bool runs(pid_t pid) { return process(pid).state != 'X' && process(pid).state != 'Z'; }
 
-/// A run of `touchstone` by mpirun, with what it prints in a file.
+/// A run of `touchstone` by mpirun, with its output in a file.
 class MpiRun {
  public:
   MpiRun(int ranks, const std::vector<std::string>& arguments, fs::path printed) : printed_(std::move(printed)) {
-    // As root too, on fewer and on busy processors; mpirun adds nothing to what touchstone prints.
+    // Also as root, on fewer and on busy processors; mpirun adds nothing to the output of touchstone.
     std::vector<std::string> words{
         MPIEXEC, "--quiet", "--oversubscribe",     "--allow-run-as-root", "--mca", "mpi_yield_when_idle",
         "1",     "-np",     std::to_string(ranks), TOUCHSTONE_BINARY};
@@ -151,7 +151,7 @@ class Distributed : public testing::Test {
   fs::path folder_;
 };
 
-/// The serial answer's, within `tolerance_rel` of its largest force and displacement.
+/// Expects the serial result within `tolerance_rel` of its largest force and displacement.
 void expect_equal(const Result& one, const Result& other, double tolerance_rel) {
   ASSERT_EQ(one.instants.size(), other.instants.size());
   double largest_n = 0.0, largest_m = 0.0, off_n = 0.0, off_m = 0.0;
@@ -228,7 +228,7 @@ TEST(Alone, AStartWithoutMpirunDoesNotTouchMpi) {
 TEST_F(Distributed, BadInputIsOneErrorAndExitsWithTwo) {
   MpiRun run(2, arguments("ball-on-cube-press.toml", {"reference.levels=99"}, "store"), printed());
   EXPECT_EQ(run.wait(), 2);
-  // Once, whatever the number of ranks; a container's MPI may have its own to say before it.
+  // Once, whatever the number of ranks; a container's MPI may print something before it.
   const std::string text = run.printed(), message = "expected a whole number in [1, 9]";
   EXPECT_THAT(text, HasSubstr("reference.levels = 99; " + message));
   EXPECT_EQ(text.find(message), text.rfind(message)) << text;

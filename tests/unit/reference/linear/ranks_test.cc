@@ -15,7 +15,7 @@ namespace {
 
 constexpr int side = 20, unknowns = side * side;
 
-/// The five-point Laplacian on a square, less a multiple of one.
+/// The five-point Laplacian on a square, shifted by a multiple of the identity.
 struct Laplacian {
   double shift = 0.0;
   bool first_is_free = false;  // coupled to nothing and without a diagonal: exactly singular
@@ -41,7 +41,7 @@ struct Laplacian {
     return product;
   }
 
-  /// Unequal shares of every diagonal entry, and every count-th entry below it.
+  /// Unequal parts of every diagonal entry, and every count-th entry below it.
   [[nodiscard]] SymmetricMatrix part_of_this_rank() const {
     const double share = (ranks::own() + 1.0) / (0.5 * ranks::count() * (ranks::count() + 1));
     SymmetricMatrix part;
@@ -60,14 +60,14 @@ struct Laplacian {
     return part;
   }
 
-  /// The smallest but k.
+  /// The k-th eigenvalue, counted from the smallest.
   [[nodiscard]] static double eigenvalue(int k) {
     const auto one = [](int m) { return 2.0 - 2.0 * std::cos(m * std::numbers::pi / (side + 1)); };
     return k == 0 ? 2.0 * one(1) : one(1) + one(2);
   }
 };
 
-/// A Laplacian that lies over all ranks, and its solver.
+/// A Laplacian distributed over all ranks, and its solver.
 class SpreadLaplacian : public ranks::Part {
  public:
   static constexpr int kind = 1;
@@ -168,7 +168,7 @@ TEST(DistributedSolver, RefusesASingularMatrix) {
   spread.set({0.0, true});
   spread.analyse();
   EXPECT_FALSE(spread.factorise());
-  // And goes on with the next.
+  // The next factorisation works.
   spread.set({});
   EXPECT_TRUE(spread.factorise());
 }

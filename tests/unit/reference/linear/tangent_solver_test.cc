@@ -12,7 +12,7 @@ namespace {
 
 constexpr int side = 22;
 
-/// Seven-point Laplacian on a cube of side^3 places plus a diagonal that varies by `spread` from place to place.
+/// Seven-point Laplacian on a cube of side^3 points, plus a diagonal that varies by `spread` from point to point.
 SymmetricMatrix laplacian(double shift, double spread) {
   SymmetricMatrix K{{0}, {}, {}};
   for (int n = 0; n < side * side * side; ++n) {
@@ -84,7 +84,7 @@ TEST(TangentSolver, LooserTolerancesTakeFewerIterationsAndKeepTheirPromise) {
     ASSERT_TRUE(solver.solve(K, 1e-10, exact));
     EXPECT_EQ(solver.work().factorisations, 2);
     const Eigen::VectorXd error = x - exact;
-    // The norm is that of the older matrix, here within a factor of three.
+    // The norm is that of the earlier matrix, here within a factor of three.
     EXPECT_LT(std::sqrt(error.dot(all * error)), 3.0 * tolerance * std::sqrt(exact.dot(all * exact)));
   }
 }
@@ -121,7 +121,7 @@ TEST(TangentSolver, SeesTheUnstableDirectionThatTheLoadDoesNot) {
   TangentSolver solver(1);
   const SymmetricMatrix stable = laplacian(0.0, 0.0), unstable = laplacian(-1.2 * lowest(), 0.0);
   solver.analyse(stable);
-  // An eigenvector of both, odd about the cube's middle: the one unstable direction is even.
+  // An eigenvector of both, odd about the cube's centre: the one unstable direction is even.
   Eigen::VectorXd odd(stable.size());
   for (int n = 0; n < stable.size(); ++n) {
     const auto wave = [](int i, int halves) { return std::sin(std::numbers::pi * halves * (i + 1) / (side + 1)); };
@@ -154,7 +154,7 @@ TEST(TangentSolver, KnowsTheSizeOfTheFactorBeforehand) {
   TangentSolver solver(1);
   EXPECT_EQ(solver.predicted_factor_bytes(), 0);
   solver.analyse(laplacian(0.0, 0.0));
-  // No less than the band within one plane's elimination, no more than the whole lower triangle.
+  // At least the band of one plane's elimination, at most the whole lower triangle.
   const double n = side * side * side;
   EXPECT_GT(solver.predicted_factor_bytes(), 8.0 * side * side * side * side / 2.0);
   EXPECT_LT(solver.predicted_factor_bytes(), 8.0 * n * n / 2.0);

@@ -1,4 +1,4 @@
-// Threads for a solve: no more than there are processors to run them.
+// Threads for a solve: not more than there are idle processors.
 #include "reference/linear/threads.h"
 
 #include <gtest/gtest.h>

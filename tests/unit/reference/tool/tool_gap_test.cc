@@ -1,4 +1,5 @@
-// Every tool's gap function: the slopes Newton uses, signs, places, and the spline of a mesh against exact shapes.
+// Every tool's gap function: derivatives for Newton's method, signs, positions, and the spline of a mesh against exact
+// shapes.
 #include "reference/tool/tool_gap.h"
 
 #include "reference/tool/distance_grid.h"
@@ -49,8 +50,8 @@ class EveryTool : public testing::TestWithParam<ToolShape> {
   }
 };
 
-/// The derivatives of `at` differ from differences of it by less than the tolerance. Where a piece of the surface meets
-/// another the Hessian jumps; there the differences on the two sides differ, and the place is passed over.
+/// The derivatives of `at` agree with difference quotients to the tolerance. Where pieces of the surface meet, the
+/// Hessian jumps: the difference quotients of both sides differ, and the place is skipped.
 template <int dim, class At>
 bool slopes_agree(const At& at, const Eigen::Matrix<double, dim, 1>& x, double tolerance) {
   const Gap<dim> g = at(x);
@@ -80,7 +81,7 @@ TEST_P(EveryTool, GradientAndHessianAreTheSlopesInSpace) {
 }
 
 TEST_P(EveryTool, GradientAndHessianAreTheSlopesInTheMeridianPlane) {
-  if (GetParam() == ToolShape::box || GetParam() == ToolShape::mesh) return;  // no bodies of revolution
+  if (GetParam() == ToolShape::box || GetParam() == ToolShape::mesh) return;  // not of revolution
   tool_.mass_center_m = Vec3(0.0, 0.0, 0.2);
   const RigidTool<2> tool(tool_distance(tool_), {Vec3(0.0, 0.0, 0.3), Eigen::Quaterniond::Identity()});
   int checked = 0;
@@ -101,7 +102,7 @@ TEST_P(EveryTool, IsTheSignedDistanceOfTheScenesShape) {
     const Vec3 p = around();
     const Gap<3> g = distance_->at(p);
     const double exact_m = shape->signed_distance_m(p);
-    // Rounding lifts the distance, at most by what a corner loses.
+    // Rounding increases the distance, at most by what a corner loses.
     EXPECT_GE(g.value_m, exact_m - 1e-14);
     EXPECT_LE(g.value_m, exact_m + (std::sqrt(3.0) - 1.0) * rounding_m() + 1e-14);
     EXPECT_NEAR(g.gradient.norm(), 1.0, 1e-14);
@@ -130,7 +131,7 @@ TEST_P(EveryTool, GapAlongALineEndsOnTheSurface) {
     ++hits;
     EXPECT_NEAR(tool.gap(from + s * N).value_m, 0.0, 1e-12);
     EXPECT_GT(tool.gap(from + (s - 1e-3) * N).value_m, 0.0);  // from outside
-    // Sideways motion of the point does not matter.
+    // Tangential motion of the point has no effect.
     EXPECT_NEAR(tool.gap_along(from, N, 0.1 * N + 0.3 * N.unitOrthogonal()).value_m, s - 0.1, 1e-13);
   }
   EXPECT_GT(hits, 50);
@@ -149,7 +150,7 @@ TEST(BallTool, GapAlongTheNormalIsHertzsBoundaryCondition) {
   const Gap<2> below = tool.gap_along({0.0, 1.0}, {0.0, 1.0}, {0.0, -0.04});
   EXPECT_NEAR(below.value_m, -0.06, 1e-14);
   EXPECT_NEAR(tool.gap_along({0.6, 1.0}, {0.0, 1.0}, {0.3, 0.0}).value_m, 0.9 - 0.8, 1e-14);
-  // What is not under the ball never touches.
+  // A point that is not below the ball never touches.
   EXPECT_TRUE(std::isinf(tool.gap_along({1.2, 1.0}, {0.0, 1.0}, {0.0, 0.0}).value_m));
 }
 
@@ -157,7 +158,7 @@ TEST(DistanceGrid, OfABallIsTheBallLessItsChords) {
   const double R_m = 0.01;
   const auto mesh = mesh_of(scene::Sphere(Vec3::Zero(), R_m), 5120);
   const DistanceGrid grid(*mesh, grid_spacing_m(*mesh));
-  // An edge e of the mesh lies e^2 / 8R under the ball, a triangle's middle e^2 / 6R.
+  // An edge e of the mesh lies e^2 / 8R inside the ball, the centre of a triangle e^2 / 6R.
   double edge_m = 0.0;
   for (const auto& t : mesh->triangles) {
     for (int k = 0; k < 3; ++k)

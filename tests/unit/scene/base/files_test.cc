@@ -1,4 +1,4 @@
-// Files that are whole or absent, folders that one process works in: against limits, kills and other processes.
+// Files that are complete or absent, and folders for one process: under limits, kills and other processes.
 #include "scene/base/files.h"
 
 #include "scene/base/error.h"
@@ -42,7 +42,7 @@ class FilesTest : public testing::Test {
   std::filesystem::path root_;
 };
 
-/// A process of its own that holds a folder's lock until it is killed.
+/// A process that holds a folder's lock until it is killed.
 class Holder {
  public:
   explicit Holder(const std::filesystem::path& folder) {
@@ -151,7 +151,7 @@ TEST_F(FilesTest, AWriterAndAJanitorMayMeet) {
   if (janitor == 0) {
     for (;;) remove_unfinished(root_);
   }
-  // The janitor may only take a file in the moment between its making and its locking.
+  // The clean-up may delete a file only between its creation and its locking.
   int given_up = 0;
   for (int i = 0; i < 200; ++i) {
     const std::string text = std::to_string(i) + std::string(3000, 'x');

@@ -1,4 +1,4 @@
-// What comes in: files that are no files, texts that would escape, faults by the thousand.
+// Input: files that are no regular files, texts with control characters, thousands of faults.
 #include "scene/base/input.h"
 
 #include "scene/base/error.h"
@@ -40,7 +40,7 @@ std::string row(const std::string& time_s, const std::string& rest = "position_m
 }
 const std::string good = body + ball + law + row("0.0") + row("1.0");
 
-/// What a scene is refused with, in at most two seconds.
+/// The message with which a scene is refused, in at most two seconds.
 std::string refusal(const std::string& text, const std::filesystem::path& file = "a.toml",
                     const std::vector<std::string>& overrides = {}) {
   const std::clock_t begin = std::clock();  // of the processor: the machine may be busy
@@ -82,12 +82,12 @@ TEST_F(InputFile, IsRefusedUnlessOrdinary) {
   const std::string expected = "; expected a TOML file of at most 4 MiB";
   EXPECT_EQ(fault(folder_), "it is a folder" + expected);
   EXPECT_EQ(fault(""), "there is no such file" + expected);
-  // A pipe that nobody writes to: waiting for it would hang.
+  // A pipe without a writer: waiting for it would hang.
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   EXPECT_EQ(fault(folder_ / "pipe"), "it is a pipe" + expected);
   EXPECT_EQ(fault("/dev/zero"), "it is a device" + expected);
-  EXPECT_EQ(fault("/proc/self/environ"), "it is no ordinary file" + expected);
-  EXPECT_EQ(fault("/proc/self/mem"), "it is no ordinary file" + expected);
+  EXPECT_EQ(fault("/proc/self/environ"), "it is not a regular file" + expected);
+  EXPECT_EQ(fault("/proc/self/mem"), "it is not a regular file" + expected);
   const int listening = ::socket(AF_UNIX, SOCK_STREAM, 0);
   sockaddr_un address{AF_UNIX, {}};
   (folder_ / "socket").string().copy(address.sun_path, sizeof address.sun_path - 1);
@@ -139,7 +139,7 @@ TEST_F(InputFile, OfEveryKindIsOpenedTheSameWay) {
 TEST_F(InputFile, OfTheWrongKindIsNotShown) {
   write("secret", "root:$6$salt$hash:19000:0:99999:7:::\n");
   const std::string told = refusal(body + ball + law + "[track]\nfile = \"secret\"\n", folder_ / "a.toml");
-  EXPECT_THAT(told, AllOf(HasSubstr("unknown or repeated column that is no plain name"), Not(HasSubstr("salt"))));
+  EXPECT_THAT(told, AllOf(HasSubstr("unknown or repeated column that is not a plain name"), Not(HasSubstr("salt"))));
   write("named", "time_s,x_m,y_m,height\n");
   EXPECT_THAT(refusal(body + ball + law + "[track]\nfile = \"named\"\n", folder_ / "a.toml"),
               HasSubstr("unknown or repeated column \"height\""));
@@ -202,7 +202,7 @@ TEST(TomlText, IsRefusedBeforeTheParserWhereItWouldFail) {
   EXPECT_EQ(refusal("a = 1\xca\xa2"),
             "a.toml:1:6: not valid TOML: a character that is not ASCII, outside of quotes and "
             "comments");
-  EXPECT_EQ(refusal("a = 1\n# \xff"), "a.toml:2:3: not valid TOML: a byte that is no UTF-8");
+  EXPECT_EQ(refusal("a = 1\n# \xff"), "a.toml:2:3: not valid TOML: a byte that is not UTF-8");
   std::string deep = "a";
   for (int i = 0; i < 500'000; ++i) deep += ".a";
   EXPECT_THAT(refusal(deep + " = 1"), HasSubstr("a key of more than 16 parts"));
@@ -329,7 +329,7 @@ TEST_F(InputFile, GivesPosesInTheSameRangesFromRowsAndTables) {
     }
   }
   EXPECT_THAT(refusal(body + ball + law + row("0.0") + row("1.0", "position_m = [0.0, 0.0]\ndepth_m = -1000.0")),
-              AllOf(HasSubstr("a.toml:17:11: track[1].depth_m: leads to a place"), HasSubstr("[-1000, 1000] m")));
+              AllOf(HasSubstr("a.toml:17:11: track[1].depth_m: leads to a position"), HasSubstr("[-1000, 1000] m")));
 }
 
 TEST(Records, OfTooManyTrianglesAreRefused) {

@@ -1,4 +1,4 @@
-// A first scene from a few numbers: it loads, says what was asked, and asks for no constant.
+// A first scene from a few numbers: it loads, has the given values, and needs no constant.
 #include "scene/input/new_scene.h"
 
 #include "scene/model/area_law.h"
@@ -53,7 +53,7 @@ TEST(NewScene, TheLawFollowsFromTheMaterial) {
   EXPECT_NEAR(area_law_constant_n_per_m2(asked.body.material, asked.tool, Formulation::published), flat, 1e-4 * flat);
   const Scene scene = loaded(asked);
   EXPECT_EQ(scene.contact.law, ContactLaw::area_aware);
-  // To the last bit, or comparisons would list the scene beside the untuned model.
+  // Exactly equal, or comparisons would list the scene beside the untuned model.
   EXPECT_EQ(scene.contact.k1_per_radius_n_per_m2, rounded);
   EXPECT_EQ(scene.fast.s_c_m2, stiff_beam_area_m2(asked.body));
   EXPECT_EQ(scene.contact.k3_n_per_m3, 0.0);
@@ -97,7 +97,7 @@ TEST(NewScene, EveryBodyWithEveryTool) {
 TEST(NewScene, ShowsHowCoulombFrictionIsWritten) {
   NewScene asked = ball_on_block();
   EXPECT_FALSE(loaded(asked).contact.friction.has_value());
-  // Without the comment signs the lines are a scene's.
+  // Without the comment signs the lines are valid in a scene.
   std::string text = new_scene_toml(asked, "a.toml");
   const std::size_t table = text.find("# [contact.friction]"), end = text.find("\n\n", table);
   std::string lines = text.substr(table, end - table);

@@ -51,6 +51,23 @@ std::string message_for(const std::string& from, const std::string& to, const st
   return "no error";
 }
 
+TEST(SceneFile, ANamedShapeIsABodyOfRevolution) {
+  const std::string box = "shape = \"box\"\nsize_m = [0.06, 0.06, 0.06]";
+  std::string text = good;
+  text.replace(text.find(box), box.size(), "shape = \"cylinder\"\nradius_m = 0.03\nlength_m = 0.06");
+  const Scene s = parse_scene(text, "a.toml");
+  EXPECT_EQ(s.body.shape, BodyShape::revolution);
+  EXPECT_TRUE(s.body.flat_bottom());
+  const std::unique_ptr<const Shape> body = body_shape(s.body);
+  EXPECT_NEAR(body->volume_m3(), 3.141592653589793 * 0.03 * 0.03 * 0.06, 1e-15);
+  EXPECT_NEAR(body->bounds().lower_m.z(), 0.0, 1e-15);
+  const std::string resolved = resolved_toml(s);
+  EXPECT_THAT(resolved, AllOf(HasSubstr("shape = \"cylinder\""), HasSubstr("length_m = 0.06")));
+  EXPECT_EQ(scene_hash(parse_scene(resolved, "a.toml")), scene_hash(s));
+  EXPECT_THAT(message_for("shape = \"box\"", "shape = \"cylinder\"\nradius_m = 0.03"),
+              AllOf(HasSubstr("body.length_m: missing"), HasSubstr("body.size_m: only applies with")));
+}
+
 TEST(SceneFile, ReadsValuesAndFillsDefaults) {
   const Scene s = parse_scene(good, "dir/a.toml");
   EXPECT_EQ(s.name, "a");
@@ -70,7 +87,7 @@ TEST(SceneFile, LengthsWithoutAValueFollowTheBodysSize) {
   EXPECT_EQ(cube.r_R_m, 0.015);
   EXPECT_EQ(cube.C_r_m, 0.002);
   EXPECT_EQ(cube.s_c_m2, 0.001);
-  // A body of eight times the volume is twice the size.
+  // A body of eight times the volume is twice as large.
   const std::vector<std::string> slab = {"body.size_m=[0.12, 0.12, 0.12]", "track[0].position_m=[0, 0, 0.1305]",
                                          "track[1].position_m=[0, 0, 0.125]"};
   const Scene larger = parse_scene(good, "a.toml", slab);
@@ -79,7 +96,7 @@ TEST(SceneFile, LengthsWithoutAValueFollowTheBodysSize) {
   EXPECT_EQ(larger.fast.C_r_m, 0.004);
   EXPECT_EQ(larger.fast.s_c_m2, 0.004);
   EXPECT_EQ(scene_hash(parse_scene(resolved_toml(larger), "a.toml")), scene_hash(larger));
-  // What is given stays, and the others follow the body all the same.
+  // Given values stay, and the others still follow the body.
   std::vector<std::string> given = slab;
   given.push_back("contact.r_th_m=0.005");
   EXPECT_EQ(parse_scene(good, "a.toml", given).contact.r_th_m, 0.005);
@@ -153,7 +170,7 @@ TEST(SceneFile, AFormerNameIsRefusedWithItsNewName) {
   EXPECT_EQ(message_for("[tool]", "[fast]\nr_th_m = 0.004\n[tool]"), "a.toml:8:1: " + message);
   EXPECT_EQ(message_for("[tool]", "[fast]\nC_n = 0.1\nr_th_m = \"wide\"\n[tool]"), "a.toml:9:1: " + message);
   EXPECT_EQ(message_for("[tool]", "[tool]", {"fast.r_th_m=0.004"}), "--set fast.r_th_m=0.004: " + message);
-  // Every new name is a key, and no former one.
+  // Every new name is a key, and no earlier one.
   EXPECT_EQ(message_for("[tool]", "[tool]", {"contact.r_th_m=0.004"}), "no error");
   EXPECT_EQ(former_name_message("contact.r_th_m"), "");
 }
@@ -251,7 +268,7 @@ TEST(Fields, EveryDefaultIsInItsOwnRange) {
   for (const auto& field : scene_fields()) {
     EXPECT_TRUE(keys.insert(field.key).second) << field.key;
     EXPECT_FALSE(field.doc.empty()) << field.key;
-    // A unit is part of the key's name, so that a file cannot be misread. The unit of K hangs on beta.
+    // A unit is part of the key's name, so that a file cannot be misread. The unit of K depends on beta.
     if (field.key == "contact.friction.K") continue;
     EXPECT_TRUE(field.unit.empty() || field.key.find('_') != std::string_view::npos) << field.key;
   }
@@ -276,7 +293,7 @@ TEST(Fields, WhatMayBeTunedIsAConstantOrAChoiceOfTheFastModel) {
   }
   EXPECT_EQ(tunable_field("contact.r_th_m"), nullptr);
   EXPECT_EQ(tunable_field(""), nullptr);
-  // Taking these over makes a stored reference stale; reports/tuning.md and every file with them say so.
+  // Using these values makes a stored reference stale; reports/tuning.md and every file with them say so.
   EXPECT_THAT(shared, testing::ElementsAre("contact.friction.K", "contact.friction.beta", "contact.friction.mu_D"));
 }
 
@@ -320,7 +337,7 @@ TEST_F(IncludeTest, GivesWhatTheSceneDoesNotSay) {
   const Scene alone = parse_scene(good, "a.toml");
   ASSERT_NE(alone.fast.s_c_m2, 0.5);
   EXPECT_EQ(read().fast.s_c_m2, 0.5);
-  // The scene's own value wins, and --set over both.
+  // The scene's own value has precedence, and --set over both.
   EXPECT_EQ(read().contact.k1_n_per_m, alone.contact.k1_n_per_m);
   EXPECT_EQ(
       parse_scene("include = \"parameters.toml\"\n" + good, dir_ / "scene.toml", {"fast.s_c_m2=0.25"}).fast.s_c_m2,
@@ -336,13 +353,13 @@ TEST_F(IncludeTest, TellsAFaultInTheFileItStandsIn) {
   write("[fast\n");
   EXPECT_THAT(refusal(), HasSubstr(included + ":1"));
   write("include = \"other.toml\"\n");
-  EXPECT_THAT(refusal(), HasSubstr("scene.toml:1:11: include: " + included + " includes a file itself"));
+  EXPECT_THAT(refusal(), HasSubstr("scene.toml:1:11: include: " + included + " includes another file"));
   std::filesystem::remove(dir_ / "parameters.toml");
   EXPECT_THAT(refusal(), HasSubstr("scene.toml:1:11: include: cannot read " + included));
 }
 
 TEST(ShippedScenes, GiveTheLengthsThatHaveNoFixedDefault) {
-  // So no default can move what was published of them, nor the keys of their stored references.
+  // So no default can change published figures, nor the keys of stored references.
   const std::string folder = source_folder();
   for (const char* place : {"/meshes/scenes", "/tests/gates/scenes"}) {
     for (const auto& entry : std::filesystem::directory_iterator(folder + place)) {

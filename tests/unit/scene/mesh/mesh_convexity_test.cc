@@ -1,4 +1,4 @@
-// Which meshes count as convex: those of convex solids, however coarse, rounded or placed; none with a dent.
+// Which meshes count as convex: those of convex solids, however coarse, rounded or placed; none with a concavity.
 #include "scene/input/scene_io.h"
 #include "scene/mesh/mesh_file.h"
 #include "scene/mesh/mesh_formats.h"
@@ -107,7 +107,7 @@ TEST_F(Convexity, OfExportedSolidsAtAnyPlaceAndFineness) {
   }
 }
 
-/// A box of 20 mm whose top has a dent as wide as itself, smooth, so that every edge in it is nearly flat.
+/// A box of 20 mm whose top has a smooth concavity of full width, in which every edge is nearly flat.
 TriangleMesh dented_box(double depth_m) {
   constexpr double half_m = 0.01;
   TriangleMesh mesh = mesh_of(Box(Vec3::Zero(), Vec3::Constant(2.0 * half_m)), 8000);
@@ -124,7 +124,7 @@ TEST_F(Convexity, EndsWhereADentIsDeeperThanTheTolerance) {
   EXPECT_TRUE(convex(dented_box(0.0)));
   EXPECT_TRUE(convex(dented_box(0.7 * allowed_m)));
   EXPECT_FALSE(convex(dented_box(1.5 * allowed_m)));
-  // Turned, its bounding box is larger, and the tolerance with it.
+  // When rotated, its bounding box is larger, and so is the tolerance.
   const double turned_m = convex_tolerance_rel * diagonal_m(moved(dented_box(0.0), Vec3::Zero(), askew));
   EXPECT_FALSE(convex(moved(dented_box(1.5 * turned_m), Vec3(0.1, 0.2, 0.3), askew)));
 }
@@ -150,7 +150,7 @@ TEST_F(Convexity, EndsWhereOneCornerIsPushedIn) {
 }
 
 TEST_F(Convexity, IsNotThatOfTheCornersAlone) {
-  // A prism whose top is turned: all six corners stand out, but the sides are folded inwards along their diagonals.
+  // A prism whose top is rotated: all six corners are extreme, but the sides are folded inwards along their diagonals.
   TriangleMesh prism;
   prism.points_m.resize(3, 6);
   for (int k = 0; k < 6; ++k) {

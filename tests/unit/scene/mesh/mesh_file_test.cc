@@ -22,7 +22,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A regular grid of triangles over the sides of a box, every vertex named once.
+/// A regular grid of triangles on the sides of a box, without repeated vertices.
 RawMesh box_mesh(const Vec3& lower, const Vec3& upper) {
   RawMesh mesh;
   for (int i = 0; i < 8; ++i) {
@@ -71,7 +71,7 @@ void put(std::string& bytes, T value, bool big) {
   bytes.append(raw.data(), raw.size());
 }
 
-/// With properties and an element of no interest between the ones that count.
+/// With properties and an additional element between the needed ones.
 std::string ply(const RawMesh& mesh, const std::string& format) {
   std::ostringstream out;
   out << "ply\nformat " << format << " 1.0\ncomment none\nelement vertex " << mesh.points.size()
@@ -116,7 +116,7 @@ class MeshFile : public testing::Test {
     faults_.clear();
     return read_triangle_mesh(folder_ / name, unit_m, faults_);
   }
-  /// What the file is refused with.
+  /// The message with which the file is refused.
   std::string refusal(const std::string& name, const std::string& bytes) {
     const auto mesh = read(name, bytes);
     EXPECT_FALSE(mesh.has_value());
@@ -238,8 +238,8 @@ TEST_F(MeshFile, RefusesWhatBoundsNoSolid) {
 }
 
 TEST_F(MeshFile, RefusesATubeThatMeetsItselfInsideOut) {
-  // A Klein bottle's gluing: a square grid, closed one way straight and the other way mirrored. Placed at random, so it
-  // cuts itself too; but first it has one side only.
+  // The topology of a Klein bottle: a square grid, closed one way directly and the other way mirrored. With random
+  // positions it intersects itself too, but first it is not orientable.
   constexpr int n = 5;
   RawMesh mesh;
   for (int i = 0; i < n * n; ++i)
@@ -254,7 +254,7 @@ TEST_F(MeshFile, RefusesATubeThatMeetsItselfInsideOut) {
       mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
     }
   }
-  EXPECT_THAT(refusal(mesh), HasSubstr("only one side"));
+  EXPECT_THAT(refusal(mesh), HasSubstr("not orientable"));
 }
 
 TEST_F(MeshFile, RefusesBrokenFilesWithThePlace) {
@@ -331,7 +331,7 @@ RawMesh fan(int count) {
   return mesh;
 }
 
-/// Tetrahedra apart from each other.
+/// Separate tetrahedra.
 RawMesh scattered(int count) {
   RawMesh mesh;
   for (int i = 0; i < count; ++i) {
@@ -350,7 +350,7 @@ TEST_F(MeshFile, ThatWouldTakeLongToCheckIsRefusedByAStatedLimit) {
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_THAT(refusal(scattered(20000)), HasSubstr("20000 separate pieces; expected at most 1000"));
   EXPECT_THAT(refusal(fan(20000)), HasSubstr("too many long thin triangles side by side"));
-  // Triangles without an area are counted too: they are in the file.
+  // Triangles without an area count too: they are in the file.
   std::string bytes(84 + 50 * 500'001, '\0');
   const std::uint32_t count = 500'001;
   std::memcpy(bytes.data() + 80, &count, sizeof count);
@@ -368,7 +368,7 @@ TEST_F(MeshFile, MissingFileIsNamed) {
 }
 
 TEST_F(MeshFile, TakesTwentyThousandTriangles) {
-  // A wavy torus: most boxes overlap something.
+  // A wavy torus: most boxes overlap another.
   constexpr int around = 200, across = 50;
   RawMesh mesh;
   for (int i = 0; i < around; ++i) {

@@ -1,4 +1,4 @@
-// Where a tool first meets the body along a line, and what a track that gives depths comes to.
+// First contact of a tool with the body along a line, and the poses of a track that gives depths.
 #include "scene/model/first_contact.h"
 
 #include "scene/input/scene_io.h"
@@ -22,7 +22,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 const Vec3 down(0.0, 0.0, -1.0);
-const Box cube(Vec3(0, 0, 0.03), Vec3::Constant(0.06));
+const Box cube_body(Vec3(0, 0, 0.03), Vec3::Constant(0.06));
 
 Tool tool_of(ToolShape shape, double radius_m, double length_m = 0.0) {
   Tool tool;
@@ -32,7 +32,7 @@ Tool tool_of(ToolShape shape, double radius_m, double length_m = 0.0) {
   return tool;
 }
 
-Tool box_tool(const Vec3& size_m) {
+Tool box_shaped_tool(const Vec3& size_m) {
   Tool tool;
   tool.shape = ToolShape::box;
   tool.size_m = size_m;
@@ -61,29 +61,29 @@ Pose at(const Vec3& position_m, const Eigen::Quaterniond& turned = Eigen::Quater
 
 TEST(FirstContact, OfABallIsExactOnAFaceAnEdgeAndFromTheSide) {
   const Tool ball = tool_of(ToolShape::sphere, 0.01);
-  EXPECT_NEAR(first_contact_m(cube, ball, at(Vec3(0.01, 0.02, 0.1)), down).value(), 0.03, 1e-15);
-  // The length of the direction means nothing; past first contact the way is negative.
-  EXPECT_NEAR(first_contact_m(cube, ball, at(Vec3(0, 0, 0.065)), 7.0 * down).value(), -0.005, 1e-15);
-  // Its centre 6 mm beyond the edge, it rests on the edge 8 mm above the top.
-  EXPECT_NEAR(first_contact_m(cube, ball, at(Vec3(0.036, 0, 0.1)), down).value(), 0.1 - 0.068, 1e-12);
-  EXPECT_NEAR(first_contact_m(cube, ball, at(Vec3(-0.5, 0, 0.03)), Vec3::UnitX()).value(), 0.46, 1e-15);
+  EXPECT_NEAR(first_contact_m(cube_body, ball, at(Vec3(0.01, 0.02, 0.1)), down).value(), 0.03, 1e-15);
+  // The length of the direction has no effect; beyond first contact the distance is negative.
+  EXPECT_NEAR(first_contact_m(cube_body, ball, at(Vec3(0, 0, 0.065)), 7.0 * down).value(), -0.005, 1e-15);
+  // With its centre 6 mm beyond the edge, the ball rests on the edge 8 mm above the top.
+  EXPECT_NEAR(first_contact_m(cube_body, ball, at(Vec3(0.036, 0, 0.1)), down).value(), 0.1 - 0.068, 1e-12);
+  EXPECT_NEAR(first_contact_m(cube_body, ball, at(Vec3(-0.5, 0, 0.03)), Vec3::UnitX()).value(), 0.46, 1e-15);
   const Vec3 slant(1.0, 0.0, -1.0);
-  EXPECT_NEAR(first_contact_m(cube, ball, at(Vec3(-0.1, 0, 0.17)), slant).value(), 0.1 * std::sqrt(2.0), 1e-14);
-  EXPECT_FALSE(first_contact_m(cube, ball, at(Vec3(0.0401, 0, 0.1)), down));
-  EXPECT_TRUE(first_contact_m(cube, ball, at(Vec3(0.0399, 0, 0.1)), down));
+  EXPECT_NEAR(first_contact_m(cube_body, ball, at(Vec3(-0.1, 0, 0.17)), slant).value(), 0.1 * std::sqrt(2.0), 1e-14);
+  EXPECT_FALSE(first_contact_m(cube_body, ball, at(Vec3(0.0401, 0, 0.1)), down));
+  EXPECT_TRUE(first_contact_m(cube_body, ball, at(Vec3(0.0399, 0, 0.1)), down));
 }
 
 TEST(FirstContact, OfAMeshNeedNotBeAtACorner) {
-  // A plate of two triangles a side comes down on a slim body: the middle of a triangle meets it first.
+  // A plate of two triangles per side is lowered onto a slim body: the middle of a triangle touches first.
   const Box plate(Vec3::Zero(), Vec3(0.2, 0.2, 0.002));
   const Box slim(Vec3(0, 0, 0.02), Vec3(0.01, 0.01, 0.04));
   const Tool tool = mesh_tool({{&plate, 12}});
   EXPECT_NEAR(first_contact_m(slim, tool, at(Vec3(0.03, 0.01, 0.5)), down).value(), 0.459, 1e-11);
   const Eigen::Quaterniond tilted(Eigen::AngleAxisd(0.2, Vec3::UnitY()));
-  // Tilted, the plate meets a corner of the body: its lower face z = -t / cos - x tan in the plate's middle plane.
+  // Tilted, the plate touches a corner of the body: its lower face z = -t / cos - x tan in the plate's middle plane.
   const double touch_z_m = 0.04 + 0.001 / std::cos(0.2) + 0.005 * std::tan(0.2);
   EXPECT_NEAR(first_contact_m(slim, tool, at(Vec3(0, 0, 0.5), tilted), down).value(), 0.5 - touch_z_m, 1e-10);
-  // Of two balls the lower one touches, though its middle stands beside the body.
+  // Of two balls the lower one touches, although its centre is beside the body.
   const Sphere high(Vec3(0, 0, 0.03), 0.005), low(Vec3(0.02, 0, 0), 0.005);
   const Tool pair = mesh_tool({{&high, 3200}, {&low, 3200}});
   EXPECT_NEAR(first_contact_m(slim, pair, at(Vec3(-0.02, 0, 0.5)), down).value(), 0.455, 1e-9);
@@ -93,7 +93,7 @@ TEST(FirstContact, OfAMeshNeedNotBeAtACorner) {
 
 TEST(FirstContact, LeavesNoEarlierContactForAnyBodyAndTool) {
   const std::vector<std::shared_ptr<const Shape>> bodies = {
-      std::make_shared<Box>(cube), std::make_shared<Sphere>(Vec3(0, 0, 0.03), 0.03),
+      std::make_shared<Box>(cube_body), std::make_shared<Sphere>(Vec3(0, 0, 0.03), 0.03),
       std::make_shared<Ellipsoid>(Vec3(0, 0, 0.02), Vec3(0.05, 0.03, 0.02)),
       std::make_shared<Revolution>(cylinder_profile(0.03, 0.05, 0.006), Vec3(0, 0, 0.025))};
   Tool cylinder = tool_of(ToolShape::cylinder, 0.008, 0.03);
@@ -101,7 +101,7 @@ TEST(FirstContact, LeavesNoEarlierContactForAnyBodyAndTool) {
   const Sphere ball(Vec3(0.02, 0, 0), 0.006);
   const Box bar(Vec3(-0.01, 0, 0), Vec3(0.01, 0.02, 0.04));
   const std::vector<Tool> tools = {tool_of(ToolShape::sphere, 0.01), tool_of(ToolShape::capsule, 0.006, 0.02), cylinder,
-                                   box_tool(Vec3(0.02, 0.01, 0.03)), mesh_tool({{&ball, 300}, {&bar, 12}})};
+                                   box_shaped_tool(Vec3(0.02, 0.01, 0.03)), mesh_tool({{&ball, 300}, {&bar, 12}})};
   std::mt19937 random(11);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   int met = 0, passed = 0;
@@ -166,7 +166,7 @@ TEST(TrackByDepth, IsTheSameSceneAsTheHeightsItComesTo) {
   const Scene by_height =
       parse_scene(head + track("position_m = [0.0, 0.0, 0.0705]", "position_m = [0.0, 0.0, 0.065]"), "a.toml");
   EXPECT_EQ(scene_hash(parse_scene(by_depth, "a.toml")), scene_hash(by_height));
-  // The lighter tool starts as far above and goes as deep.
+  // The smaller tool starts as far above and moves as deep.
   const Scene small = parse_scene(by_depth, "a.toml", {"tool.radius_m=0.004", "track[1].depth_m=0.002"});
   EXPECT_EQ(small.track[0].pose.position_m.z(), 0.0645);
   EXPECT_EQ(small.track[1].pose.position_m.z(), 0.062);
@@ -214,13 +214,14 @@ TEST(TrackByDepth, BothNeitherAndNowhereAreRefusedAtTheirPlace) {
   EXPECT_THAT(refusal(head + track(full + "\ndirection = [0, 0, 0]\ndepth_m = 0.0", full)),
               HasSubstr("direction: is zero; expected a non-zero length"));
   EXPECT_THAT(refusal(head + track(flat + "\ndirection = [1, 0, -1]\ndepth_m = 0.0", full)),
-              HasSubstr("track[0].position_m: a slanting direction needs a point of its line"));
-  EXPECT_EQ(refusal(by_depth, {"track[1].position_m=[0.05, 0.0]"}),
-            "a.toml:20:11: track[1].depth_m: moved straight down the tool never meets the body; expected x and y over "
-            "it");
+              HasSubstr("track[0].position_m: a direction that is not vertical needs a point of its line"));
+  EXPECT_EQ(
+      refusal(by_depth, {"track[1].position_m=[0.05, 0.0]"}),
+      "a.toml:20:11: track[1].depth_m: moved straight down the tool never touches the body; expected x and y above "
+      "the body");
   EXPECT_THAT(refusal(head + track(full, full + "\ndepth_m = 0.001\ndirection = [0, 0, 1]\n"),
                       {"track[1].position_m=[0.05, 0.0, 0.0]"}),
-              HasSubstr("the tool never meets the body along this direction"));
+              HasSubstr("the tool never touches the body along this direction"));
   EXPECT_THAT(refusal(by_depth, {"track[0].depth_m=0.001"}), HasSubstr("the tool starts 1 mm inside the body"));
   EXPECT_THAT(refusal(by_depth, {"track[0].depth_m=deep"}), HasSubstr("expected a number in"));
 }
@@ -254,7 +255,7 @@ TEST_F(DepthFileTest, ATableMayHaveDepthsInPlaceOfHeights) {
   EXPECT_EQ(track_[1].pose.position_m, Vec3(0.01, 0, 0.067));
   EXPECT_NEAR(track_[2].pose.position_m.z(), 0.065, 1e-11);
   EXPECT_THAT(read_csv("time_s,depth_m,x_m,y_m\n0,-0.0005,0,0\n1,0.003,0.05,0\n"),
-              HasSubstr("t.csv:3:1: track[1].depth_m: moved straight down the tool never meets the body"));
+              HasSubstr("t.csv:3:1: track[1].depth_m: moved straight down the tool never touches the body"));
   EXPECT_THAT(read_csv("time_s,x_m,y_m,z_m,depth_m\n"), HasSubstr("the header has both z_m and depth_m"));
 }
 
@@ -262,7 +263,7 @@ TEST(NoContact, SaysTheLeastGapAndWhen) {
   EXPECT_EQ(no_contact_warning(parse_scene(by_depth, "a.toml")), "");
   EXPECT_EQ(no_contact_warning(parse_scene(by_depth, "a.toml", {"track[1].depth_m=-0.0001"})),
             "the tool never touches the body on this track; the least gap is 0.1 mm, at 1 s, so every force is zero");
-  // It passes over the middle of a ball, nearest half way.
+  // It moves over the middle of a ball, closest half way.
   const std::string over =
       "[body]\nshape = \"sphere\"\nradius_m = 0.03\nsupport_height_m = 0.005\n[body.material]\n"
       "youngs_modulus_pa = 3.0e6\npoissons_ratio = 0.5\n" +
@@ -270,7 +271,7 @@ TEST(NoContact, SaysTheLeastGapAndWhen) {
   const Scene passes =
       parse_scene(over + track("position_m = [-0.05, 0.0, 0.072]", "position_m = [0.05, 0.0, 0.072]"), "a.toml");
   EXPECT_THAT(no_contact_warning(passes), HasSubstr("the least gap is 2 mm, at 0.5 s"));
-  // Between two recorded instants it touches.
+  // Between two recorded instants it is in contact.
   const Scene brief = parse_scene(over + track("position_m = [-0.05, 0.0, 0.069]", "position_m = [0.05, 0.0, 0.069]"),
                                   "a.toml", {"compare.instants=4"});
   EXPECT_THAT(no_contact_warning(brief),

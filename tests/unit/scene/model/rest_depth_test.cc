@@ -44,7 +44,7 @@ Tool box_tool(const Vec3& box_size_m) {
   return tool;
 }
 
-/// A shape's triangles as a mesh tool, its border vertices named several times.
+/// A shape's triangles as a mesh tool, with repeated vertices at borders.
 Tool mesh_tool(const Shape& shape, int triangles) {
   const Surface s = tessellate(shape, triangles);
   Tool tool;
@@ -62,7 +62,7 @@ TEST(RestDepth, CapsuleOnItsSideAndTilted) {
   const double above_m = size_m + 0.005 - 0.001;
   EXPECT_NEAR(rest_depth_m(cube, tool, {Vec3(0, 0, above_m), turned(std::numbers::pi / 2, Vec3::UnitX())}), 0.001,
               1e-12);
-  // Tilted by 30 degrees the lower end leads by l/2 cos.
+  // Tilted by 30 degrees, the lower end is lower by l/2 cos.
   const double lead_m = 0.01 * std::cos(std::numbers::pi / 6);
   EXPECT_NEAR(rest_depth_m(cube, tool, {Vec3(0, 0, above_m + lead_m), turned(std::numbers::pi / 6, Vec3::UnitX())}),
               0.001, 1e-12);
@@ -76,7 +76,7 @@ TEST(RestDepth, CapsuleOnItsSideAndTilted) {
 
 TEST(RestDepth, BoxOnItsCornerEdgeAndFace) {
   const Tool tool = box_tool(Vec3(0.02, 0.02, 0.02));
-  // On its corner: the space diagonal stands upright.
+  // On its corner: the space diagonal is vertical.
   const Eigen::Quaterniond corner_down = Eigen::Quaterniond::FromTwoVectors(Vec3(1, 1, 1), -Vec3::UnitZ());
   const double diagonal_m = 0.01 * std::sqrt(3.0);
   EXPECT_NEAR(rest_depth_m(cube, tool, {Vec3(0.003, 0.001, size_m + diagonal_m - 0.002), corner_down}), 0.002, 6e-9);
@@ -142,7 +142,7 @@ TEST(RestDepth, MeshBallIsTheBallToItsFacets) {
       const SurfaceQuery q = body.query(body.center_m() + 0.07 * out);
       const Pose pose{q.point_m + 0.008 * q.normal, turned(3.0 * any(random), Vec3(any(random), any(random), 1.0))};
       const double difference_m = rest_depth_m(body, ball, pose) - rest_depth_m(body, mesh, pose);
-      // A mesh within the ball is never deeper; the chord's sagitta is h^2 / (8 R) along an edge, more in a triangle.
+      // A mesh inside the ball is never deeper; the chord's sagitta is h^2 / (8 R) along an edge, more in a triangle.
       EXPECT_GE(difference_m, -1.2e-9);
       error_m = std::max(error_m, difference_m);
     }
@@ -265,7 +265,7 @@ TEST(RestDepth, OfAFineMeshAtManyPosesTakesTheTimeOfFew) {
     // Facets lie within the ball by less than a micrometre.
     EXPECT_NEAR(depth.gap_m(pose_of(i)), pose_of(i).position_m.z() - size_m - 0.01, 1e-6);
   }
-  // Some thirty when it was written.
+  // About thirty when this was written.
   EXPECT_LT(seconds_since(begin), 150 * one_s);
 }
 

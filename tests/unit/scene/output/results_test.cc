@@ -146,7 +146,7 @@ TEST_F(ResultFolder, OneRunWritesAtATime) {
     }
     EXPECT_TRUE(std::filesystem::exists(dir_ / "curve.csv.touchstone-part-1-1")) << "the other run's";
     const FolderLock below = prepare_result_folder(dir_ / "below");
-    const FolderLock worker(dir_);  // of a study, whose verbs take the folder
+    const FolderLock worker(dir_);  // of a study, whose commands use the folder
   }
   EXPECT_NO_THROW((void)prepare_result_folder(dir_));
 }

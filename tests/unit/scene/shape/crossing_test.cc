@@ -25,12 +25,12 @@ std::vector<std::shared_ptr<const Shape>> shapes() {
   return all;
 }
 
-/// The shape's own way and that of every convex shape.
+/// The shape's own function and that for every convex shape.
 using Cross = Crossing (*)(const Shape&, const Vec3&, const Vec3&);
 const Cross crosses[] = {[](const Shape& s, const Vec3& from, const Vec3& to) { return s.crossing(from, to); },
                          [](const Shape& s, const Vec3& from, const Vec3& to) { return cross_convex(s, from, to); }};
 
-/// Where a line runs inside, by the sign of the signed distance alone: dense steps, then halving.
+/// Where a line is inside, by the sign of the signed distance alone: dense steps, then bisection.
 Crossing by_sampling(const Shape& shape, const Vec3& from, const Vec3& to) {
   constexpr int steps = 4000;
   const double length = (to - from).norm();
@@ -58,11 +58,11 @@ TEST(Crossing, IsWhereTheSignedDistanceIsNegative) {
     int hits = 0;
     for (int k = 0; k < 60; ++k) {
       const Vec3 from(place(random), place(random), place(random));
-      // Through the neighbourhood of the shape, now and then ending in it.
+      // Through the neighbourhood of the shape, sometimes ending in it.
       const Vec3 through = Vec3(0.005, -0.003, 0.02) + Vec3(aside(random), aside(random), aside(random));
       const Vec3 to = k % 5 == 0 ? through : Vec3(from + 2.0 * (through - from));
       const Crossing sampled = by_sampling(*shape, from, to);
-      // A line that only grazes the shape slips through the sampling.
+      // Sampling may miss a line that only grazes the shape.
       if (sampled.leave_m - sampled.enter_m < 1e-4 && !sampled.empty()) continue;
       for (const Cross cross : crosses) {
         const Crossing here = cross(*shape, from, to);

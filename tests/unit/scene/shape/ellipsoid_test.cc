@@ -9,8 +9,8 @@
 namespace touchstone::scene {
 namespace {
 
-/// The least distance to the surface by a search that knows nothing of the method: over the unit sphere that is
-/// stretched to the ellipsoid, which has no poles, in ever smaller squares about the best place.
+/// Smallest distance to the surface by an independent search: over the unit sphere mapped to the ellipsoid, without
+/// poles, in smaller and smaller squares around the best point.
 double distance_by_search_m(const Vec3& semi, const Vec3& p) {
   double best = INFINITY, width = 1.0;
   Vec3 at = Vec3::UnitX();
@@ -40,7 +40,7 @@ TEST(Ellipsoid, DistanceIsTheSearchsAtAnyRatioOfAxes) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> any(-1.5, 1.5), power(-3.0, 0.0);
   for (int k = 0; k < 60; ++k) {
-    // In braces, which have an order: the same draws with every compiler.
+    // A braced list, whose order is defined: the same numbers with every compiler.
     const Vec3 semi{std::pow(10.0, power(random)), k % 3 == 0 ? 1.0 : std::pow(10.0, power(random)), 1.0};
     const Ellipsoid shape(Vec3::Zero(), semi);
     const Vec3 p = semi.cwiseProduct(Vec3{any(random), any(random), any(random)}) +
@@ -48,7 +48,7 @@ TEST(Ellipsoid, DistanceIsTheSearchsAtAnyRatioOfAxes) {
     const double level = p.cwiseQuotient(semi).squaredNorm() - 1.0;
     const double d = shape.signed_distance_m(p);
     EXPECT_EQ(d > 0.0, level > 0.0);
-    // The search narrows in from above; the answer is attained, so it may only be the better one.
+    // The search approaches from above; the method's distance is attained, so it may only be smaller.
     const double search_m = distance_by_search_m(semi, p);
     EXPECT_LE(std::abs(d), search_m + 1e-13) << semi.transpose() << " at " << p.transpose();
     EXPECT_GE(std::abs(d), search_m - 1e-10) << semi.transpose() << " at " << p.transpose();

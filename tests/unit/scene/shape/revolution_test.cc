@@ -38,11 +38,12 @@ TEST(Profile, RefusesWhatSweepsNoConvexBody) {
   EXPECT_THAT(fault({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {0, 0.4, 0}), HasSubstr("half its chord, 0.5 m"));
   EXPECT_THAT(fault({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {0, -1, 0}), HasSubstr("arc radius -1 m"));
   EXPECT_THAT(fault({{0, -1}, {0.5, 0}, {0, 1}}, {0, 0.5 * std::sqrt(1.25)}), HasSubstr("half its chord"));
-  // A fillet of too large a radius meets the side at an angle, but outwards: convex. One with too small does not.
+  // A fillet with too large a radius joins the side at an angle, but outwards: convex. With too small a radius it is
+  // not.
   EXPECT_EQ(fault({{0, 0}, {0.8, 0}, {1, 0.2}, {1, 1}, {0, 1}}, {0, 0.3, 0, 0}), "");
   EXPECT_THAT(fault({{0, 0}, {0.8, 0}, {1, 0.2}, {1, 1}, {0, 1}}, {0, 0.19, 0, 0}),
               HasSubstr("corner 1 at (r, z) = (0.8, 0) m turns inwards"));
-  // An arc may bulge past its corners, but not come back over the top.
+  // An arc may bulge beyond its corners, but not overhang the top.
   EXPECT_EQ(fault({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {0, 2, 0}), "");
   EXPECT_THAT(fault({{0, 0}, {1, 0}, {0.5, 1}, {0, 1}}, {0, 0.6, 0}), HasSubstr("corner 2 at (r, z) = (0.5, 1) m"));
 }
@@ -67,7 +68,7 @@ TEST(Revolution, ClosedFormsOfAreaVolumeAndBounds) {
   const Revolution cone({{Vec2(0, 0), Vec2(0.03, 0), Vec2(0, 0.04)}, {}});
   EXPECT_NEAR(cone.area_m2(), pi * 0.03 * 0.03 + pi * 0.03 * 0.05, 1e-17);
   EXPECT_NEAR(cone.volume_m3(), pi * 0.03 * 0.03 * 0.04 / 3, 1e-19);
-  // An arc that bulges past its corners: a barrel as a zone of a ball.
+  // An arc that bulges beyond its corners: a barrel as a zone of a ball.
   const Revolution barrel({{Vec2(0, -0.03), Vec2(0.04, -0.03), Vec2(0.04, 0.03), Vec2(0, 0.03)}, {0, 0.05, 0}});
   EXPECT_NEAR(barrel.bounds().upper_m.x(), 0.05, 1e-16);
   EXPECT_NEAR(barrel.area_m2(), 2 * pi * 0.05 * 0.06 + 2 * pi * 0.0016, 1e-16);
@@ -102,7 +103,7 @@ TEST(Revolution, PatchesAsTheHeaderNumbersThem) {
   EXPECT_THAT(wholes(Revolution(cylinder_profile(0.01, 0.03, 0.002))), ElementsAre(1, 4, 4, 4, 1));
   EXPECT_THAT(wholes(Revolution({{Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)}, {}})), ElementsAre(1, 4));
   EXPECT_THAT(wholes(Revolution({{Vec2(0, -1), Vec2(1, 0), Vec2(0, 1)}, {}})), ElementsAre(4, 4));
-  // Straight pieces in line are one.
+  // Collinear straight pieces are joined.
   EXPECT_THAT(wholes(Revolution({{Vec2(0, 0), Vec2(0.5, 0), Vec2(1, 0), Vec2(1, 0.5), Vec2(1, 1), Vec2(0, 1)}, {}})),
               ElementsAre(1, 4, 1));
 }

@@ -24,7 +24,7 @@ TEST_P(EveryShape, PatchPointsLieOnTheSurfaceWithTheQueriesNormal) {
       for (double v : {0.2, 0.5, 0.7}) {
         const SurfacePoint p = shape.at(patch, u, v);
         EXPECT_NEAR(shape.signed_distance_m(p.point_m), 0.0, 1e-16);
-        // A little outside, the closest point is the point again.
+        // From slightly outside, the closest point is the same point.
         const SurfaceQuery q = shape.query(p.point_m + 1e-3 * p.normal);
         EXPECT_EQ(q.patch, patch);
         EXPECT_NEAR(q.signed_distance_m, 1e-3, 1e-15);
@@ -42,15 +42,18 @@ TEST_P(EveryShape, PatchesOfOneFaceMeetSmoothly) {
     const int face = shape.face_of(patch), before = shape.face_of(patch - 1);
     EXPECT_TRUE(face == before || face == before + 1);
     if (face != before) continue;
-    // Some of their borders coincide.
+    // Some border coincides with that of an earlier patch of the face.
     double nearest = 2.0;
-    for (double u : {0.0, 1.0}) {
-      for (double v : {0.0, 1.0}) {
-        const SurfacePoint p = shape.at(patch, u, v);
-        for (double s : {0.0, 1.0}) {
-          for (double t : {0.0, 1.0}) {
-            const SurfacePoint q = shape.at(patch - 1, s, t);
-            if ((p.point_m - q.point_m).norm() < 1e-12) nearest = std::min(nearest, (p.normal - q.normal).norm());
+    for (int other = 0; other < patch; ++other) {
+      if (shape.face_of(other) != face) continue;
+      for (double u : {0.0, 1.0}) {
+        for (double v : {0.0, 1.0}) {
+          const SurfacePoint p = shape.at(patch, u, v);
+          for (double s : {0.0, 1.0}) {
+            for (double t : {0.0, 1.0}) {
+              const SurfacePoint q = shape.at(other, s, t);
+              if ((p.point_m - q.point_m).norm() < 1e-12) nearest = std::min(nearest, (p.normal - q.normal).norm());
+            }
           }
         }
       }
@@ -98,7 +101,7 @@ TEST_P(EveryShape, DistanceIsExactInsideAndOutside) {
     EXPECT_NEAR(q.normal.norm(), 1.0, 1e-12);
     EXPECT_NEAR(shape.signed_distance_m(q.point_m), 0.0, 1e-15);
     EXPECT_LT((q.point_m + q.signed_distance_m * q.normal - p).norm(), 1e-14);
-    // Nothing on the surface is nearer: exactness, not only consistency.
+    // No point of the surface is closer: exact, not only consistent.
     for (int patch = 0; patch < shape.patch_count(); ++patch) {
       const SurfacePoint other = shape.at(patch, 0.5 * (spread(random) + 0.5), 0.5 * (spread(random) + 0.5));
       EXPECT_GE((other.point_m - p).norm(), std::abs(q.signed_distance_m) - 1e-14);
@@ -107,7 +110,7 @@ TEST_P(EveryShape, DistanceIsExactInsideAndOutside) {
 }
 
 TEST_P(EveryShape, NormalIsTheGradientOfTheDistance) {
-  // The Eikonal property comes with it: the gradient has unit length.
+  // This implies the Eikonal equation: the gradient has unit length.
   const Shape& shape = *GetParam().shape;
   std::mt19937 random(4);
   const Bounds b = shape.bounds();
@@ -122,7 +125,7 @@ TEST_P(EveryShape, NormalIsTheGradientOfTheDistance) {
       const Vec3 e = step_m * Vec3::Unit(axis);
       gradient[axis] = (shape.signed_distance_m(p + e) - shape.signed_distance_m(p - e)) / (2.0 * step_m);
     }
-    // Inside, the distance has ridges where two surface points are equally near; few places lie so close to one.
+    // Inside, the distance has ridges where two surface points are equally close; few places are so close to one.
     if ((gradient - shape.query(p).normal).norm() > 1e-5) ++ridges;
   }
   EXPECT_LE(ridges, 3);
@@ -131,7 +134,7 @@ TEST_P(EveryShape, NormalIsTheGradientOfTheDistance) {
 TEST_P(EveryShape, DistanceIsThatOfManySurfacePoints) {
   const Shape& shape = *GetParam().shape;
   const Surface fine = tessellate(shape, 20000);
-  // Of a vertex to its neighbours.
+  // Distance of a vertex from its neighbours.
   double spacing_m = 0.0;
   for (const auto& [a, b, c] : fine.triangles) {
     spacing_m = std::max({spacing_m, (fine.points_m.col(a) - fine.points_m.col(b)).norm(),
@@ -155,7 +158,7 @@ TEST_P(EveryShape, DistanceIsThatOfManySurfacePoints) {
     if (d > 0.01) {
       EXPECT_GE(d, nearest_m - spacing_m * spacing_m / d);
     }
-    // A bounding box tells outside; the shape's own centre is inside.
+    // Outside the bounding box is outside; the shape's own centre is inside.
     if (((p - b.lower_m).array() < 0.0).any() || ((b.upper_m - p).array() < 0.0).any()) {
       EXPECT_GT(shape.signed_distance_m(p), 0.0);
     }

@@ -12,8 +12,8 @@
 namespace touchstone::scene {
 namespace {
 
-const Box box(Vec3(0.0, 0.0, 0.03), Vec3(0.06, 0.04, 0.06));
-const Sphere sphere(Vec3(0.0, 0.0, 0.03), 0.03);
+const Box box_body(Vec3(0.0, 0.0, 0.03), Vec3(0.06, 0.04, 0.06));
+const Sphere sphere_body(Vec3(0.0, 0.0, 0.03), 0.03);
 
 double signed_volume_m3(const Surface& surface) {
   double volume = 0.0;
@@ -25,13 +25,13 @@ double signed_volume_m3(const Surface& surface) {
 
 TEST(Tessellate, GivesAboutTheTrianglesAskedFor) {
   for (int wished : {12, 1000, 3952, 100000}) {
-    EXPECT_NEAR(tessellate(box, wished).triangle_count(), wished, 0.12 * wished + 8) << wished;
-    EXPECT_NEAR(tessellate(sphere, wished).triangle_count(), wished, 0.12 * wished + 8) << wished;
+    EXPECT_NEAR(tessellate(box_body, wished).triangle_count(), wished, 0.12 * wished + 8) << wished;
+    EXPECT_NEAR(tessellate(sphere_body, wished).triangle_count(), wished, 0.12 * wished + 8) << wished;
   }
 }
 
 TEST(Tessellate, VerticesLieOnTheShapeSortedByPatch) {
-  for (const Shape* shape : {static_cast<const Shape*>(&box), static_cast<const Shape*>(&sphere)}) {
+  for (const Shape* shape : {static_cast<const Shape*>(&box_body), static_cast<const Shape*>(&sphere_body)}) {
     const Surface s = tessellate(*shape, 2000);
     ASSERT_EQ(s.patch_begin.size(), static_cast<std::size_t>(shape->patch_count()) + 1);
     EXPECT_EQ(s.patch_begin.front(), 0);
@@ -41,11 +41,11 @@ TEST(Tessellate, VerticesLieOnTheShapeSortedByPatch) {
 }
 
 TEST(Tessellate, IsClosedAndTurnedOutward) {
-  EXPECT_NEAR(signed_volume_m3(tessellate(box, 500)), box.volume_m3(), 1e-15);
-  const Surface s = tessellate(sphere, 2000);
-  EXPECT_GT(signed_volume_m3(s), 0.99 * sphere.volume_m3());
+  EXPECT_NEAR(signed_volume_m3(tessellate(box_body, 500)), box_body.volume_m3(), 1e-15);
+  const Surface s = tessellate(sphere_body, 2000);
+  EXPECT_GT(signed_volume_m3(s), 0.99 * sphere_body.volume_m3());
   // Closed: vector areas sum to zero.
-  for (const Surface& surface : {s, tessellate(box, 500)}) {
+  for (const Surface& surface : {s, tessellate(box_body, 500)}) {
     Vec3 sum = Vec3::Zero();
     for (const auto& [a, b, c] : surface.triangles) {
       const Vec3 pa = surface.points_m.col(a);
@@ -58,13 +58,13 @@ TEST(Tessellate, IsClosedAndTurnedOutward) {
 }
 
 TEST(Tessellate, VolumeAndAreaConvergeWithSecondOrder) {
-  // Vertices on a smooth surface: the chord error, and so area and volume, fall with h^2.
+  // Vertices on a smooth surface: the chord error, and so that of area and volume, decreases with h^2.
   std::vector<double> area_error, volume_error;
   for (int triangles : {8 * 64, 8 * 256, 8 * 1024}) {
-    const Surface s = tessellate(sphere, triangles);
+    const Surface s = tessellate(sphere_body, triangles);
     const double area_m2 = std::accumulate(s.vertex_area_m2.begin(), s.vertex_area_m2.end(), 0.0);
-    area_error.push_back(1.0 - area_m2 / sphere.area_m2());
-    volume_error.push_back(1.0 - signed_volume_m3(s) / sphere.volume_m3());
+    area_error.push_back(1.0 - area_m2 / sphere_body.area_m2());
+    volume_error.push_back(1.0 - signed_volume_m3(s) / sphere_body.volume_m3());
   }
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_NEAR(std::log2(area_error[i] / area_error[i + 1]), 2.0, 0.05);
@@ -73,15 +73,15 @@ TEST(Tessellate, VolumeAndAreaConvergeWithSecondOrder) {
 }
 
 TEST(Tessellate, VertexAreasSumToTheBox) {
-  const Surface s = tessellate(box, 1000);
-  EXPECT_NEAR(std::accumulate(s.vertex_area_m2.begin(), s.vertex_area_m2.end(), 0.0), box.area_m2(), 1e-15);
+  const Surface s = tessellate(box_body, 1000);
+  EXPECT_NEAR(std::accumulate(s.vertex_area_m2.begin(), s.vertex_area_m2.end(), 0.0), box_body.area_m2(), 1e-15);
 }
 
 class EveryTessellation : public testing::TestWithParam<test::NamedShape> {};
 INSTANTIATE_TEST_SUITE_P(Shapes, EveryTessellation, testing::ValuesIn(test::every_shape()),
                          [](const auto& shape) { return shape.param.name; });
 
-/// Vertices at exactly the same place are one: borders of patches must coincide to the bit.
+/// Merges vertices at exactly the same place: borders of patches must coincide bitwise.
 std::vector<int> welded(const Surface& s, int& count) {
   std::map<std::array<double, 3>, int> first;
   std::vector<int> vertex;
@@ -103,7 +103,7 @@ TEST_P(EveryTessellation, IsOneClosedSurfaceWithoutCracksOrHandles) {
       for (std::size_t k = 0; k < 3; ++k) {
         const int a = vertex[static_cast<std::size_t>(t[k])], b = vertex[static_cast<std::size_t>(t[(k + 1) % 3])];
         EXPECT_NE(a, b);
-        // Every edge once in either direction.
+        // Every edge occurs once in each direction.
         EXPECT_EQ(++uses[std::make_pair(a, b)], 1);
       }
     }
@@ -139,7 +139,7 @@ TEST_P(EveryTessellation, VerticesLieOnTheirPatchWithItsNormal) {
       const Vec3 p = s.points_m.col(i), n = s.normals.col(i);
       EXPECT_NEAR(shape.signed_distance_m(p), 0.0, 1e-16);
       EXPECT_NEAR(n.norm(), 1.0, 1e-15);
-      // Straight out along the patch's own normal the surface falls away: the vertex stays the closest point.
+      // Outwards along the patch's own normal the vertex remains the closest point.
       EXPECT_NEAR(shape.signed_distance_m(p + 1e-3 * n), 1e-3, 1e-15);
     }
   }
@@ -172,13 +172,13 @@ TEST_P(EveryTessellation, AreaAndVolumeConvergeToTheShapes) {
   for (const auto& error : {area_error, volume_error}) {
     EXPECT_GT(error[2], 0.0);
     EXPECT_LT(error[0], 2e-2);
-    // Fourfold triangles, a quarter of the error; ring counts are whole numbers, so over both steps.
+    // Four times the triangles, a quarter of the error; ring counts are whole numbers, so over both steps.
     EXPECT_NEAR(0.5 * std::log2(error[0] / error[2]), 2.0, 0.2);
   }
 }
 
 TEST_P(EveryTessellation, IsFourfoldSymmetric) {
-  // A quarter turn about the shape's axis carries vertices onto vertices, where the shape has that symmetry.
+  // A quarter turn about the shape's axis maps vertices to vertices, if the shape has that symmetry.
   const auto* shape = dynamic_cast<const Revolution*>(GetParam().shape.get());
   if (!shape) return;
   const Surface s = tessellate(*shape, 1000);
@@ -196,12 +196,12 @@ TEST_P(EveryTessellation, IsFourfoldSymmetric) {
 TEST(SurfaceOf, DrawsAnyTool) {
   Tool tool;
   tool.shape = ToolShape::mesh;
-  const Surface ball = tessellate(sphere, 200);
+  const Surface ball = tessellate(sphere_body, 200);
   tool.mesh = std::make_shared<TriangleMesh>(TriangleMesh{ball.points_m, ball.triangles});
   const Surface flat = tool_surface(tool, 8);
   EXPECT_EQ(flat.triangle_count(), ball.triangle_count());
   EXPECT_NEAR(signed_volume_m3(flat), signed_volume_m3(ball), 1e-18);
-  // The mass centre of the ball stands at the origin.
+  // The mass centre of the ball is at the origin.
   EXPECT_LT(flat.points_m.rowwise().mean().norm(), 1e-15);
   for (const auto& [a, b, c] : flat.triangles) {
     const Vec3 pa = flat.points_m.col(a);

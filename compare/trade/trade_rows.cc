@@ -1,15 +1,15 @@
-// Every model of the trade: set up, judged and timed.
+// Computes the rows of a trade: every model set up, judged and timed.
 #include "compare/format/text.h"
 #include "compare/model/judge.h"
 #include "compare/trade/step_times.h"
 #include "compare/trade/trade.h"
 #include "fast/run/percentiles.h"
 #include "reference/solver.h"
+#include "scene/base/stopwatch.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -19,16 +19,13 @@
 namespace touchstone::compare {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using scene::Scene;
 using SolveLevels = std::function<reference::Result(const Scene&, const scene::Surface&, std::optional<int>)>;
 
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-class Ladder {
+class RowMaker {
  public:
-  Ladder(const Scene& scene, const TradeOptions& options, const SolveLevels& solve,
-         const std::function<void(const std::string&)>& say)
+  RowMaker(const Scene& scene, const TradeOptions& options, const SolveLevels& solve,
+           const std::function<void(const std::string&)>& say)
       : scene_(scene), options_(options), solve_(solve), say_(say), poses_(scene) {
     trade_.title = scene.title.empty() ? scene.name : scene.title;
     trade_.tick_us = 1e6 / scene.fast.rate_hz;
@@ -38,11 +35,11 @@ class Ladder {
       trade_.contacts = load_tuning_study(options.held_out, reference::unsupported).held_out;
       trade_.held_out = true;
     }
-    // Bad files are refused before any work.
+    // Faulty files are reported before any solve.
     for (const auto& file : options.parameters) (void)with_parameters(scene, file);
   }
 
-  Trade climb(const std::vector<ModelList>& models) {
+  Trade rows_of(const std::vector<ModelList>& models) {
     ModelRequest request{scene_,
                          {},
                          options_.parameters,
@@ -55,7 +52,7 @@ class Ladder {
                          say_};
     for (const TuningContact& contact : trade_.contacts) request.contacts.push_back(contact.scene);
     for (const ModelEntry& entry : list_models(request, models)) add(entry);
-    tell("steps of every model by turns");
+    tell("steps of all models in turn");
     measure_by_turns(timed_, poses_, options_.quick ? 6 : 64);
     for (Timed& one : timed_) {
       TradeRow& row = trade_.rows[one.row];
@@ -72,8 +69,8 @@ class Ladder {
     if (say_) say_(line);
   }
 
-  /// The reference's answer on a surface of so many triangles, from the meshes that the contact's own surface asks for:
-  /// on finer ones the shape is known less well, and a row more is not worth hours of another mesh.
+  /// The reference's result on a surface of so many triangles, on the meshes chosen for the contact's own surface.
+  /// Finer surfaces would ask for finer meshes, which take hours and are not worth a row.
   const TuningData& data_of(std::size_t contact, int triangles) {
     const int own = trade_.contacts[contact].scene.fast.triangles;
     std::optional<int> levels;
@@ -89,7 +86,7 @@ class Ladder {
     return *found->second;
   }
 
-  /// Meshes that every contact's reference has.
+  /// Number of meshes that every contact's reference has.
   int reference_levels() {
     int levels = std::numeric_limits<int>::max();
     for (std::size_t c = 0; c < trade_.contacts.size(); ++c) {
@@ -99,7 +96,7 @@ class Ladder {
     return levels;
   }
 
-  /// The answer that all are judged by where that has so many levels.
+  /// The result that the models are judged by, if it has so many levels.
   reference::Result reference_on(const Scene& scene, const scene::Surface& surface, int levels) {
     for (const auto& [key, data] : data_) {
       const bool same = reference::content_key(data->contact.scene) == reference::content_key(scene);
@@ -118,9 +115,9 @@ class Ladder {
     if (row.absent.empty()) {
       tell(row.name);
       try {
-        const Clock::time_point begin = Clock::now();
+        const scene::Stopwatch watch;
         model = entry.set_up(scene_);
-        row.setup_s = seconds_since(begin);
+        row.setup_s = watch.wall_s();
         row.size = model->size();
         row.memory_bytes = model->memory_bytes().value_or(row.memory_bytes);
         row.note = model->note();
@@ -137,7 +134,7 @@ class Ladder {
     }
   }
 
-  /// The row's errors: the worst of the contacts. Each contact has a model of its own scene.
+  /// Errors of the row: the largest over the contacts. The model is set up anew for each contact's scene.
   void judge(const ModelEntry& entry, ContactModel& of_scene, TradeRow& row) {
     std::vector<std::string> troubles;
     KnownSteps known;
@@ -168,11 +165,13 @@ class Ladder {
       row.steps = known.count;
       row.setup_s = std::numeric_limits<double>::quiet_NaN();
     }
-    if (entry.yardstick && !row.force_nrmse.uncertainty) {
+    if (entry.finest_reference && !row.force_nrmse.uncertainty) {
       row.force_nrmse = row.shape_rel_l2 = {};
-      row.note = "the yardstick, which does not know its own uncertainty with fewer than three meshes; " + row.note;
-    } else if (entry.yardstick) {
-      row.note = "the yardstick: its error is its uncertainty; " + row.note;
+      row.note =
+          "the reference that the others are judged by; its uncertainty is unknown with fewer than three meshes; " +
+          row.note;
+    } else if (entry.finest_reference) {
+      row.note = "the reference that the others are judged by: its error is its uncertainty; " + row.note;
     }
   }
 
@@ -190,7 +189,7 @@ class Ladder {
 
 Trade trade(const Scene& scene, const TradeOptions& options, const SolveLevels& solve,
             const std::function<void(const std::string&)>& say, const std::vector<ModelList>& models) {
-  return Ladder(scene, options, solve, say).climb(models);
+  return RowMaker(scene, options, solve, say).rows_of(models);
 }
 
 }  // namespace touchstone::compare

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The rule of arrows between folders: python3 rooms_test.py SOURCE_DIR
+"""Checks the includes between folders: python3 folders_test.py SOURCE_DIR
 
 Every folder with C++ sources has a README.md whose paragraph "May include: ..." lists the folders whose headers it may
 include. Included are no others, what is listed is used, and neither folders nor files include each other in a circle;
