@@ -213,7 +213,7 @@ TEST_F(TradeTest, MeasuresAndJudgesEveryRung) {
   EXPECT_LT(*compliance.shape_rel_l2.value, 0.2);
   EXPECT_GT(*find(found, "published-duffing").force_nrmse.value, 0.3);
   EXPECT_THAT(trade_verdict(found).front(),
-              testing::AnyOf(HasSubstr("It is dominated"), HasSubstr("It is less accurate")));
+              ::testing::AnyOf(HasSubstr("It is dominated"), HasSubstr("It is less accurate")));
   // Finer meshes of the reference take longer and are more accurate.
   EXPECT_LT(find(found, "reference-1").step_p50_us, find(found, "reference-3").step_p50_us);
   EXPECT_GT(*find(found, "reference-1").shape_rel_l2.value, *find(found, "reference-2").shape_rel_l2.value);
