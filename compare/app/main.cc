@@ -1,6 +1,7 @@
 // touchstone: from a scene file to a result folder.
 #include "compare/app/export_verb.h"
 #include "compare/app/gate_verb.h"
+#include "compare/app/prepare_verb.h"
 #include "compare/app/results_verb.h"
 #include "compare/app/study_verb.h"
 #include "compare/app/trade_verb.h"
@@ -102,6 +103,7 @@ int run_program(int argc, char** argv) {
                 "every plot of the report also as SVG and PDF, in the folder's plots/");
   add_reference(compared);
   add_require_error(compared);
+  add_store(compare::add_prepare_verb(program, options, reference));
   compare::StudyOptions study_options;
   compare::add_study_verb(program, study_options);
   compare::ResultsOptions results_options;
@@ -125,7 +127,7 @@ int run_program(int argc, char** argv) {
   std::string shell;
   fast::add_completion_verb(program, shell);
   program.group({{"First", {"new", "plan", "compare"}},
-                 {"One scene", {"fast", "live", "reference", "trade", "export"}},
+                 {"One scene", {"fast", "live", "reference", "prepare", "trade", "export"}},
                  {"Results", {"view", "report"}},
                  {"Many scenes", {"study", "tune"}},
                  {"Checks", {"gate", "verify"}}});

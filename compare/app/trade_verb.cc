@@ -18,8 +18,10 @@ int run(const fast::VerbOptions& options, const TradeOptions& trade_options, con
     scene::Manifest manifest = scene::make_manifest(scene, "touchstone trade");
     const scene::Stopwatch watch;
     std::string references;  // why the refinement of each reference ended
+    TradeOptions with_store = trade_options;
+    with_store.store = reference.store;
     const Trade found = trade(
-        scene, trade_options,
+        scene, with_store,
         [&](const scene::Scene& contact, const scene::Surface& surface, std::optional<int> levels) {
           scene::Scene one = asked(contact, reference);
           if (levels) one.reference.levels = levels;

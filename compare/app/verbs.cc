@@ -76,8 +76,11 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
   const scene::Scene given = asked(options.load(), reference);
   refuse(reference::unsupported(given));
   const scene::Scene scene = parameters.empty() ? given : with_parameters(given, parameters);
-  const Contenders judged = contenders(
-      given, parameters.empty() ? std::vector<std::filesystem::path>{} : std::vector{parameters}, more.models);
+  const Contenders judged =
+      contenders(given, parameters.empty() ? std::vector<std::filesystem::path>{} : std::vector{parameters},
+                 more.models, reference.store, [&](const std::string& line) {
+                   if (!options.quiet) std::cerr << line << '\n';
+                 });
   const std::filesystem::path folder = options.folder(scene, "compare");
   const scene::FolderLock lock = scene::prepare_result_folder(folder);
   const Call call{options.scene_file, options.overrides, reference, parameters, folder, more.models};

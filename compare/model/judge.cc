@@ -94,8 +94,9 @@ Errors judge(const ModelEntry& entry, ContactModel& model, const scene::Scene& s
 }
 
 Contenders contenders(const scene::Scene& scene, const std::vector<std::filesystem::path>& parameters,
-                      const std::vector<std::string>& keys) {
-  const ModelRequest request{.scene = scene, .parameters = parameters};
+                      const std::vector<std::string>& keys, const std::filesystem::path& store,
+                      const std::function<void(const std::string&)>& say) {
+  const ModelRequest request{.scene = scene, .parameters = parameters, .store = store, .say = say};
   Contenders out{scene, list_models(request, compared_models())};
   for (const std::string& key : keys) {
     ModelEntry& entry = out.models.emplace_back(find_model(request, key));

@@ -21,6 +21,7 @@ enum class ModelFamily {
   paper,       ///< the paper's skeleton with its own law
   area_aware,  ///< the same skeleton with another law
   compliance,  ///< precomputed linear compliance with a contact solve
+  response,    ///< a half space in closed form and the body's precomputed response
   simulator,   ///< another simulator's deformable body
   reference,   ///< the reference's levels
   other,

@@ -3,6 +3,7 @@
 #include "compare/model/bullet_model.h"
 #include "compare/model/compliance_model.h"
 #include "compare/model/reference_model.h"
+#include "compare/model/response_model.h"
 #include "compare/model/skeleton_model.h"
 #include "scene/base/error.h"
 #include "scene/base/nearest_name.h"
@@ -14,7 +15,8 @@ namespace touchstone::compare {
 
 const std::vector<ModelList>& registered_models() {
   static const std::vector<ModelList> models{
-      skeleton_models, skeleton_meshes, skeleton_anchor_sets, compliance_models, bullet_models, reference_models,
+      skeleton_models,   skeleton_meshes, skeleton_anchor_sets, response_models,
+      compliance_models, bullet_models,   reference_models,
   };
   return models;
 }

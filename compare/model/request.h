@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace touchstone::compare {
@@ -19,6 +20,8 @@ struct ModelRequest {
   std::function<int()> reference_levels{};          ///< that every contact's reference has; empty: it is no model here
   /// The reference of a contact on so many levels.
   std::function<reference::Result(const scene::Scene&, const scene::Surface&, int levels)> solve{};
+  std::filesystem::path store = "out/reference-store";  ///< folder of what a model prepares once
+  std::function<void(const std::string&)> say{};        ///< one line about what takes long; may be empty
 };
 
 /// Some models of one kind.

@@ -34,9 +34,10 @@ struct FamilyStyle {
   const char* colour;
 };
 constexpr FamilyStyle families[] = {
-    {ModelFamily::paper, "the paper's model", "#e4600a"},      {ModelFamily::area_aware, "area-aware law", "#a03070"},
-    {ModelFamily::compliance, "linear compliance", "#2e8b57"}, {ModelFamily::simulator, "Bullet", "#6a51a3"},
-    {ModelFamily::reference, "reference", "#1f77b4"},          {ModelFamily::other, "other models", "#555555"}};
+    {ModelFamily::paper, "the paper's model", "#e4600a"}, {ModelFamily::area_aware, "area-aware law", "#a03070"},
+    {ModelFamily::response, "response", "#d62728"},       {ModelFamily::compliance, "linear compliance", "#2e8b57"},
+    {ModelFamily::simulator, "Bullet", "#6a51a3"},        {ModelFamily::reference, "reference", "#1f77b4"},
+    {ModelFamily::other, "other models", "#555555"}};
 
 std::string number(double value, std::string_view unit) {
   return std::isfinite(value) ? quantity_text(value, unit) : std::string(nothing);

@@ -47,7 +47,9 @@ class RowMaker {
                          [this] { return reference_levels(); },
                          [this](const Scene& scene, const scene::Surface& surface, int levels) {
                            return reference_on(scene, surface, levels);
-                         }};
+                         },
+                         options_.store,
+                         say_};
     for (const TuningContact& contact : trade_.contacts) request.contacts.push_back(contact.scene);
     for (const ModelEntry& entry : list_models(request, models)) add(entry);
     tell("steps of all models in turn");

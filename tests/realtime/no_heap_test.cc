@@ -1,10 +1,12 @@
 // No heap use below step(): at first contact, in contact, on a jump, on an invalid pose, and on release.
 #include "support/no_heap.h"
 
+#include "fast/response/response_step.h"
 #include "fast/step/step.h"
 #include "fast/surface/region_shapes.h"
 #include "support/press.h"
 #include "support/shipped_scenes.h"
+#include "support/synthetic_response.h"
 
 #include <gtest/gtest.h>
 
@@ -38,6 +40,23 @@ void run_without_heap(const scene::Scene& scene) {
   tick(test::at(0.029, 0.029, top_m - 0.002));
   tick(test::at(0.5, 0.0, 0.0));
   EXPECT_GT(in_contact, 190);
+}
+
+TEST(NoHeap, BelowAStepOfTheResponseModel) {
+  const scene::Scene scene = test::ball_on_cube();
+  const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
+  const ResponseModel model(scene, surface, test::synthetic_response(scene, surface));
+  ResponseState state(model);
+  double largest_n = 0.0;
+  for (int i = -20; i < 200; ++i) {
+    scene::Pose pose = test::pressed(0.00005 * i, 0.0001 * i, 0.002);
+    if (i == 100) pose.position_m.y() = std::nan("");
+    pose.orientation = test::tilted();
+    const test::NoHeap guard;
+    (void)response_step(model, pose, state);
+    largest_n = std::max(largest_n, state.wrench.force_n.norm());
+  }
+  EXPECT_GT(largest_n, 100.0);
 }
 
 TEST(NoHeap, BelowAStepOnABox) {

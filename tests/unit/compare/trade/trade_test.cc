@@ -309,7 +309,7 @@ TEST_F(TradeTest, RefusesBadInputBeforeAnyWork) {
   EXPECT_THAT(with("[contact]\nk1_n_per_m = -3.0\n"), HasSubstr("bad.toml:2:14: contact.k1_n_per_m = -3"));
   EXPECT_THAT(with("[contact]\nlaw = \"cubic\"\n"), HasSubstr("expected \"duffing\" or \"area_aware\""));
   EXPECT_THAT(with("[contact]\nlaw = \"area_aware\"\n"), HasSubstr("k1_per_radius_n_per_m2"));
-  EXPECT_THAT(with("[tool]\nradius_m = 0.01\n"), HasSubstr("unknown key \"tool\""));
+  EXPECT_THAT(with("[tool]\nradius_m = 0.01\n"), HasSubstr("\"tool.radius_m\" is no parameter of the fast model"));
   EXPECT_THAT(refusal([&] { (void)run(scene, {.parameters = {"/nowhere.toml"}}); }), HasSubstr("/nowhere.toml"));
   EXPECT_THAT(refusal([&] { (void)run(scene, {.held_out = "/nowhere.toml"}); }), HasSubstr("/nowhere.toml"));
   scene::Scene apart = scene;

@@ -1,0 +1,37 @@
+#include "compare/app/prepare_verb.h"
+
+#include "fast/command/exit_code.h"
+#include "fast/command/progress_line.h"
+#include "reference/response/prepare.h"
+
+#include <fmt/format.h>
+
+#include <iostream>
+
+namespace touchstone::compare {
+namespace {
+
+int run(const fast::VerbOptions& options, const ReferenceOptions& reference) {
+  const scene::Scene scene = options.load();
+  const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
+  fast::ProgressLine line(options.quiet);
+  const reference::Prepared prepared = reference::prepare_response(
+      scene, surface, reference.store, {},
+      [&](double share) { line.show(fmt::format("columns of the body's response: {:.0f} %", 100.0 * share)); });
+  line.finish();
+  std::cout << fmt::format("{} columns, {} rest points, {} unknowns, {}\nResponse: {} ({:.3g} MB)\n",
+                           prepared.response.grid.count(), prepared.response.rest_points(), prepared.response.unknowns,
+                           prepared.computed ? fmt::format("computed in {:.3g} s", prepared.seconds) : "from the store",
+                           prepared.file.string(),
+                           1e-6 * static_cast<double>(std::filesystem::file_size(prepared.file)));
+  return fast::done;
+}
+
+}  // namespace
+
+fast::Command add_prepare_verb(fast::Command& program, fast::VerbOptions& options, const ReferenceOptions& reference) {
+  return fast::add_verb(program, "prepare", "the body's linear response, which the response model reads",
+                        "meshes/scenes/ball-on-cube-press.toml", options, [&] { return run(options, reference); });
+}
+
+}  // namespace touchstone::compare

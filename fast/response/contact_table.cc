@@ -1,0 +1,203 @@
+#include "fast/response/contact_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace touchstone::fast {
+namespace {
+
+constexpr int nodes = 257;
+
+/// Gauss-Legendre on [0, 1].
+struct Rule {
+  static constexpr int size = 48;
+  std::array<double, size> x{}, weight{};
+  Rule() {
+    for (int i = 0; i < size; ++i) {
+      double z = std::cos(std::numbers::pi * (i + 0.75) / (size + 0.5)), slope = 1.0;
+      for (int iteration = 0; iteration < 50; ++iteration) {
+        double p1 = 1.0, p2 = 0.0;
+        for (int j = 0; j < size; ++j) {
+          const double p3 = p2;
+          p2 = p1;
+          p1 = ((2.0 * j + 1.0) * z * p2 - j * p3) / (j + 1.0);
+        }
+        slope = size * (z * p1 - p2) / (z * z - 1.0);
+        const double step = p1 / slope;
+        z -= step;
+        if (std::abs(step) < 1e-15) break;
+      }
+      x[static_cast<std::size_t>(i)] = 0.5 * (1.0 - z);
+      weight[static_cast<std::size_t>(i)] = 1.0 / ((1.0 - z * z) * slope * slope);
+    }
+  }
+};
+
+/// Gap of tool and body, both at rest.
+struct Gap {
+  const scene::ToolTip& tip;
+  const LocalShape& local;
+  [[nodiscard]] double height_m(double r_m) const { return tip.height_m(r_m) + local.height_m(r_m); }
+  [[nodiscard]] double slope(double r_m) const { return tip.slope(r_m) + local.slope(r_m); }
+};
+
+/// D(t). The integral over r = t sin(theta) runs in pi/2 - theta = end s^3, close nodes where the tip gets steep.
+double indentation_m(const Gap& gap, double t_m, const Rule& rule) {
+  const auto integral = [&](double first, double last, const auto& slope) {  // over pi/2 - theta
+    double sum = 0.0;
+    for (std::size_t i = 0; i < Rule::size; ++i) {
+      const double s = rule.x[i], angle = first + (last - first) * s * s * s;
+      sum += rule.weight[i] * 3.0 * s * s * slope(t_m * std::cos(angle));
+    }
+    return t_m * (last - first) * sum;
+  };
+  const double all = 0.5 * std::numbers::pi;
+  const double rim = t_m > gap.tip.flat_radius_m ? std::acos(gap.tip.flat_radius_m / t_m) : 0.0;
+  return integral(0.0, rim, [&](double r_m) { return gap.tip.slope(r_m); }) +
+         integral(0.0, all, [&](double r_m) { return gap.local.slope(r_m); });
+}
+
+/// Mean depth over the radius of the overlap that the surfaces at rest have when they are moved into each other.
+double overlap_ratio(const Gap& gap, double depth_m) {
+  double low_m = 0.0, high_m = gap.tip.reach_m();
+  if (gap.height_m(high_m) > depth_m) {
+    for (int k = 0; k < 60; ++k) {
+      const double middle_m = 0.5 * (low_m + high_m);
+      (gap.height_m(middle_m) < depth_m ? low_m : high_m) = middle_m;
+    }
+  }
+  const double radius_m = high_m;
+  constexpr int steps = 200;
+  double volume = 0.0;  // over pi
+  for (int k = 0; k < steps; ++k) {
+    const double r_m = radius_m * (k + 0.5) / steps;
+    volume += (depth_m - gap.height_m(r_m)) * 2.0 * r_m * radius_m / steps;
+  }
+  return volume / (radius_m * radius_m * radius_m);
+}
+
+}  // namespace
+
+LocalShape local_shape(const scene::Shape& body, const scene::Vec3& point_m, const scene::Vec3& normal,
+                       double reach_m) {
+  const int face = body.face_of(body.query(point_m).patch);
+  const scene::Vec3 first = normal.unitOrthogonal(), second = normal.cross(first);
+  // Means over circles, as far as all of a circle lies on the face.
+  constexpr int circles = 8, directions = 16;
+  Eigen::Matrix2d normal_matrix = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  for (int c = 1; c <= circles; ++c) {
+    const double r_m = reach_m * c / circles;
+    double mean_m = 0.0;
+    bool whole = true;
+    for (int d = 0; d < directions && whole; ++d) {
+      const double angle = 2.0 * std::numbers::pi * d / directions;
+      const scene::Vec3 above_m = point_m + r_m * (std::cos(angle) * first + std::sin(angle) * second);
+      const scene::Crossing crossing = body.crossing(above_m + reach_m * normal, above_m - 2.0 * reach_m * normal);
+      whole = !crossing.empty() && crossing.enter_m > 0.0 &&
+              body.face_of(body.query(above_m + (reach_m - crossing.enter_m) * normal).patch) == face;
+      if (whole) mean_m += (crossing.enter_m - reach_m) / directions;
+    }
+    if (!whole) break;
+    // In units of the reach, so that the system is well posed.
+    const double x = static_cast<double>(c) / circles;
+    const Eigen::Vector2d powers(x * x, x * x * x * x);
+    normal_matrix += powers * powers.transpose();
+    right += powers * (mean_m / reach_m);
+  }
+  if (normal_matrix.determinant() < 1e-12) return {};
+  const Eigen::Vector2d h = normal_matrix.ldlt().solve(right);
+  return {h[0] / reach_m, h[1] / (reach_m * reach_m * reach_m)};
+}
+
+ContactTable::ContactTable(const scene::ToolTip& tip, const LocalShape& local, double E_star_pa,
+                           const FiniteStrain& strain) {
+  const Gap gap{tip, local};
+  const Rule rule;
+  // Radii, closer where the contact is small.
+  constexpr int radii = 4000;
+  constexpr double last_share = 0.999;  // of the ball or the fillet: at its end the slope is unbounded
+  struct At {
+    double a_m, D_m, sum_m2, moment_m4;  // int_0^a (D(a) - D) dt, int_0^a t^2 (D(a) - D) dt
+  };
+  std::vector<At> curve{{tip.flat_radius_m, 0.0, 0.0, 0.0}};
+  double below_m2 = 0.0, below_m4 = 0.0;  // int D dt, int t^2 D dt
+  const double inner_m = tip.flat_radius_m, outer_m = inner_m + last_share * tip.radius_m;
+  for (int k = 1; k <= radii; ++k) {
+    const double share = static_cast<double>(k) / radii, a_m = inner_m + (outer_m - inner_m) * share * share;
+    const double D_m = indentation_m(gap, a_m, rule);
+    const At& last = curve.back();
+    below_m2 += 0.5 * (D_m + last.D_m) * (a_m - last.a_m);
+    below_m4 += 0.5 * (D_m * a_m * a_m + last.D_m * last.a_m * last.a_m) * (a_m - last.a_m);
+    curve.push_back({a_m, D_m, a_m * D_m - below_m2, a_m * a_m * a_m * D_m / 3.0 - below_m4});
+  }
+  largest_m_ = std::max(curve.back().D_m, 2.0 * tip.reach_m());
+  step_ = std::sqrt(largest_m_) / (nodes - 1);
+  std::size_t k = 0;
+  for (int i = 0; i < nodes; ++i) {
+    const double s = step_ * i, D_m = s * s;
+    while (k + 2 < curve.size() && curve[k + 1].D_m < D_m) ++k;
+    At at = curve.back();
+    double dx_dD = 0.0;
+    if (D_m >= at.D_m) {  // on the tip's whole reach, a punch
+      at.sum_m2 += at.a_m * (D_m - at.D_m);
+      at.moment_m4 += at.a_m * at.a_m * at.a_m * (D_m - at.D_m) / 3.0;
+    } else {
+      const At &low = curve[k], &high = curve[k + 1];
+      // d(sum)/dD = a: between two radii by the mean of a.
+      const double share = (D_m - low.D_m) / (high.D_m - low.D_m);
+      at.a_m = low.a_m + share * (high.a_m - low.a_m);
+      at.sum_m2 = low.sum_m2 + 0.5 * (low.a_m + at.a_m) * (D_m - low.D_m);
+      at.moment_m4 = low.moment_m4 + share * (high.moment_m4 - low.moment_m4);
+    }
+    const double x = i > 0 ? overlap_ratio(gap, D_m) : 0.0;
+    if (i > 0) {
+      const double e_m = 1e-3 * D_m;
+      dx_dD = (overlap_ratio(gap, D_m + e_m) - overlap_ratio(gap, D_m - e_m)) / (2.0 * e_m);
+    }
+    const double linear_n = 2.0 * E_star_pa * at.sum_m2, factor = strain.factor(x);
+    const double dF_dD = 2.0 * E_star_pa * at.a_m * factor - linear_n * (strain.c1 + 2.0 * strain.c2 * x) * dx_dD;
+    const double moment_m2 = i > 0 ? at.moment_m4 / at.sum_m2 : 0.0, a2_m2 = at.a_m * at.a_m;
+    const double flat = a2_m2 > 0.0 ? (moment_m2 / a2_m2 - 1.0 / 5.0) / (1.0 / 3.0 - 1.0 / 5.0) : 0.0;
+    nodes_.push_back({linear_n * factor, dF_dD * 2.0 * s, at.a_m, std::clamp(flat, 0.0, 1.0), 0.0});
+  }
+  if (tip.flat_radius_m > 0.0) nodes_[0].flat = 1.0;
+  for (std::size_t i = 1; i < nodes_.size(); ++i) nodes_[i].energy_j = energy_j(i - 1, 1.0);
+}
+
+LocalContact ContactTable::at(double indentation_m) const noexcept {
+  if (!(indentation_m > 0.0)) return {};
+  const double s = std::sqrt(std::min(indentation_m, largest_m_)), place = s / step_;
+  const auto i = static_cast<std::size_t>(std::min(static_cast<int>(place), nodes - 2));
+  const double t = place - static_cast<double>(i);
+  const Node &low = nodes_[i], &high = nodes_[i + 1];
+  const double rise = high.force_n - low.force_n, m0 = step_ * low.slope, m1 = step_ * high.slope;
+  const double c2 = 3.0 * rise - 2.0 * m0 - m1, c3 = m0 + m1 - 2.0 * rise;
+  LocalContact out;
+  out.force_n = low.force_n + t * (m0 + t * (c2 + t * c3));
+  out.stiffness_n_per_m = (m0 + t * (2.0 * c2 + 3.0 * t * c3)) / (step_ * 2.0 * s);
+  out.radius_m = low.radius_m + t * (high.radius_m - low.radius_m);
+  out.flat = low.flat + t * (high.flat - low.flat);
+  return out;
+}
+
+double ContactTable::energy_j(double indentation_m) const noexcept {
+  if (!(indentation_m > 0.0)) return 0.0;
+  const double place = std::sqrt(std::min(indentation_m, largest_m_)) / step_;
+  const auto i = static_cast<std::size_t>(std::min(static_cast<int>(place), nodes - 2));
+  return energy_j(i, place - static_cast<double>(i));
+}
+
+double ContactTable::energy_j(std::size_t i, double t) const noexcept {
+  const Node &low = nodes_[i], &high = nodes_[i + 1];
+  const double rise = high.force_n - low.force_n, m0 = step_ * low.slope, m1 = step_ * high.slope;
+  const double c2 = 3.0 * rise - 2.0 * m0 - m1, c3 = m0 + m1 - 2.0 * rise, f0 = low.force_n;
+  // int F 2 s ds with s = step (i + t), of the cubic F.
+  const double zeroth = t * (f0 + t * (m0 / 2.0 + t * (c2 / 3.0 + t * c3 / 4.0)));
+  const double first = t * t * (f0 / 2.0 + t * (m0 / 3.0 + t * (c2 / 4.0 + t * c3 / 5.0)));
+  return low.energy_j + 2.0 * step_ * step_ * (static_cast<double>(i) * zeroth + first);
+}
+
+}  // namespace touchstone::fast

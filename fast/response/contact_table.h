@@ -1,0 +1,68 @@
+// The force law of a tool's tip on the body near it: the contact problem of a rigid axisymmetric profile on a linear
+// half space, in closed form up to integrals (I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47-57), tabulated at set-up.
+//
+// With the gap g(r) of the undeformed surfaces, the contact's radius a, and t from 0 to a,
+//   D(t) = t int_0^t g'(r) / sqrt(t^2 - r^2) dr,   F = 2 E* int_0^a (D(a) - D(t)) dt.
+// g is that of the tool's true surface and of the body's own, not of their paraboloids. F is what a line of sources
+// from -ia to ia on the axis carries, D(a) - D(|t|) per length; its second moment is the load's.
+#pragma once
+
+#include "fast/response/finite_strain.h"
+#include "scene/model/scene.h"
+#include "scene/response/tool_tip.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace touchstone::fast {
+
+/// The body's surface below its tangent plane at a point, a mean over the directions: h(r) = h2 r^2 + h4 r^4.
+struct LocalShape {
+  double h2_per_m = 0.0, h4_per_m3 = 0.0;
+  [[nodiscard]] double height_m(double r_m) const noexcept { return r_m * r_m * (h2_per_m + h4_per_m3 * r_m * r_m); }
+  [[nodiscard]] double slope(double r_m) const noexcept { return r_m * (2.0 * h2_per_m + 4.0 * h4_per_m3 * r_m * r_m); }
+  [[nodiscard]] double curvature_per_m() const noexcept { return 2.0 * h2_per_m; }
+};
+
+/// @param point_m, normal  of the surface; @param reach_m  up to which radius it is wanted; less where the face ends
+[[nodiscard]] LocalShape local_shape(const scene::Shape& body, const scene::Vec3& point_m, const scene::Vec3& normal,
+                                     double reach_m);
+
+/// A contact at one local indentation.
+struct LocalContact {
+  double force_n = 0.0;
+  double stiffness_n_per_m = 0.0;  ///< dF / d(indentation)
+  double radius_m = 0.0;           ///< a
+  double flat = 0.0;               ///< pressure between a ball's (0) and a flat punch's (1), by its second moment
+};
+
+class ContactTable {
+ public:
+  /// @param E_star_pa  E / (1 - nu^2)
+  ContactTable(const scene::ToolTip& tip, const LocalShape& local, double E_star_pa, const FiniteStrain& strain);
+
+  /// At a local indentation [m], which is held at the largest of the table.
+  [[nodiscard]] LocalContact at(double indentation_m) const noexcept;
+
+  /// int_0^indentation F [J].
+  [[nodiscard]] double energy_j(double indentation_m) const noexcept;
+
+  [[nodiscard]] double largest_indentation_m() const noexcept { return largest_m_; }
+  [[nodiscard]] std::size_t memory_bytes() const noexcept { return nodes_.size() * sizeof(Node); }
+
+ private:
+  /// At even steps of s = sqrt(indentation), in which force and radius are smooth.
+  struct Node {
+    double force_n, slope;  ///< dF / ds
+    double radius_m, flat;
+    double energy_j;
+  };
+  /// Up to share t of the way from node i to the next.
+  [[nodiscard]] double energy_j(std::size_t i, double t) const noexcept;
+
+  std::vector<Node> nodes_;
+  double step_ = 0.0;  ///< of s
+  double largest_m_ = 0.0;
+};
+
+}  // namespace touchstone::fast

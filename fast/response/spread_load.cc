@@ -1,0 +1,97 @@
+#include "fast/response/spread_load.h"
+
+#include "fast/realtime/wide_loops.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+namespace touchstone::fast {
+
+using scene::Vec3;
+
+HalfSpace::HalfSpace(const scene::Material& material)
+    : scale_m2_per_n(1.0 / (4.0 * std::numbers::pi * material.shear_modulus_pa())), nu(material.poissons_ratio) {}
+
+Vec3 spread_displacement_m(const SpreadLoad& load, const HalfSpace& half_space, const Vec3& x_m) noexcept {
+  const Vec3 d_m = x_m - load.center_m;
+  const double z = std::max(-d_m.dot(load.normal), 0.0), a = load.radius_m;
+  const Vec3 across_m = d_m + d_m.dot(load.normal) * -load.normal;
+  const double r2 = across_m.squaredNorm(), beyond = r2 + z * z - a * a;
+  const double root = std::sqrt(beyond * beyond + 4.0 * a * a * z * z);
+  const double l2 = beyond > 0.0 ? 0.5 * (beyond + root) : (z > 0.0 ? 2.0 * a * a * z * z / (root - beyond) : 0.0);
+  const double l = std::sqrt(l2), sum = a * a + l2;  // a^2 + l^2
+  const double c = std::sqrt(std::max(1.0 - r2 / sum, 0.0));
+  const double t = std::atan2(a, l);
+  // Of the ball's pressure.
+  const double I2 = (t - a * l / sum) / (a * a * a);
+  const double z_I3 = z > 0.0 ? 2.0 / (a * a) * (c - z * t / a) : 0.0;  // z int ds / ((a^2 + s) s^(3/2)), z / l = c
+  const double ball_V = 0.75 * (2.0 * t / a - r2 * I2 - z * z_I3);
+  const double ball_Vz = -1.5 * z_I3, ball_Vr = -1.5 * I2;  // the latter over r
+  const double ball_flux = 1.0 - c * c * c - 1.5 * z * r2 * I2;
+  // Of the flat punch's.
+  const double q = std::max(l2 + a * a * c * c, 1e-24 * a * a);
+  const double punch_V = t / a, punch_Vz = -c / q, punch_Vr = -l / (sum * q);
+  const double punch_flux = 1.0 - c;
+
+  const double m = load.flat;
+  const double V = ball_V + m * (punch_V - ball_V), Vz = ball_Vz + m * (punch_Vz - ball_Vz);
+  const double Vr_per_r = ball_Vr + m * (punch_Vr - ball_Vr), flux = ball_flux + m * (punch_flux - ball_flux);
+  const double scale_m2 = load.force_n * half_space.scale_m2_per_n;
+  const double on_axis = (1.0 - m) * 1.5 * (1.0 / sum - z * I2) + m * 0.5 / sum;
+  const double chi_r_per_r = r2 > 1e-9 * sum ? flux / r2 : on_axis;
+  const double u_r_per_r = -scale_m2 * ((1.0 - 2.0 * half_space.nu) * chi_r_per_r + z * Vr_per_r);
+  const double u_z = scale_m2 * (2.0 * (1.0 - half_space.nu) * V - z * Vz);
+  return u_r_per_r * across_m - u_z * load.normal;
+}
+
+TOUCHSTONE_WIDE_LOOPS
+std::int32_t spread_displacements_m(const SpreadLoad& load, const HalfSpace& half_space, const Columns& rest_m,
+                                    Columns& out_m, std::int32_t* near) noexcept {
+  const auto count = static_cast<std::int32_t>(rest_m[0].size());
+  const float px = static_cast<float>(load.center_m.x()), py = static_cast<float>(load.center_m.y()),
+              pz = static_cast<float>(load.center_m.z());
+  const float nx = static_cast<float>(load.normal.x()), ny = static_cast<float>(load.normal.y()),
+              nz = static_cast<float>(load.normal.z());
+  const double a2 = load.radius_m * load.radius_m;
+  const auto scale = static_cast<float>(load.force_n * half_space.scale_m2_per_n);
+  const auto half_moment = static_cast<float>(0.5 * a2 * (0.2 + load.flat * (1.0 / 3.0 - 0.2)));
+  const auto across = static_cast<float>(1.0 - 2.0 * half_space.nu);
+  const auto along = static_cast<float>(2.0 * (1.0 - half_space.nu));
+  const auto near2 = static_cast<float>(near_radii * near_radii * a2);
+  const float* const x = rest_m[0].data();
+  const float* const y = rest_m[1].data();
+  const float* const z = rest_m[2].data();
+  float* const ux = out_m[0].data();
+  float* const uy = out_m[1].data();
+  float* const uz = out_m[2].data();
+#pragma GCC ivdep
+  for (std::int32_t i = 0; i < count; ++i) {
+    const float dx = x[i] - px, dy = y[i] - py, dz = z[i] - pz;
+    const float below = -(dx * nx + dy * ny + dz * nz);
+    const float rx = dx + below * nx, ry = dy + below * ny, rz = dz + below * nz;
+    const float rho2 = dx * dx + dy * dy + dz * dz + 1e-12f;
+    const float rho = std::sqrt(rho2), by_rho = 1.0f / rho, by_rho2 = by_rho * by_rho, by_rho3 = by_rho * by_rho2;
+    const float c2 = below * below * by_rho2;
+    // 1/rho and its derivatives, less half_moment times their second ones along z.
+    const float V = by_rho - half_moment * by_rho3 * (3.0f * c2 - 1.0f);
+    const float Vz = -below * by_rho3 * (1.0f + half_moment * by_rho2 * (9.0f - 15.0f * c2));
+    const float Vr_per_r = -by_rho3 * (1.0f + half_moment * by_rho2 * (3.0f - 15.0f * c2));
+    const float chi_r_per_r = by_rho / (rho + below + 1e-9f) - half_moment * 3.0f * below * by_rho3 * by_rho2;
+    const float radial = -scale * (across * chi_r_per_r + below * Vr_per_r);
+    const float inward = scale * (along * V - below * Vz);
+    ux[i] = radial * rx - inward * nx;
+    uy[i] = radial * ry - inward * ny;
+    uz[i] = radial * rz - inward * nz;
+  }
+  std::int32_t found = 0;
+  for (std::int32_t i = 0; i < count; ++i) {
+    const float dx = x[i] - px, dy = y[i] - py, dz = z[i] - pz;
+    near[found] = i;
+    found += dx * dx + dy * dy + dz * dz < near2 ? 1 : 0;
+  }
+  return found;
+}
+
+}  // namespace touchstone::fast

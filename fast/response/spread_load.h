@@ -1,0 +1,51 @@
+// Displacement of a half space under a round patch of pressure, at every vertex of a surface.
+//
+// With G the shear modulus, z into the half space and V the potential of the pressure, total force 1,
+//   u_r = -((1 - 2 nu) r dchi/dr + z r dV/dr) / (4 pi G r),   u_z = (2 (1 - nu) V - z dV/dz) / (4 pi G),
+// dchi/dz = V. The pressure is that of a ball, (a^2 - r^2)^(1/2), mixed with that of a flat punch, (a^2 - r^2)^(-1/2):
+// sources on the axis from z = -ia to ia of density (3/4) (a^2 - s^2) / a^3 and 1 / (2 a). Both have closed forms in
+// the oblate coordinates r^2 = (a^2 + l^2) (1 - c^2), z = l c (A. E. H. Love, Q. J. Math. 10 (1939) 161-175; I. N.
+// Sneddon 1965). Some radii away the second moment of the sources is enough.
+#pragma once
+
+#include "scene/model/scene.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace touchstone::fast {
+
+using Columns = std::array<std::vector<float>, 3>;
+
+/// The load, its patch on a plane that touches the body from outside.
+struct SpreadLoad {
+  scene::Vec3 center_m = scene::Vec3::Zero();
+  scene::Vec3 normal = scene::Vec3::UnitZ();  ///< outward; the force on the body is against it
+  double force_n = 0.0;
+  double radius_m = 0.0;  ///< a
+  double flat = 0.0;      ///< share of the flat punch's pressure
+};
+
+/// Elastic numbers of the formulas.
+struct HalfSpace {
+  explicit HalfSpace(const scene::Material& material);
+  double scale_m2_per_n;  ///< 1 / (4 pi G)
+  double nu;
+};
+
+/// At one point, by the closed forms [m].
+[[nodiscard]] scene::Vec3 spread_displacement_m(const SpreadLoad& load, const HalfSpace& half_space,
+                                                const scene::Vec3& x_m) noexcept;
+
+/// Distance from the load's centre below which a vertex is near, over the radius: beyond, the second moment leaves out
+/// less than 1e-3.
+inline constexpr double near_radii = 3.0;
+
+/// At all vertices: those beyond near_radii get their displacement [m], the others are listed.
+/// @param near  places of vertices, room for all of them
+/// @returns their number
+std::int32_t spread_displacements_m(const SpreadLoad& load, const HalfSpace& half_space, const Columns& rest_m,
+                                    Columns& out_m, std::int32_t* near) noexcept;
+
+}  // namespace touchstone::fast

@@ -1,0 +1,49 @@
+#include "scene/response/point_load.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace touchstone::scene {
+namespace {
+
+/// Cylindrical coordinates about the load, z into the half space.
+struct Place {
+  double z, r, rho;
+  Vec3 radial;  ///< unit length, zero on the axis
+};
+
+Place place(const PointLoad& load, const Vec3& x_m) {
+  const Vec3 d_m = x_m - load.point_m;
+  const double z = -d_m.dot(load.normal);
+  const Vec3 across_m = d_m + z * load.normal;
+  const double r = across_m.norm();
+  return {z, r, d_m.norm(), r > 0.0 ? Vec3(across_m / r) : Vec3::Zero().eval()};
+}
+
+}  // namespace
+
+Vec3 half_space_displacement_m(const PointLoad& load, const Material& material, const Vec3& x_m) {
+  const double nu = material.poissons_ratio;
+  const auto [z, r, rho, radial] = place(load, x_m);
+  const double scale_m2 = load.force_n / (4.0 * std::numbers::pi * material.shear_modulus_pa());
+  const double u_r = scale_m2 * (r * z / (rho * rho * rho) - (1.0 - 2.0 * nu) * r / (rho * (rho + z)));
+  const double u_z = scale_m2 * (z * z / (rho * rho * rho) + 2.0 * (1.0 - nu) / rho);
+  return u_r * radial - u_z * load.normal;
+}
+
+Mat3 half_space_stress_pa(const PointLoad& load, const Material& material, const Vec3& x_m) {
+  const double nu = material.poissons_ratio;
+  const auto [z, r, rho, radial] = place(load, x_m);
+  const double scale_n = load.force_n / (2.0 * std::numbers::pi), rho5 = std::pow(rho, 5);
+  const double flat = (1.0 - 2.0 * nu) / (rho * (rho + z));
+  const double rr = scale_n * (flat - 3.0 * r * r * z / rho5);
+  const double around = scale_n * ((1.0 - 2.0 * nu) * z / (rho * rho * rho) - flat);
+  const double zz = -3.0 * scale_n * z * z * z / rho5, rz = -3.0 * scale_n * r * z * z / rho5;
+  const Vec3 down = -load.normal;
+  const Vec3 side = r > 0.0 ? Vec3(down.cross(radial)) : down.unitOrthogonal();
+  const Vec3 out = r > 0.0 ? radial : Vec3(side.cross(down));
+  return rr * out * out.transpose() + around * side * side.transpose() + zz * down * down.transpose() +
+         rz * (out * down.transpose() + down * out.transpose());
+}
+
+}  // namespace touchstone::scene

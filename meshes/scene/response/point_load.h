@@ -1,0 +1,22 @@
+// A point force on a half space in closed form (J. Boussinesq 1885): K. L. Johnson, Contact Mechanics (1985), 3.2.
+#pragma once
+
+#include "scene/base/frames.h"
+#include "scene/model/scene.h"
+
+namespace touchstone::scene {
+
+/// A force on a half space, against the outward normal of its plane.
+struct PointLoad {
+  Vec3 point_m;  ///< where it acts
+  Vec3 normal;   ///< outward, unit length
+  double force_n = 1.0;
+};
+
+/// Displacement [m] at another point of the half space, world frame.
+[[nodiscard]] Vec3 half_space_displacement_m(const PointLoad& load, const Material& material, const Vec3& x_m);
+
+/// Cauchy stress [Pa] there, tension positive; at nu = 0.5 with its pressure.
+[[nodiscard]] Mat3 half_space_stress_pa(const PointLoad& load, const Material& material, const Vec3& x_m);
+
+}  // namespace touchstone::scene

@@ -1,0 +1,29 @@
+// What a body's surface does under a point load, beyond what a half space does: small strain, computed offline.
+#pragma once
+
+#include "scene/response/load_grid.h"
+
+#include <Eigen/Core>
+
+#include <string>
+
+namespace touchstone::scene {
+
+/// Displacement per newton of loads against the normals of a grid's points, on the elastic body with its support and
+/// inclusions, minus half_space_displacement_m() of the same load. It is smooth, also at the load's own place. n
+/// loads, m rest points.
+struct Response {
+  LoadGrid grid;
+  Eigen::MatrixXf smooth_m_per_n;  ///< 3 m x n, world: x of all rest points, then y, then z
+  Eigen::Matrix3Xd own_m_per_n;    ///< the same at the load's place, 3 x n
+  Eigen::Matrix2Xd tilt_per_n;     ///< slope of the normal component there, along the grid's directions, 2 x n
+  int unknowns = 0;                ///< of the linear systems
+
+  [[nodiscard]] Eigen::Index rest_points() const noexcept { return smooth_m_per_n.rows() / 3; }
+};
+
+/// Everything that a response depends on, as text that a reader can compare; its hash names the file.
+/// @param surface  whose points are the rest points
+[[nodiscard]] std::string response_identity(const Body& body, const LoadGrid& grid, const Surface& surface);
+
+}  // namespace touchstone::scene

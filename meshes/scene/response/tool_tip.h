@@ -1,0 +1,50 @@
+// The end of a tool that touches a body, where it is a surface of revolution about the surface's normal.
+#pragma once
+
+#include "scene/model/scene.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchstone::scene {
+
+/// A ball, or a flat disc with a rounded rim. Frame T is the tool's.
+struct ToolTip {
+  Vec3 center_T_m = Vec3::Zero();  ///< of the ball; of the disc
+  Vec3 axis_T = Vec3::Zero();      ///< of the disc, out of the tool, unit length; zero for a ball
+  double flat_radius_m = 0.0;      ///< of the disc without its rim
+  double radius_m = 0.0;           ///< of the ball, or of the rim's fillet
+
+  [[nodiscard]] bool ball() const noexcept { return axis_T.isZero(0.0); }
+  /// The radius up to which there is a tip.
+  [[nodiscard]] double reach_m() const noexcept { return flat_radius_m + radius_m; }
+  /// Height of the tip's surface over its lowest plane at radius r [m]; beyond its reach that of the rim.
+  [[nodiscard]] double height_m(double r_m) const noexcept;
+  /// Its slope at radius r, below the reach.
+  [[nodiscard]] double slope(double r_m) const noexcept;
+};
+
+/// Where a tip touches: the surface's point below it, and how deep it is there.
+struct Touch {
+  Vec3 point_m = Vec3::Zero();  ///< p0, on the rest surface
+  Vec3 normal = Vec3::UnitZ();  ///< outward
+  double depth_m = 0.0;         ///< D; negative while apart
+  double tilt = 0.0;            ///< between the tip's axis and the normal [rad]; 0 for a ball
+};
+[[nodiscard]] Touch touch(const Shape& body, const ToolTip& tip, const Pose& pose) noexcept;
+
+/// The largest tilt at which a disc counts as lying flat [rad].
+inline constexpr double tilt_max = 0.02;
+
+/// Times of a track at which its contacts are looked at: the recorded instants and the waypoints.
+[[nodiscard]] std::vector<double> looked_at_s(const Scene& scene);
+
+/// The tip that touches the body on the scene's track, or in words why there is none of the kinds above.
+struct FoundTip {
+  std::optional<ToolTip> tip;
+  std::string why;
+};
+[[nodiscard]] FoundTip tool_tip(const Scene& scene);
+
+}  // namespace touchstone::scene

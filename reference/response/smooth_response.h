@@ -1,0 +1,31 @@
+// The linear response of a body to point loads, without the singular part.
+//
+// Split the displacement as u = u_k + w, u_k that of the same load on the half space of the tangent plane, which holds
+// a convex body. w solves the body's own linear problem with smooth data,
+//   int sigma(w) : grad v = -int_free (sigma_k N) . v + int_inclusions (sigma_k - sigma(u_k)) : grad v,
+//   w = -u_k where the body is held,
+// so that no mesh has to resolve the load. With nu < 0.5 on a curved surface sigma_k N grows as 1 / distance towards
+// the load, and w at the load's own place as its logarithm; the mesh then stands for the size of the load.
+#pragma once
+
+#include "scene/response/response.h"
+
+#include <functional>
+
+namespace touchstone::reference {
+
+struct SmoothResponseOptions {
+  double cells = 10.0;  ///< to the body's size; as many again to the spread of the loads
+};
+
+/// One factorisation and one solve per load.
+/// @param rest_points_m  of the rest surface, 3 x m
+/// @param progress       called now and then with the fraction done; may be empty and may throw to stop
+/// @throws scene::InputError for an incompressible inclusion in a compressible body and for a body that cannot be
+///         meshed; std::runtime_error when a load cannot be solved for
+[[nodiscard]] scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& grid,
+                                              const Eigen::Matrix3Xd& rest_points_m,
+                                              const SmoothResponseOptions& options = {},
+                                              const std::function<void(double)>& progress = {});
+
+}  // namespace touchstone::reference

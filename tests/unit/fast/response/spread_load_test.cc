@@ -1,0 +1,111 @@
+// Displacement under a patch of pressure: against point loads summed over the patch, and closed forms on the surface.
+#include "fast/response/spread_load.h"
+
+#include "scene/response/point_load.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace touchstone::fast {
+namespace {
+
+using scene::Vec3;
+
+const Vec3 normal = Vec3(0.2, -0.3, 0.9).normalized(), center_m(0.01, 0.02, 0.05);
+
+/// By point loads on rings of the patch, total force 1: of the ball's pressure, of the punch's.
+Vec3 summed_m(const scene::Material& material, double a, double flat, const Vec3& x_m) {
+  const Vec3 first = normal.unitOrthogonal(), second = normal.cross(first);
+  const int rings = 400, around = 64;
+  Vec3 sum_m = Vec3::Zero();
+  for (int i = 0; i < rings; ++i) {
+    // Radii r = a sqrt(1 - s^2): the punch's pressure is even in s, the ball's 3 s^2.
+    const double s = (i + 0.5) / rings, r = a * std::sqrt(1.0 - s * s);
+    const double force_n = ((1.0 - flat) * 3.0 * s * s + flat) / rings / around;
+    for (int j = 0; j < around; ++j) {
+      const double phi = 2.0 * std::numbers::pi * (j + 0.5 * (i % 2)) / around;
+      const Vec3 at_m = center_m + r * (std::cos(phi) * first + std::sin(phi) * second);
+      sum_m += scene::half_space_displacement_m({at_m, normal, force_n}, material, x_m);
+    }
+  }
+  return sum_m;
+}
+
+TEST(SpreadLoad, IsASumOfPointLoads) {
+  const Vec3 side = normal.unitOrthogonal();
+  const double a = 0.004;
+  for (const double nu : {0.0, 0.3, 0.5}) {
+    const scene::Material material{3.0e6, nu};
+    for (const double flat : {0.0, 0.4, 1.0}) {
+      const SpreadLoad load{center_m, normal, 1.0, a, flat};
+      for (const auto& [r, z] : {std::pair(0.0, 0.002),
+                                 {0.001, 0.003},
+                                 {0.003, 0.001},
+                                 {0.006, 0.0},
+                                 {0.005, 0.004},
+                                 {0.0, 0.02},
+                                 {0.012, 0.002}}) {
+        const Vec3 x_m = center_m + r * side - z * normal;
+        const Vec3 expected_m = summed_m(material, a, flat, x_m);
+        const Vec3 found_m = spread_displacement_m(load, HalfSpace(material), x_m);
+        EXPECT_LT((found_m - expected_m).norm(), 2e-3 * expected_m.norm()) << nu << ' ' << flat << ' ' << r << ' ' << z;
+      }
+    }
+  }
+}
+
+TEST(SpreadLoad, HertzAndThePunchOnTheSurface) {
+  const Vec3 side = normal.unitOrthogonal();
+  const double a = 0.004, E_star_pa = 4.0e6;
+  const HalfSpace rubber({3.0e6, 0.5});
+  const auto inward_m = [&](double flat, double r) {
+    return -spread_displacement_m({center_m, normal, 1.0, a, flat}, rubber, center_m + r * side).dot(normal);
+  };
+  for (const double r : {0.0, 0.001, 0.0039}) {
+    // K. L. Johnson, Contact Mechanics (1985), (3.41a) and (3.37).
+    const double p0_pa = 1.5 / (std::numbers::pi * a * a);
+    EXPECT_NEAR(inward_m(0.0, r), std::numbers::pi * p0_pa / (4.0 * a * E_star_pa) * (2.0 * a * a - r * r), 1e-11) << r;
+    EXPECT_NEAR(inward_m(1.0, r), 1.0 / (2.0 * a * E_star_pa), 1e-11) << r;
+  }
+  EXPECT_NEAR(inward_m(1.0, 0.01), std::asin(0.4) / (std::numbers::pi * a * E_star_pa), 1e-11);
+}
+
+TEST(SpreadLoad, TheLoopAgreesFromTheNearVerticesOn) {
+  const double a = 0.004;
+  Columns rest_m, out_m;
+  std::vector<std::int32_t> near;
+  const Vec3 first = normal.unitOrthogonal(), second = normal.cross(first);
+  for (int i = 0; i < 1000; ++i) {
+    const double r = 1e-4 * i, phi = 0.7 * i, z = 3e-5 * (i % 37);
+    const Vec3 x_m = center_m + r * (std::cos(phi) * first + std::sin(phi) * second) - z * normal;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      rest_m[axis].push_back(static_cast<float>(x_m[static_cast<Eigen::Index>(axis)]));
+      out_m[axis].push_back(0.0f);
+    }
+    near.push_back(0);
+  }
+  for (const double nu : {0.0, 0.5}) {
+    for (const double flat : {0.0, 1.0}) {
+      const SpreadLoad load{center_m, normal, 20.0, a, flat};
+      const HalfSpace half_space({3.0e6, nu});
+      const std::int32_t count = spread_displacements_m(load, half_space, rest_m, out_m, near.data());
+      EXPECT_GT(count, 100);
+      EXPECT_LT(count, 125);
+      std::size_t next = 0;
+      for (std::size_t i = 0; i < 1000; ++i) {
+        if (next < static_cast<std::size_t>(count) && near[next] == static_cast<std::int32_t>(i)) {
+          ++next;
+          continue;
+        }
+        const Vec3 x_m(rest_m[0][i], rest_m[1][i], rest_m[2][i]), found_m(out_m[0][i], out_m[1][i], out_m[2][i]);
+        const Vec3 expected_m = spread_displacement_m(load, half_space, x_m);
+        EXPECT_LT((found_m - expected_m).norm(), 2e-3 * expected_m.norm()) << nu << ' ' << flat << ' ' << i;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace touchstone::fast
