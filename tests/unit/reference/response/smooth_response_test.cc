@@ -33,7 +33,7 @@ scene::Scene small_scene(double nu) {
 /// Displacement at the rest points by a force on the node at a place of the top.
 Eigen::Matrix3Xd by_a_node(const scene::Body& body, const Vec3& p_m, const std::vector<int>& nodes,
                            ContactProblem<3>& problem) {
-  const Mesh<3>& mesh = problem.mesh();
+  const Discretisation<3>& mesh = problem.mesh();
   Eigen::Index node = 0;
   EXPECT_LT((mesh.points_m.colwise() - p_m).colwise().norm().minCoeff(&node), 1e-9 * body.size_m.x());
   const auto u_m = problem.linear_displacements_m({{static_cast<int>(node), -Vec3::UnitZ()}}).front();
@@ -47,7 +47,7 @@ void expect_the_same_far_away(const scene::Body& body, double tolerance) {
   spec.upper_m = {0.5 * edge_m, 0.5 * edge_m, edge_m};
   spec.grading.largest_m = edge_m / 8.0;
   refine_at_inclusions(body, 4.0, spec.grading);
-  Mesh<3> mesh = block_mesh(spec);
+  Discretisation<3> mesh = block_mesh(spec);
   embed_inclusions(body, mesh);
   ContactProblem<3> problem(mesh, body.material, scene::Kinematics::small, false, false);
   // A node of that mesh, and the nodes of the surface away from it.
