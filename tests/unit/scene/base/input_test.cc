@@ -40,7 +40,7 @@ std::string row(const std::string& time_s, const std::string& rest = "position_m
 }
 const std::string good = body + ball + law + row("0.0") + row("1.0");
 
-/// The message with which a scene is refused, in at most twenty seconds under sanitizers: the faults took minutes.
+/// The message with which a scene is refused, in at most twenty seconds, under sanitizers too.
 std::string refusal(const std::string& text, const std::filesystem::path& file = "a.toml",
                     const std::vector<std::string>& overrides = {}) {
   const std::clock_t begin = std::clock();  // of the processor: the machine may be busy
