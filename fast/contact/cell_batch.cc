@@ -78,7 +78,7 @@ void rest_batch(const scene::Ellipsoid& body, CellBatch& batch) noexcept {
         const scene::EllipsoidSearch::Step step = search.step(lx[i], ly[i], lz[i], t[i]);
         const bool goes_on = state[i] == searching;
         const double becomes = search.lost(step) ? lost : scene::EllipsoidSearch::settled(step) ? found : searching;
-        t[i] = goes_on & !scene::EllipsoidSearch::stands(step) ? step.next : t[i];
+        t[i] = (goes_on & !scene::EllipsoidSearch::stands(step)) ? step.next : t[i];
         state[i] = goes_on ? becomes : state[i];
       }
       double least = found;

@@ -96,7 +96,7 @@ void set(Columns& columns, std::int32_t i, const Vec3& value) noexcept {
 void follow_tool(const ResponseModel& model, const ResponseContact& contact, std::int32_t near_count,
                  ResponseState& state) noexcept {
   constexpr double rim = 1.15;   // of the radius: finite strain widens the linear contact
-  constexpr double slide = 0.2;  // outward, of depth times slope in the middle; measured
+  constexpr double slide = 0.2;  // outward, of depth times slope in the middle; chosen, as in reports/response.md
   const Vec3 p0 = contact.at.point_m, n = contact.at.normal;
   const double a_m = contact.load.radius_m;
   for (std::int32_t k = 0; k < near_count; ++k) {

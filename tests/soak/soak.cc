@@ -29,17 +29,7 @@ using soak::PathKind;
 using soak::Property;
 using soak::Random;
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool sanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-constexpr bool sanitized = true;
-#else
-constexpr bool sanitized = false;
-#endif
-#else
-constexpr bool sanitized = false;
-#endif
+constexpr bool sanitized = TOUCHSTONE_SANITIZED;
 
 /// Largest growth of the resident memory within a scene, after a quarter of its ticks [bytes].
 constexpr std::int64_t growth_in_scene = 256 * 1024;

@@ -34,7 +34,7 @@ class BoxExit {
   [[nodiscard]] TOUCHSTONE_INLINE Face face(double x_m, double y_m, double z_m) const noexcept {
     const Ways way = ways_m(x_m, y_m, z_m);
     const bool x = (way.x <= way.y) & (way.x <= way.z), y = !x & (way.y <= way.z);
-    return {x ? sign_.x() : 0.0, y ? sign_.y() : 0.0, x | y ? 0.0 : sign_.z()};
+    return {x ? sign_.x() : 0.0, y ? sign_.y() : 0.0, (x | y) ? 0.0 : sign_.z()};
   }
 
  private:
@@ -75,7 +75,7 @@ class Box final : public Shape {
     const double higher = ax > ay ? ax : ay;
     const bool x = (ax >= ay) & (ax >= az), y = !x & (ay >= az);
     return {higher > az ? higher : az, x ? std::copysign(1.0, lx) : 0.0, y ? std::copysign(1.0, ly) : 0.0,
-            x | y ? 0.0 : std::copysign(1.0, lz)};
+            (x | y) ? 0.0 : std::copysign(1.0, lz)};
   }
   /// False only if the whole ball about p_m is outside.
   [[nodiscard]] bool may_touch(const Vec3& p_m, double radius_m) const noexcept {

@@ -17,7 +17,7 @@ namespace detail {
 template <class Result, class Use, class... Bodies>
 Result as_solid(const Shape& shape, const Use& use, SolidList<Bodies...>) {
   Result result{};
-  ((dynamic_cast<const Bodies*>(&shape) != nullptr && (result = use.template operator()<Bodies>(), true)) || ...);
+  (void)((dynamic_cast<const Bodies*>(&shape) != nullptr && (result = use.template operator()<Bodies>(), true)) || ...);
   return result;
 }
 }  // namespace detail

@@ -91,9 +91,7 @@ TEST(Replay, ATrackOfManyTicksIsSteppedThroughAnewInsteadOfKept) {
 }
 
 TEST(Replay, MemoryDoesNotHangOnTheTicks) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the sanitizer keeps memory of its own";
-#endif
+  if (TOUCHSTONE_SANITIZED) GTEST_SKIP() << "the sanitizer keeps memory of its own";
   scene::Scene scene = coarse("ball-on-cube-slide");
   // Far away, where a tick takes least time.
   for (scene::Waypoint& row : scene.track) row.pose.position_m.z() += 0.5;

@@ -185,9 +185,7 @@ TEST_P(MachineFaults, EndInASentenceAndTheNextRunWorks) {
       {"a closed output", "", ">&-", "cannot write to standard output", {2}},
       {"few descriptors", "ulimit -n 5;", "", "Too many open files|cannot open shared object file", {2, 3, 127}},
   };
-#ifdef __SANITIZE_ADDRESS__
-  faults.pop_back();  // the sanitizers need descriptors of their own
-#endif
+  if (TOUCHSTONE_SANITIZED) faults.pop_back();  // the sanitizers need descriptors of their own
   if (!every) faults.resize(1);
   for (const Fault& fault : faults) {
     SCOPED_TRACE(fault.name);
@@ -237,9 +235,7 @@ TEST_P(MachineFaults, AFolderThatCannotBeWrittenToIsRefused) {
 
 TEST_P(MachineFaults, LackOfMemoryIsSaid) {
   if (GetParam().full() && GetParam().verb != "compare") GTEST_SKIP() << "the same as compare: when the program starts";
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the sanitizer takes all the addresses there are";
-#endif
+  if (TOUCHSTONE_SANITIZED) GTEST_SKIP() << "the sanitizer takes all the addresses there are";
   const std::vector<int> limits_mib = GetParam().full() ? std::vector{720, 1000} : std::vector{24, 28, 36, 44};
   for (const int limit_mib : limits_mib) {
     SCOPED_TRACE(std::to_string(limit_mib) + " MiB");
@@ -298,9 +294,7 @@ TEST(MachineFaultsLive, RunsWhateverTheLimitForStacksAndTakesNoMoreMemoryForIt) 
       rusage used{};
       ASSERT_EQ(::wait4(child, &status, 0, &used), child);
       EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
-#ifndef __SANITIZE_ADDRESS__
-      EXPECT_LT(used.ru_maxrss, one.full() ? 1'200'000 : 60'000) << "KiB";
-#endif
+      if (!TOUCHSTONE_SANITIZED) EXPECT_LT(used.ru_maxrss, one.full() ? 1'200'000 : 60'000) << "KiB";
     }
     std::filesystem::remove_all(dir);
   }
