@@ -145,6 +145,12 @@ void ElasticBody<dim>::make_pattern(const std::vector<char>& in_contact) {
 }
 
 template <int dim>
+void ElasticBody<dim>::load(Nodal force_n) {
+  dead_n_ = std::move(force_n);
+  mesh_.condense(dead_n_);
+}
+
+template <int dim>
 typename ElasticBody<dim>::Forces ElasticBody<dim>::forces(const State<dim>& state) const {
   const scene::CpuTimeAdder watch(assembly_s_);
   Forces sum = jointly(Order::forces, [&] {
@@ -153,6 +159,7 @@ typename ElasticBody<dim>::Forces ElasticBody<dim>::forces(const State<dim>& sta
     return forces_of_share(state);
   });
   mesh_.condense(sum.nodal_n);
+  if (dead_n_.size() > 0) sum.nodal_n -= dead_n_;
   return sum;
 }
 
@@ -245,6 +252,11 @@ void ElasticBody<dim>::assemble(const State<dim>& state, Stiffness stiffness, co
     ranks::send(std::array{stiffness});
     assemble_share(state, stiffness, in_contact, reactions);
   });
+  RightSide right{unknown_, right_n_.data()};
+  for (Eigen::Index dof = 0; dof < dead_n_.size(); ++dof) {
+    const double force_n = dead_n_.data()[dof];
+    if (force_n != 0.0) constraints_->distribute_local_to_global(static_cast<Dof>(dof), force_n, right);
+  }
   for (const int node : constrained_nodes) {
     for (int i = 0; i < dim; ++i) {
       const int unknown = unknown_[node * dim + i];
@@ -365,15 +377,6 @@ void ElasticBody<dim>::add(int node, const Eigen::Matrix<double, dim, dim>& K,
   LowerTriangle matrix(matrix_, unknown_, matrix_.value);
   RightSide right{unknown_, right_n_.data()};
   constraints_->distribute_local_to_global(K_in, f_in, dofs, matrix, right);
-}
-
-template <int dim>
-void ElasticBody<dim>::add_load(const Nodal& force_n) {
-  RightSide right{unknown_, right_n_.data()};
-  for (std::size_t dof = 0; dof < unknown_.size(); ++dof) {
-    const double one_n = force_n.data()[dof];
-    if (one_n != 0.0) constraints_->distribute_local_to_global(static_cast<Dof>(dof), one_n, right);
-  }
 }
 
 template <int dim>

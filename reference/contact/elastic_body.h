@@ -54,8 +54,11 @@ class ElasticBody : public ranks::Part {
   /// The unknown of a degree of freedom, or -1.
   [[nodiscard]] int unknown(int dof) const { return unknown_[static_cast<std::size_t>(dof)]; }
 
+  /// Dead forces on the nodes from now on.
+  void load(Nodal force_n);
+
   struct Forces {
-    Nodal nodal_n;                  ///< hanging nodes' passed on to their masters
+    Nodal nodal_n;                  ///< internal less dead ones, hanging nodes' passed on to their masters
     double volume_error_rel = 0.0;  ///< largest over cells of |integral psi (J - 1 - p / kappa)| / volume
     bool admissible = true;         ///< no cell turned inside out
   };
@@ -85,8 +88,6 @@ class ElasticBody : public ranks::Part {
                 double their_stiffness_n_per_m, const std::vector<InReaction>& reactions = {});
   /// Adds the stiffness and the force of one node.
   void add(int node, const Eigen::Matrix<double, dim, dim>& K, const Eigen::Matrix<double, dim, 1>& f_n);
-  /// Adds outer forces on nodes that do not hang.
-  void add_load(const Nodal& force_n);
   /// Out-of-balance forces: what the tangent is to be solved for.
   [[nodiscard]] const Eigen::VectorXd& right_n() const noexcept { return right_n_; }
   /// The reactions are value + row x at a solution x.
@@ -138,6 +139,7 @@ class ElasticBody : public ranks::Part {
   std::unique_ptr<LinearSolver> solver_;  // after lead_
   mutable double assembly_s_ = 0.0;
 
+  Nodal dead_n_;                  // no columns without any
   std::vector<char> prescribed_;  // per degree of freedom
   std::vector<char> may_touch_;   // per cell: may be constrained by contact
   std::vector<int> unknown_;      // per degree of freedom: its number or -1

@@ -1,5 +1,4 @@
-// What a solved state says.
-#include "reference/contact/contact_problem.h"
+#include "reference/contact/observation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +8,12 @@
 namespace touchstone::reference {
 
 template <int dim>
-Observation ContactProblem<dim>::observe(const State<dim>& state, double region_gap_m) const {
+Observation observe(const ContactModel<dim>& model, const ElasticBody<dim>& body, const State<dim>& state,
+                    double region_gap_m) {
+  using Point = typename ContactModel<dim>::Point;
   Observation seen;
-  const Nodal F = forces(state).nodal_n;
-  const double images = (mirror_x_ ? 2.0 : 1.0) * (mirror_y_ ? 2.0 : 1.0);
+  const typename ContactModel<dim>::Nodal F = body.forces(state).nodal_n;
+  const double images = model.images();
   // A mirror image doubles what lies in the mirror's plane and cancels what does not.
   const auto with_images = [&](Point part) {
     scene::Vec3 whole = scene::Vec3::Zero();
@@ -20,71 +21,72 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
       whole.z() = part[1];
     } else {
       whole = images * part;
-      if (mirror_x_) whole.x() = 0.0;
-      if (mirror_y_) whole.y() = 0.0;
+      if (model.mirror_x) whole.x() = 0.0;
+      if (model.mirror_y) whole.y() = 0.0;
     }
     return whole;
   };
 
   Point support = Point::Zero();
-  std::vector<char> held(mesh_.node_count(), 0);
-  for (const auto& face : mesh_.faces) {
+  std::vector<char> held(model.mesh.node_count(), 0);
+  for (const auto& face : model.mesh.faces) {
     if (face.boundary != Boundary::held) continue;
     for (const int node : face.nodes) held[node] = 1;
   }
-  for (int node = 0; node < mesh_.node_count(); ++node) {
+  for (int node = 0; node < model.mesh.node_count(); ++node) {
     if (held[node]) support += F.col(node);
   }
   seen.support_force_n = with_images(support);
 
-  seen.volume_change_rel = body_.volume_change_rel(state);
-  if (!tool_) return seen;
+  seen.volume_change_rel = body.volume_change_rel(state);
+  if (!model.tool) return seen;
 
   // Contact forces lambda grad g act on the body; the tool gets their opposite.
-  std::vector<double> pressure_pa(mesh_.node_count(), 0.0);
-  std::vector<double> opening_m(mesh_.node_count(), std::numeric_limits<double>::infinity());
+  std::vector<double> pressure_pa(model.mesh.node_count(), 0.0);
+  std::vector<double> opening_m(model.mesh.node_count(), std::numeric_limits<double>::infinity());
   std::vector<char> inside = state.touching;
-  std::vector<int> touching_index(mesh_.node_count(), -1);
+  std::vector<int> touching_index(model.mesh.node_count(), -1);
   std::vector<Point> on_tool_n;
-  for (const int node : contact_nodes_) {
-    const Gap<dim> g = gap(state, node);
+  for (const int node : model.nodes) {
+    const Gap<dim> g = model.gap(state, node);
     opening_m[node] = g.value_m;
     seen.node_penetration_m = std::max(seen.node_penetration_m, -g.value_m);
     if (!state.touching[node]) continue;
     Point normal = g.gradient;
     for (int i = 0; i < dim; ++i) {
-      if (prescribed_[node * dim + i]) normal[i] = 0.0;
+      if (model.prescribed[node * dim + i]) normal[i] = 0.0;
     }
     touching_index[node] = static_cast<int>(on_tool_n.size());
     on_tool_n.push_back(-F.col(node).dot(normal) / normal.squaredNorm() * g.gradient);
-    if (area_m2_[node] > 0.0) pressure_pa[node] = -on_tool_n.back().dot(g.gradient.normalized()) / area_m2_[node];
+    if (model.area_m2[node] > 0.0)
+      pressure_pa[node] = -on_tool_n.back().dot(g.gradient.normalized()) / model.area_m2[node];
   }
-  for (int node = 0; node < mesh_.node_count(); ++node) {
-    if (!mesh_.hangs(node) || surface_normal_.col(node).isZero(0.0)) continue;
-    opening_m[node] = gap(state, node).value_m;
+  for (int node = 0; node < model.mesh.node_count(); ++node) {
+    if (!model.mesh.hangs(node) || model.normal.col(node).isZero(0.0)) continue;
+    opening_m[node] = model.gap(state, node).value_m;
     seen.between_nodes_penetration_m = std::max(seen.between_nodes_penetration_m, -opening_m[node]);
     double share = 0.0;
-    for (const auto& [master, weight] : mesh_.masters(node)) {
+    for (const auto& [master, weight] : model.mesh.masters(node)) {
       pressure_pa[node] += weight * pressure_pa[master];
       share += weight * inside[master];
     }
     inside[node] = share > 0.5 ? 1 : 0;
   }
   if constexpr (dim == 2) {
-    for (const int node : contact_nodes_) {
-      if (axis_partner_[node] >= 0) pressure_pa[node] = pressure_pa[axis_partner_[node]];
+    for (const int node : model.nodes) {
+      if (model.axis_partner[node] >= 0) pressure_pa[node] = pressure_pa[model.axis_partner[node]];
     }
   }
 
-  const Touching touched = touching_points(state, region_gap_m);
+  const Touching touched = model.touching_points(state, region_gap_m);
   const std::vector<scene::Vec3>& mirrors = touched.mirrors;
   const std::vector<int>& region_of = touched.region_of;
   const int touching_count = static_cast<int>(touched.nodes.size());
-  const auto place = [&](int node) { return contact_place_m(state, node); };
+  const auto place = [&](int node) { return model.place_m(state, node); };
   // Friction, which the weights by pressure below go without.
   std::vector<Point> friction_on_tool_n(touching_count, Point::Zero());
-  if (friction_) {
-    for (const NodeContact<dim>& contact : contacts_of(state, F, touched)) {
+  if (model.friction) {
+    for (const NodeContact<dim>& contact : model.contacts_of(state, F, touched)) {
       friction_on_tool_n[touching_index[contact.node]] = -contact.friction_n;
     }
     seen.dissipated_j = state.dissipated_j;
@@ -100,7 +102,7 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
     ContactRegion& region = seen.regions[region_of[point]];
     const double weight_n = on_tool_n[i].norm();
     weights_n[region_of[point]] += weight_n;
-    if (friction_ && !state.slipping[touched.nodes[i]]) stuck_n[region_of[point]] += weight_n;
+    if (model.friction && !state.slipping[touched.nodes[i]]) stuck_n[region_of[point]] += weight_n;
     if constexpr (dim == 3) {
       const scene::Vec3& mirror = mirrors[point / touching_count];
       const scene::Vec3 at_m = mirror.cwiseProduct(place(touched.nodes[i]));
@@ -108,7 +110,7 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
       const scene::Vec3 force_n = mirror.cwiseProduct(on_tool_n[i]) + friction_n;
       region.friction_n += friction_n;
       region.force_n += force_n;
-      region.torque_nm += (at_m - tool_->mass_center_m()).cross(force_n);
+      region.torque_nm += (at_m - model.tool->mass_center_m()).cross(force_n);
       region.center_m += weight_n * at_m;
     } else {
       region.friction_n.z() += friction_on_tool_n[i][1];
@@ -117,7 +119,7 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
     }
   }
   for (std::size_t r = 0; r < seen.regions.size(); ++r) {
-    if (friction_) seen.regions[r].stuck_share = weights_n[r] > 0.0 ? stuck_n[r] / weights_n[r] : 0.0;
+    if (model.friction) seen.regions[r].stuck_share = weights_n[r] > 0.0 ? stuck_n[r] / weights_n[r] : 0.0;
     seen.regions[r].center_m /= std::max(weights_n[r], std::numeric_limits<double>::min());
     seen.force_n += seen.regions[r].force_n;
     seen.torque_nm += seen.regions[r].torque_nm;
@@ -130,7 +132,7 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
   // distance s inside, opening (4 A / 3 E*) s^(3/2) outside (the half-plane solution; K. L. Johnson, Contact Mechanics
   // (1985), 5.1). Pressure, opening and the side's length determine A and the place: with t the share of the side
   // inside, (1 - t)^3 = q^2 t, q = 3 E* opening / (4 pressure length).
-  const double E_star_pa = material_.contact_modulus_pa();
+  const double E_star_pa = model.material.contact_modulus_pa();
   const auto edge_between = [&](int touching, int open) -> Point {
     const Point from = place(touching), to = place(open);
     const double q = 0.75 * E_star_pa * std::max(opening_m[open], 0.0) / (pressure_pa[touching] * (to - from).norm());
@@ -140,7 +142,7 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
       t += ((1.0 - t) * (1.0 - t) * (1.0 - t) - q * q * t) / (3.0 * (1.0 - t) * (1.0 - t) + q * q);
     return from + std::min(t, 1.0) * (to - from);
   };
-  for (const auto& face : mesh_.faces) {
+  for (const auto& face : model.mesh.faces) {
     if (face.boundary != Boundary::free) continue;
     const auto first =
         std::find_if(face.nodes.begin(), face.nodes.end(), [&](int n) { return touching_index[n] >= 0; });
@@ -183,19 +185,19 @@ Observation ContactProblem<dim>::observe(const State<dim>& state, double region_
     for (const auto& [xi, weight, shape] : gauss_points<dim - 1>()) {
       Point X = Point::Zero(), u = Point::Zero(), N = Point::Zero();
       for (int a = 0; a < Discretisation<dim>::nodes_per_face; ++a) {
-        X += shape.value[a] * mesh_.points_m.col(face.nodes[a]);
+        X += shape.value[a] * model.mesh.points_m.col(face.nodes[a]);
         u += shape.value[a] * state.u_m.col(face.nodes[a]);
-        N += shape.value[a] * surface_normal_.col(face.nodes[a]);
+        N += shape.value[a] * model.normal.col(face.nodes[a]);
       }
-      const Gap<dim> g =
-          kinematics_ == scene::Kinematics::finite ? tool_->gap(X + u) : tool_->gap_along(X, N.normalized(), u);
+      const Gap<dim> g = model.kinematics == scene::Kinematics::finite ? model.tool->gap(X + u)
+                                                                       : model.tool->gap_along(X, N.normalized(), u);
       seen.between_nodes_penetration_m = std::max(seen.between_nodes_penetration_m, -g.value_m);
     }
   }
   return seen;
 }
 
-template Observation ContactProblem<2>::observe(const State<2>&, double) const;
-template Observation ContactProblem<3>::observe(const State<3>&, double) const;
+template Observation observe(const ContactModel<2>&, const ElasticBody<2>&, const State<2>&, double);
+template Observation observe(const ContactModel<3>&, const ElasticBody<3>&, const State<3>&, double);
 
 }  // namespace touchstone::reference
