@@ -1,0 +1,1 @@
+// Holds nothing: the target needs a source file.
