@@ -69,6 +69,7 @@ class NewtonSolver {
 
  private:
   using Nodal = typename Discretisation<dim>::Nodal;
+  using Point = typename Discretisation<dim>::Point;
   using Forces = typename ElasticBody<dim>::Forces;
 
   /// Updates the status of the nodes and what prescribed places have to move.

@@ -210,22 +210,27 @@ class Run {
     take(level, answer);
     coarser_ = std::move(mesh);
     if (level == 0) coarsest_ = *coarser_;
-    if (solved_levels() < fewest_levels) {
-      unknown_uncertainty();
-    } else {
-      if (!sensitivities_known_) {
-        if (const std::optional<Limit> limit = measure_sensitivities(store)) {
+    const bool enough = solved_levels() >= fewest_levels;
+    if (enough && !sensitivities_known_ && why_unknown_.empty()) {
+      if (const std::optional<Limit> limit = measure_sensitivities(store)) {
+        why_unknown_ = "the uncertainty is unknown after " + meshes_text(solved_levels()) + ": " + limit->why;
+        // The meshes that were asked for are an answer without it, too.
+        if (limit->by != EndedBy::sensitivity || !scene_.reference.levels) {
           unknown_uncertainty();
-          return stop_at(limit->by,
-                         "the uncertainty is unknown after " + meshes_text(solved_levels()) + ": " + limit->why);
+          return stop_at(limit->by, why_unknown_);
         }
       }
+    }
+    if (enough && why_unknown_.empty()) {
       estimate_uncertainty();
+    } else {
+      unknown_uncertainty();
     }
     if (scene_.reference.levels) {
       if (solved_levels() < *scene_.reference.levels) return true;
       const std::string asked = meshes_text(solved_levels()) + (solved_levels() == 1 ? " was" : " were") + " asked for";
-      return stop_at(EndedBy::done, solved_levels() < fewest_levels ? asked + needs_more() : asked);
+      if (!enough) return stop_at(EndedBy::done, asked + needs_more());
+      return why_unknown_.empty() ? stop_at(EndedBy::done, asked) : stop_at(EndedBy::sensitivity, why_unknown_);
     }
     result_.refinement.reached = small_enough(result_.force_uncertainty_rel) &&
                                  small_enough(result_.shape_uncertainty_rel) && solved_levels() >= fewest_levels;
@@ -567,6 +572,8 @@ class Run {
                    "the time was up before all sensitivities were measured, which it needs; the next run goes on from "
                    "there, and needs about " +
                        duration_text(pace_.factor() * expected_s(missing_sensitivities(coarsest_, store), 0))};
+    } catch (const NotConverged& failure) {
+      return Limit{EndedBy::sensitivity, std::string(failure.what()) + "; more instants may help"};
     } catch (const std::bad_alloc&) {
       return Limit{EndedBy::memory, "the memory did not suffice for the sensitivities, which it needs"};
     }
@@ -640,6 +647,7 @@ class Run {
   Discretisation<dim> coarsest_;
   std::vector<std::vector<Eigen::Matrix3Xd>> shapes_;  // per level and instant, 3 x rest points
   bool sensitivities_known_ = false;
+  std::string why_unknown_;  // the uncertainty of three meshes and more
 };
 
 }  // namespace

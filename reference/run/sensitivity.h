@@ -52,7 +52,7 @@ using SensitivityWatch = std::function<void(const std::string& part, int iterati
 /// at inclusions half as large, and cells far from the contact half as large. Those that do not apply to the scene
 /// are left out; the last one always applies. Solved once per scene: the store keeps them.
 /// @param watch  called in every Newton iteration, which are none when all is in the store; may throw to stop
-/// @throws NotConverged
+/// @throws NotConverged  naming the one that failed
 template <int dim>
 [[nodiscard]] std::vector<Sensitivity> sensitivities(const SensitivityCase<dim>& given, const Store& store,
                                                      const SensitivityWatch& watch);
