@@ -1,1 +1,0 @@
-// Holds nothing: the target needs a source file.
