@@ -83,7 +83,7 @@ LinearResponse condense(const scene::Scene& scene, const ModelChoice& choice, co
         const int other = nodes[static_cast<std::size_t>(i)];
         out.compliance_m_per_n(i, first + k) = -problem.surface_normal(other).dot(u_m.col(other));
       }
-      out.displacement_m_per_n.col(first + k) = sampler.displacement_m(u_m).reshaped();
+      out.displacement_m_per_n.col(first + k) = sampler.at_points(u_m).reshaped();
     }
     if (progress) progress(static_cast<double>(first + count) / static_cast<double>(n));
   }

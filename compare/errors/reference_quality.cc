@@ -32,6 +32,10 @@ ReferenceQuality reference_quality(const std::vector<scene::ReferenceInstant>& i
       quality.volume_change_rel = instant.volume_change_rel;
     }
     if (!deep[t]) continue;
+    if (instant.pressure_peak_pa > quality.pressure_peak_pa) {
+      quality.pressure_peak_pa = instant.pressure_peak_pa;
+      quality.pressure_peak_uncertainty_rel = instant.pressure_peak_uncertainty_pa / instant.pressure_peak_pa;
+    }
     keep_larger(quality.residual_penetration_rel, instant.residual_penetration_m / instant.depth_m);
     keep_larger(quality.between_nodes_rel, instant.between_nodes_penetration_m / instant.depth_m);
     keep_larger(quality.equilibrium_rel, instant.equilibrium_rel);
@@ -49,6 +53,8 @@ scene::Figures reference_figures(const reference::Result& result, const Referenc
   scene::Figures figures{
       uncertainty_or_why("reference.force_uncertainty_rel", quality.force_uncertainty_rel),
       uncertainty_or_why("reference.shape_uncertainty_rel", result.shape_uncertainty_rel),
+      {"reference.pressure_peak_pa", quality.pressure_peak_pa, "", "Pa"},
+      uncertainty_or_why("reference.pressure_peak_uncertainty_rel", quality.pressure_peak_uncertainty_rel),
       ratio_or_why("reference.residual_penetration_rel", quality.residual_penetration_rel),
       ratio_or_why("reference.penetration_between_nodes_rel", quality.between_nodes_rel),
       ratio_or_why("reference.equilibrium_rel", quality.equilibrium_rel),
@@ -80,6 +86,8 @@ std::vector<scene::Column> reference_quality_columns(const reference::Result& re
     for (const Instant& instant : result.instants) values.push_back(instant.*member);
   };
   add("force_uncertainty_n", &Instant::force_uncertainty_n);
+  add("pressure_peak_pa", &Instant::pressure_peak_pa);
+  add("pressure_peak_uncertainty_pa", &Instant::pressure_peak_uncertainty_pa);
   add("residual_penetration_m", &Instant::residual_penetration_m);
   add("between_nodes_penetration_m", &Instant::between_nodes_penetration_m);
   add("equilibrium_rel", &Instant::equilibrium_rel);

@@ -22,6 +22,8 @@ struct ReferenceQuality {
   std::optional<double> between_nodes_rel;         ///< into the tool between contact nodes, / depth
   std::optional<double> equilibrium_rel;           ///< |contact + support| / |contact|
   double volume_change_rel = 0.0;                  ///< of the body, of the largest magnitude over all instants, signed
+  double pressure_peak_pa = 0.0;                   ///< largest over the deep instants
+  std::optional<double> pressure_peak_uncertainty_rel;
 };
 [[nodiscard]] ReferenceQuality reference_quality(const std::vector<scene::ReferenceInstant>& instants);
 

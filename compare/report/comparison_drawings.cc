@@ -168,6 +168,15 @@ Drawing largest_error(const Errors& errors, const Abscissa& x) {
           to_svg(plot)};
 }
 
+std::string traction_caption(const scene::ReferenceInstant& at) {
+  const double uncertainty = at.pressure_peak_uncertainty_pa / at.pressure_peak_pa;
+  return fmt::format(
+      "Pressure and friction of the tool on the body in the section's plane, per area at rest, at the deepest instant; "
+      "the reference on its own mesh. The largest pressure at a node is {:.4g} kPa, {}.",
+      1e-3 * at.pressure_peak_pa,
+      std::isfinite(uncertainty) ? "known to " + percent_text(uncertainty) : "its uncertainty is unknown");
+}
+
 }  // namespace
 
 std::vector<Drawing> ComparisonDrawings::all() const {
@@ -182,7 +191,7 @@ std::vector<Drawing> ComparisonDrawings::all() const {
 const std::vector<std::string>& ComparisonDrawings::names() {
   static const std::vector<std::string> all_names = {
       "force-over-depth", "force-over-time", "force-logarithmic",   "friction", "force-error", "shape-error",
-      "section",          "section-contact", "shape-largest-error", "bodies"};
+      "section",          "section-contact", "shape-largest-error", "traction", "bodies"};
   return all_names;
 }
 
@@ -247,6 +256,9 @@ ComparisonDrawings comparison_drawings(const scene::Scene& scene, const fast::Ru
        "the squares.",
        section_svg(scene, run, result, errors.deepest, true)},
       largest_error(errors, first)};
+  if (const std::optional<Plot> plot = traction_plot(run.surface, result, errors.deepest)) {
+    out.shapes.push_back({"traction", traction_caption(result.instants[errors.deepest]), to_svg(*plot)});
+  }
   const std::vector<std::string> bodies = half_cut_svgs(scene, run, result, errors.deepest);
   out.bodies = {{"reference", "", bodies[0]}, {"fast", "", bodies[1]}, {"error", "", bodies[2]}};
   out.bodies_in_a_row = half_cuts_in_a_row(bodies);

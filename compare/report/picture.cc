@@ -385,4 +385,29 @@ std::string section_svg(const scene::Scene& scene, const fast::Run& run, const r
   return to_svg(plot, 560, 440);
 }
 
+std::optional<Plot> traction_plot(const scene::Surface& surface, const reference::Result& result, std::size_t instant) {
+  const reference::BoundarySurface& own = result.deepest_surface;
+  if (own.traction_pa.size() == 0) return std::nullopt;
+  std::vector<std::pair<double, double>> points;  // deformed place, traction
+  for (const auto& outline : cut_at_y(own.rest, cut_y_m(surface, result.instants[instant].tool))) {
+    for (const EdgePoint& p : outline) {
+      const double traction_pa = p.of(own.traction_pa).norm();
+      if (traction_pa > 0.0)
+        points.emplace_back(p.of(own.rest.points_m).x() + p.of(own.displacement_m).x(), traction_pa);
+    }
+  }
+  if (points.empty()) return std::nullopt;
+  std::sort(points.begin(), points.end());
+  Plot plot;
+  plot.title = "Traction across the contact";
+  plot.x_label = "x [mm]";
+  plot.y_label = "traction [kPa]";
+  Curve& curve = plot.curves.emplace_back(Curve{"reference", Look::reference, {}, {}});
+  for (const auto& [x_m, traction_pa] : points) {
+    curve.x.push_back(1e3 * x_m);
+    curve.y.push_back(1e-3 * traction_pa);
+  }
+  return plot;
+}
+
 }  // namespace touchstone::compare

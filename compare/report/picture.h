@@ -7,6 +7,7 @@
 #include "reference/solver.h"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,5 +69,11 @@ void show_contact(Plot& plot, const Window& window);
 /// @param instant  the deepest
 [[nodiscard]] std::string section_svg(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
                                       std::size_t instant, bool around_contact);
+
+/// What the tool exerts on the body across the contact, in the section's plane, per area at rest; the reference on its
+/// own mesh. Nothing where nothing touches.
+/// @param instant  the deepest
+[[nodiscard]] std::optional<Plot> traction_plot(const scene::Surface& surface, const reference::Result& result,
+                                                std::size_t instant);
 
 }  // namespace touchstone::compare

@@ -36,6 +36,12 @@ void add_numbers(vtkPolyData* data, const char* name, const Eigen::VectorXd& num
   data->GetPointData()->AddArray(array);
 }
 
+void add_traction(vtkPolyData* data, const scene::ReferenceInstant& instant, const std::string& name) {
+  if (instant.traction_pa.size() == 0) return;
+  add_vectors(data, (name + "_pa").c_str(), instant.traction_pa);
+  add_numbers(data, (name + "_uncertainty_pa").c_str(), instant.traction_uncertainty_pa);
+}
+
 void add_region(vtkPolyData* data, const char* name, const std::vector<bool>& touched) {
   vtkNew<vtkIntArray> array;
   array->SetName(name);
@@ -94,6 +100,7 @@ void write_surfaces(const std::filesystem::path& folder, const fast::Run& run, c
     add_vectors(data, "displacement_error_m", error_m);
     add_numbers(data, "displacement_error_magnitude_m", error_m.colwise().norm().transpose());
     add_numbers(data, "displacement_reference_uncertainty_m", result.instants[t].displacement_uncertainty_m);
+    add_traction(data, result.instants[t], "traction_reference");
     if (run.instants[t].normal.size() > 0) add_vectors(data, "normal_fast", run.instants[t].normal);
     add_region(data, "region_id_fast", errors.instants[t].touched_fast);
     add_region(data, "region_id_reference", errors.instants[t].touched_reference);
@@ -120,6 +127,7 @@ void write_reference_surfaces(const std::filesystem::path& folder, const scene::
   write_body(folder, surface, result.instants, [&](std::size_t t, vtkPolyData* data) {
     add_vectors(data, "displacement_m", result.instants[t].displacement_m);
     add_numbers(data, "displacement_uncertainty_m", result.instants[t].displacement_uncertainty_m);
+    add_traction(data, result.instants[t], "traction");
   });
 }
 

@@ -26,6 +26,7 @@
 #include "reference/contact/elastic_body.h"
 #include "reference/contact/newton.h"
 #include "reference/contact/observation.h"
+#include "reference/contact/traction.h"
 #include "scene/base/frames.h"
 #include "scene/model/scene.h"
 
@@ -84,6 +85,10 @@ class ContactProblem {
   /// Forces at the active nodes that can move along the surface; normal forces only without friction. The
   /// coefficient is that of the node's region.
   [[nodiscard]] std::vector<NodeContact<dim>> node_contacts(const State<dim>& state, double region_gap_m = 0.0) const;
+
+  [[nodiscard]] ContactTraction<dim> contact_traction(const State<dim>& state) const {
+    return reference::contact_traction(model_, body_, state);
+  }
 
   /// Internal nodal forces of a state less the dead forces, hanging nodes' passed on to their masters [N]: the
   /// support's force where displacement is prescribed, zero elsewhere except for contact.

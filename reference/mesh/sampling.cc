@@ -92,13 +92,13 @@ SurfaceSampler<dim>::SurfaceSampler(const Discretisation<dim>& mesh, const Eigen
 }
 
 template <int dim>
-Eigen::Matrix3Xd SurfaceSampler<dim>::displacement_m(const Eigen::Matrix<double, dim, Eigen::Dynamic>& u_m) const {
+Eigen::Matrix3Xd SurfaceSampler<dim>::at_points(const Eigen::Matrix<double, dim, Eigen::Dynamic>& nodal) const {
   Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(samples_.size()));
   for (std::size_t k = 0; k < samples_.size(); ++k) {
-    Eigen::Matrix<double, dim, 1> u = Eigen::Matrix<double, dim, 1>::Zero();
+    Eigen::Matrix<double, dim, 1> v = Eigen::Matrix<double, dim, 1>::Zero();
     for (int a = 0; a < Discretisation<dim>::nodes_per_face; ++a)
-      u += samples_[k].weights[a] * u_m.col(samples_[k].nodes[a]);
-    result.col(static_cast<Eigen::Index>(k)) = samples_[k].to_world * u;
+      v += samples_[k].weights[a] * nodal.col(samples_[k].nodes[a]);
+    result.col(static_cast<Eigen::Index>(k)) = samples_[k].to_world * v;
   }
   return result;
 }

@@ -1,4 +1,4 @@
-// Displacement at points of the rest surface, from nodal values on any of our meshes.
+// Nodal vectors at points of the rest surface, on any of our meshes.
 #pragma once
 
 #include "reference/discretisation/discretisation.h"
@@ -19,8 +19,8 @@ class SurfaceSampler {
   /// @throws scene::InputError when a point is not on the surface (further than a thousandth of the body's size)
   SurfaceSampler(const Discretisation<dim>& mesh, const Eigen::Matrix3Xd& rest_points_m, bool mirror_x, bool mirror_y);
 
-  /// @param u_m  nodal displacements; @returns 3 x n, world frame
-  [[nodiscard]] Eigen::Matrix3Xd displacement_m(const Eigen::Matrix<double, dim, Eigen::Dynamic>& u_m) const;
+  /// @param nodal  a vector per node, such as its displacement; @returns 3 x n, world frame
+  [[nodiscard]] Eigen::Matrix3Xd at_points(const Eigen::Matrix<double, dim, Eigen::Dynamic>& nodal) const;
 
  private:
   struct Sample {

@@ -159,7 +159,7 @@ scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& 
     State<3> state = problem.rest();
     const NewtonReport report = problem.solve(state);
     if (!report.converged) throw std::runtime_error("a load on the body was not solved for: " + report.trouble);
-    const Eigen::Matrix3Xd w_m = sampler.displacement_m(state.u_m);
+    const Eigen::Matrix3Xd w_m = sampler.at_points(state.u_m);
     out.smooth_m_per_n.col(k) = w_m.leftCols(m).transpose().reshaped().cast<float>();
     out.own_m_per_n.col(k) = w_m.col(m + 5 * k);
     for (int axis = 0; axis < 2; ++axis) {

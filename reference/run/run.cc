@@ -79,10 +79,14 @@ class Run {
   }
 
  private:
-  /// What the store keeps of a level, with the displacement at the rest points.
+  using Nodal = typename Discretisation<dim>::Nodal;
+
+  /// What the store keeps of a level, with displacement and traction at the rest points.
   struct Level {
     std::vector<Step> steps;
     std::vector<Eigen::Matrix3Xd> shapes;
+    std::vector<Eigen::Matrix3Xd> tractions_pa;
+    std::vector<double> pressure_peaks_pa;
     BoundarySurface deepest_surface;
   };
 
@@ -353,8 +357,14 @@ class Run {
       record.force_n.push_back(step.seen.force_n.norm());
       if (!step.linear_solver.empty()) result_.linear_solver = step.linear_solver;
     }
-    result_.levels.push_back(std::move(record));
+    record.pressure_peak_pa = std::move(answer.pressure_peaks_pa);
     fill_records(scene_, times_s_, answer.steps, answer.shapes, result_);
+    for (int instant = 0; instant < count(); ++instant) {
+      result_.instants[instant].traction_pa = answer.tractions_pa[instant];
+      result_.instants[instant].pressure_peak_pa = record.pressure_peak_pa[instant];
+    }
+    result_.levels.push_back(std::move(record));
+    tractions_pa_.push_back(std::move(answer.tractions_pa));
     result_.deepest_surface = std::move(answer.deepest_surface);
     shapes_.push_back(std::move(answer.shapes));
   }
@@ -364,22 +374,29 @@ class Run {
     for (scene::ReferenceInstant& instant : result_.instants) {
       instant.force_uncertainty_n = unknown;
       instant.displacement_uncertainty_m.setConstant(rest_points_m_.cols(), unknown);
+      instant.traction_uncertainty_pa.setConstant(rest_points_m_.cols(), unknown);
+      instant.pressure_peak_uncertainty_pa = unknown;
     }
     sum_up_uncertainty();
   }
 
   void estimate_uncertainty() {
     std::vector<double> finer;
-    std::vector<std::vector<double>> forces_n;
+    std::vector<std::vector<double>> forces_n, pressure_peaks_pa;
     for (int level = 0; level < solved_levels(); ++level) {
       finer.push_back(refinement(level));
       forces_n.push_back(result_.levels[level].force_n);
+      pressure_peaks_pa.push_back(result_.levels[level].pressure_peak_pa);
     }
-    const std::vector<double> bands_n = force_band(forces_n, finer);
-    std::vector<Eigen::VectorXd> bands_m = displacement_band(shapes_, finer);
+    const std::vector<double> bands_n = force_band(forces_n, finer),
+                              peak_bands_pa = force_band(pressure_peaks_pa, finer);
+    std::vector<Eigen::VectorXd> bands_m = displacement_band(shapes_, finer),
+                                 bands_pa = displacement_band(tractions_pa_, finer);
     for (std::size_t i = 0; i < result_.instants.size(); ++i) {
       result_.instants[i].force_uncertainty_n = bands_n[i];
       result_.instants[i].displacement_uncertainty_m = std::move(bands_m[i]);
+      result_.instants[i].traction_uncertainty_pa = std::move(bands_pa[i]);
+      result_.instants[i].pressure_peak_uncertainty_pa = peak_bands_pa[i];
     }
     add_sensitivities(solved_levels() - 1);
     sum_up_uncertainty();
@@ -393,7 +410,13 @@ class Run {
   /// Reads what the store has and solves the rest, in track order. @throws TimeIsUp with the answer up to there
   void solve_level(int level, const Discretisation<dim>& mesh, const Store& store, Level& answer) {
     const SurfaceSampler<dim> sampler(mesh, rest_points_m_, choice_.mirror_x, choice_.mirror_y);
-    std::optional<ContactProblem<dim>> problem;  // only when something has to be solved
+    std::optional<ContactProblem<dim>> problem;  // only when there is contact
+    bool begun = false;                          // to solve something
+    const auto need_problem = [&] {
+      if (problem) return;
+      problem.emplace(mesh, scene_.body.material, scene_.reference.kinematics, choice_.mirror_x, choice_.mirror_y);
+      if (scene_.contact.friction) problem->set_friction(*scene_.contact.friction, scene_.contact.r_th_m);
+    };
     std::optional<Prolongation<dim>> prolongation;
     std::optional<Solved<dim>> before, current;
     const int deepest = deepest_instant();
@@ -407,9 +430,9 @@ class Run {
         result_.from_store = false;
         ahead.steps_after = static_cast<int>(std::count_if(depths_m_.begin() + instant + 1, depths_m_.end(),
                                                            [](double depth_m) { return depth_m > 0.0; }));
-        if (!problem) {
-          problem.emplace(mesh, scene_.body.material, scene_.reference.kinematics, choice_.mirror_x, choice_.mirror_y);
-          if (scene_.contact.friction) problem->set_friction(*scene_.contact.friction, scene_.contact.r_th_m);
+        need_problem();
+        if (!begun) {
+          begun = true;
           if (level > 0 && !scene_.contact.friction) prolongation.emplace(*coarser_, mesh);
           ahead.later_s = expected_after_s(level, mesh, store);
           show({.level = level + 1,
@@ -437,10 +460,18 @@ class Run {
       } else if (found->first.touching) {
         pace_.finished(ahead.step_s, found->second.wall_s);
       }
-      answer.shapes.push_back(sampler.displacement_m(found->first.state.u_m));
+      answer.shapes.push_back(sampler.at_points(found->first.state.u_m));
+      ContactTraction<dim> traction{Nodal::Zero(dim, mesh.node_count())};
+      if (found->first.touching) {
+        need_problem();
+        problem->set_tool(tool_anywhere(times_s_[instant]));
+        traction = problem->contact_traction(found->first.state);
+      }
+      answer.tractions_pa.push_back(sampler.at_points(traction.nodal_pa));
+      answer.pressure_peaks_pa.push_back(traction.pressure_peak_pa);
       if (instant == deepest) {
         answer.deepest_surface =
-            boundary_surface<dim>(mesh, found->first.state.u_m, choice_.mirror_x, choice_.mirror_y);
+            boundary_surface<dim>(mesh, found->first.state.u_m, traction.nodal_pa, choice_.mirror_x, choice_.mirror_y);
       }
       answer.steps.push_back(std::move(found->second));
       before = std::move(current);
@@ -618,6 +649,11 @@ class Run {
         result_.instants[i].force_uncertainty_n += share * one.force_rel * result_.instants[i].force_n().norm();
         result_.instants[i].displacement_uncertainty_m +=
             share * result_.instants[i].depth_m / deepest_m * one.displacement_change_m;
+        // Of tractions they are not measured: as much as of the force.
+        result_.instants[i].traction_uncertainty_pa +=
+            share * one.force_rel * result_.instants[i].traction_pa.colwise().norm().transpose();
+        result_.instants[i].pressure_peak_uncertainty_pa +=
+            share * one.force_rel * result_.instants[i].pressure_peak_pa;
       }
     }
   }
@@ -645,7 +681,7 @@ class Run {
   Result result_;
   std::unique_ptr<Discretisation<dim>> coarser_;  // of the level solved last
   Discretisation<dim> coarsest_;
-  std::vector<std::vector<Eigen::Matrix3Xd>> shapes_;  // per level and instant, 3 x rest points
+  std::vector<std::vector<Eigen::Matrix3Xd>> shapes_, tractions_pa_;  // per level and instant, 3 x rest points
   bool sensitivities_known_ = false;
   std::string why_unknown_;  // the uncertainty of three meshes and more
 };

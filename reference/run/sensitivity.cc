@@ -195,7 +195,7 @@ std::vector<Sensitivity> sensitivities(const SensitivityCase<dim>& given, const 
                                        const SensitivityWatch& watch) {
   const auto sampled = [&](const Discretisation<dim>& mesh, const Solved<dim>& solved) {
     return SurfaceSampler<dim>(mesh, given.rest_points_m, given.choice.mirror_x, given.choice.mirror_y)
-        .displacement_m(solved.state.u_m);
+        .at_points(solved.state.u_m);
   };
   const Eigen::Matrix3Xd u_m = sampled(given.mesh, given.at);
   const Eigen::VectorXd area_m2 = areas_or_ones(given.rest_area_m2, u_m.cols());

@@ -31,6 +31,11 @@ inline double hertz_peak_pressure_pa(const Indentation& contact) {
   return 1.5 * contact.force_n / (M_PI * contact.contact_radius_m * contact.contact_radius_m);
 }
 
+/// Its pressure at a radius inside the contact [Pa]. Johnson, 4.22.
+inline double hertz_pressure_pa(const Indentation& contact, double r_m) {
+  return hertz_peak_pressure_pa(contact) * std::sqrt(1.0 - std::pow(r_m / contact.contact_radius_m, 2));
+}
+
 /// Sneddon: the ball itself on a half space in small strain, d = (a/2) ln((R+a)/(R-a)),
 /// F = E* [ (a^2 + R^2)/2 ln((R+a)/(R-a)) - a R ]. I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47-57.
 /// @param a_m  contact radius, below R
@@ -77,6 +82,11 @@ inline RoundedPunch rounded_punch(double E_star_pa, double b_m, double e_m, doub
 inline double flat_punch_force_n(double E_star_pa, double a_m, double d_m) { return 2.0 * a_m * E_star_pa * d_m; }
 inline double flat_punch_settlement_m(double a_m, double d_m, double r_m) {
   return M_2_PI * d_m * std::asin(std::min(1.0, a_m / r_m));
+}
+
+/// Pressure of the same at a radius below a: F / (2 pi a sqrt(a^2 - r^2)). Johnson, 3.34.
+inline double flat_punch_pressure_pa(double E_star_pa, double a_m, double d_m, double r_m) {
+  return flat_punch_force_n(E_star_pa, a_m, d_m) / (2.0 * M_PI * a_m * std::sqrt(a_m * a_m - r_m * r_m));
 }
 
 /// Cone of the given half angle from its axis: F = (2/pi) E* tan(angle) d^2, a = (2/pi) d tan(angle). Sneddon, as

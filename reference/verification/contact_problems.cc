@@ -75,6 +75,17 @@ void check_indentation(Findings& findings, const std::string& at, const Indentat
   check(findings, "contact radius, " + at, "m", exact.contact_radius_m, limit_of_radius, answers, radius_of);
 }
 
+/// Checks the pressure at those of the problem's radii that lie in the contact.
+void check_pressures(Findings& findings, const std::string& at, const HalfSpaceProblem& problem,
+                     double contact_radius_m, const std::vector<HalfSpaceAnswer>& answers, const auto& exact_pa) {
+  for (Eigen::Index k = 0; k < problem.radii_m.size(); ++k) {
+    const double r_m = problem.radii_m[k];
+    if (r_m >= contact_radius_m) continue;
+    check(findings, fmt::format("pressure at r/a = {:.3g}, {}", r_m / contact_radius_m, at), "Pa", exact_pa(r_m),
+          limit_of_pressure, answers, [k](const HalfSpaceAnswer& answer) { return answer.pressure_pa[k]; });
+  }
+}
+
 std::string domain_note(const HalfSpaceProblem& problem, const Effort& effort, const std::string& what) {
   effort.tell(what + ", half the domain");
   return fmt::format(
@@ -146,13 +157,16 @@ Findings hertz_small(const Effort& effort) {
   Findings findings;
   for (const double nu : {0.0, 0.3, 0.5}) {
     if (effort.quick && nu == 0.0) continue;
-    const HalfSpaceProblem problem{{E_pa, nu}, ball_punch(R_m, d_over_R * R_m), d_over_R * R_m};
+    HalfSpaceProblem problem{{E_pa, nu}, ball_punch(R_m, d_over_R * R_m), d_over_R * R_m};
     const std::string at = fmt::format("nu = {:.3g}", nu);
-    const auto answers = on_meshes(problem, meshes, effort, at);
     const Indentation exact = hertz(E_star_pa(nu), R_m, problem.depth_m);
+    problem.radii_m = exact.contact_radius_m * Eigen::Vector2d(0.4, 0.8);
+    const auto answers = on_meshes(problem, meshes, effort, at);
     check_indentation(findings, at, exact, limit_of_closed_form, limit_of_edge, answers);
     check(findings, "peak pressure, " + at, "Pa", hertz_peak_pressure_pa(exact), limit_of_closed_form, answers,
           peak_of);
+    check_pressures(findings, at, problem, exact.contact_radius_m, answers,
+                    [&](double r_m) { return hertz_pressure_pa(exact, r_m); });
     findings.notes.push_back(domain_note(problem, effort, at));
   }
   const Indentation ball = sneddon(1.0, 1.0, d_over_R), paraboloid = hertz(1.0, 1.0, d_over_R);
@@ -210,12 +224,14 @@ Findings flat(const Effort& effort) {
   Findings findings;
   for (const double nu : {0.3, 0.5}) {
     HalfSpaceProblem problem{{E_pa, nu}, flat_punch(R_m), 0.01 * R_m};
-    problem.radii_m = R_m * Eigen::Vector3d(1.5, 2.0, 5.0);
+    problem.radii_m = R_m * Eigen::VectorXd{{0.4, 0.8, 1.5, 2.0, 5.0}};
     const std::string at = fmt::format("nu = {:.3g}", nu);
     const auto answers = on_meshes(problem, meshes, effort, at);
     check(findings, "force, " + at, "N", flat_punch_force_n(E_star_pa(nu), R_m, problem.depth_m), limit_of_table,
           answers, force_of);
-    for (int k = 0; k < problem.radii_m.size(); ++k) {
+    check_pressures(findings, at, problem, R_m, answers,
+                    [&](double r_m) { return flat_punch_pressure_pa(E_star_pa(nu), R_m, problem.depth_m, r_m); });
+    for (Eigen::Index k = 2; k < problem.radii_m.size(); ++k) {
       check(findings, fmt::format("settlement at r/a = {:.3g}, {}", problem.radii_m[k] / R_m, at), "m",
             flat_punch_settlement_m(R_m, problem.depth_m, problem.radii_m[k]), limit_of_table, answers,
             [k](const HalfSpaceAnswer& answer) { return answer.settlement_m[k]; });

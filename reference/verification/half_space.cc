@@ -116,16 +116,22 @@ HalfSpaceAnswer indent_half_space(const HalfSpaceProblem& problem) {
   const reference::AdvanceReport report = path.advance(nullptr, rest, 1.0, end, {}, {});
   if (!report.converged) throw reference::NotConverged("tool on half space: " + report.last.trouble);
   const reference::Observation seen = body.observe(end.state);
-  HalfSpaceAnswer answer{
-      seen.force_n.z(),     seen.contact_radius_m,   axis_pressure_pa(body, end.state, problem.kinematics),
-      seen.equilibrium_rel, seen.node_penetration_m, {},
-      body.unknowns(),      report.newton_iterations};
+  HalfSpaceAnswer answer{seen.force_n.z(),
+                         seen.contact_radius_m,
+                         axis_pressure_pa(body, end.state, problem.kinematics),
+                         seen.equilibrium_rel,
+                         seen.node_penetration_m,
+                         {},
+                         {},
+                         body.unknowns(),
+                         report.newton_iterations};
   if (problem.radii_m.size() > 0) {
     Eigen::Matrix3Xd points_m = Eigen::Matrix3Xd::Zero(3, problem.radii_m.size());
     points_m.row(0) = problem.radii_m.transpose();
     points_m.row(2).setConstant(L_m);
     const reference::SurfaceSampler<2> sampler(mesh, points_m, false, false);
-    answer.settlement_m = -sampler.displacement_m(end.state.u_m).row(2).transpose();
+    answer.settlement_m = -sampler.at_points(end.state.u_m).row(2).transpose();
+    answer.pressure_pa = -sampler.at_points(body.contact_traction(end.state).nodal_pa).row(2).transpose();
   }
   return answer;
 }

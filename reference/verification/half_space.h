@@ -43,7 +43,7 @@ struct HalfSpaceProblem {
   int level = 3;  ///< mesh of level_mesh(): 4, 8, 16, 32, ... cells to the patch's radius
   /// Cylinder's radius and height over the patch's radius. The far end adds about 1.13 / this to the force.
   double domain_over_patch = 3000.0;
-  Eigen::VectorXd radii_m = {};  ///< where on the surface the displacement is wanted
+  Eigen::VectorXd radii_m = {};  ///< where on the surface displacement and pressure are wanted
 };
 
 struct HalfSpaceAnswer {
@@ -53,6 +53,7 @@ struct HalfSpaceAnswer {
   double equilibrium_rel = 0.0;
   double node_penetration_m = 0.0;
   Eigen::VectorXd settlement_m;  ///< downwards, at radii_m
+  Eigen::VectorXd pressure_pa;   ///< at radii_m
   int unknowns = 0;
   int newton_iterations = 0;
 };

@@ -28,6 +28,7 @@ struct Check {
 inline constexpr double limit_of_closed_form = 0.002;   ///< the model solved is the model of the closed form
 inline constexpr double limit_of_small_strain = 0.005;  ///< finite strain in its small-strain limit
 inline constexpr double limit_of_table = 0.01;          ///< singular solutions and printed tables
+inline constexpr double limit_of_pressure = 0.005;      ///< at a point, from nodal forces
 /// Place of a contact's edge, where the pressure falls to zero with an infinite slope within one cell.
 inline constexpr double limit_of_edge = 0.005;
 

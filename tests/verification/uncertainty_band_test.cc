@@ -62,7 +62,7 @@ class UncertaintyBand : public testing::Test {
       if (!path.advance(nullptr, current, time_s, next, {}, {}).converged) throw NotConverged("the finer solution");
       current = std::move(next);
       scene::InstantRecord& instant = result.instants.emplace_back();
-      instant.displacement_m = sampler.displacement_m(current.state.u_m);
+      instant.displacement_m = sampler.at_points(current.state.u_m);
       if (current.touching) instant.regions.push_back({.force_n = problem.observe(current.state).force_n});
     }
     return result;

@@ -32,7 +32,8 @@ struct InstantRecord {
   Vec3 support_force_n = Vec3::Zero();  ///< of the support on the body
   Eigen::Matrix3Xd displacement_m;      ///< one column per rest point asked for
   Eigen::Matrix3Xd normal;              ///< of the moved surface, unit, per rest point; empty where not computed
-  Eigen::Matrix3Xd traction_pa;         ///< on the body, per rest point; empty where not computed
+  Eigen::Matrix3Xd traction_pa;         ///< of the tool on the body, per rest point and area at rest; empty where not
+                                        ///< computed
 
   // Sums over the regions.
   [[nodiscard]] Vec3 force_n() const { return sum(&RegionRecord::force_n); }
@@ -58,6 +59,9 @@ struct ReferenceInstant : InstantRecord {
   std::vector<Vec3> region_middles_m;          ///< one for every region that pushes
   double force_uncertainty_n = 0.0;            ///< conservative half width; NaN where unknown
   Eigen::VectorXd displacement_uncertainty_m;  ///< the same per rest point
+  Eigen::VectorXd traction_uncertainty_pa;     ///< the same
+  double pressure_peak_pa = 0.0;               ///< largest contact pressure at a node, per area at rest
+  double pressure_peak_uncertainty_pa = 0.0;   ///< conservative half width; NaN where unknown
   double residual_penetration_m = 0.0;         ///< largest over contact nodes
   double between_nodes_penetration_m = 0.0;    ///< largest over face quadrature points
   double equilibrium_rel = 0.0;                ///< |contact + support| / |contact|

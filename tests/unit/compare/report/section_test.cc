@@ -106,7 +106,7 @@ std::vector<std::vector<EdgePoint>> cut_of_mesh(const reference::Discretisation<
                                                 scene::Surface& rest) {
   const Eigen::Matrix<double, dim, Eigen::Dynamic> still_m =
       Eigen::Matrix<double, dim, Eigen::Dynamic>::Zero(dim, mesh.node_count());
-  rest = reference::boundary_surface<dim>(mesh, still_m, mirrored, mirrored).rest;
+  rest = reference::boundary_surface<dim>(mesh, still_m, still_m, mirrored, mirrored).rest;
   return cut_at_y(rest, y_m, 5e-3);
 }
 

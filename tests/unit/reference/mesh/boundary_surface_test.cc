@@ -61,7 +61,8 @@ TEST(BoundarySurface, OfABlockIsWholeAndItsFieldExact) {
     spec.grading.discs.push_back({{0.0, 0.0, 0.05}, {0.0, 0.0, 1.0}, 0.004, 0.004});
     const Discretisation<3> mesh = block_mesh(spec);
     ASSERT_GT(mesh.hanging_count(), 0);
-    const BoundarySurface surface = boundary_surface<3>(mesh, nodal_field_m(mesh), mirror_x, mirror_y);
+    const BoundarySurface surface =
+        boundary_surface<3>(mesh, nodal_field_m(mesh), nodal_field_m(mesh), mirror_x, mirror_y);
     EXPECT_NEAR(area_m2(surface.rest), 2 * (0.06 * 0.04 + 0.06 * 0.05 + 0.04 * 0.05), 1e-12);
     EXPECT_LT(off_field_m(surface, false), 1e-14);
     // Nine of twenty-five places.
@@ -84,8 +85,9 @@ TEST(BoundarySurface, OfABallIsWholeInSpaceAndTurnedFromItsMeridian) {
   Grading<3> space;
   space.largest_m = 0.008;
   const Discretisation<3> quarter = round_mesh<3>(spec, space);
-  const BoundarySurface turned = boundary_surface<2>(flat, nodal_field_m(flat), false, false);
-  const BoundarySurface mirrored = boundary_surface<3>(quarter, nodal_field_m(quarter), true, true);
+  const BoundarySurface turned = boundary_surface<2>(flat, nodal_field_m(flat), nodal_field_m(flat), false, false);
+  const BoundarySurface mirrored =
+      boundary_surface<3>(quarter, nodal_field_m(quarter), nodal_field_m(quarter), true, true);
   for (const BoundarySurface* surface : {&turned, &mirrored}) {
     const double whole_m2 = 4.0 * std::numbers::pi * radius_m * radius_m;
     EXPECT_NEAR(area_m2(surface->rest), whole_m2, 0.01 * whole_m2);

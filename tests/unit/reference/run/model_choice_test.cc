@@ -307,7 +307,7 @@ TEST(SurfaceSampler, FindsTheSurfaceOfRoundBodies) {
   const Discretisation<3> mesh = level_mesh<3>(scene, choice, 0);
   const Eigen::Matrix3Xd points_m = scene::tessellate(*scene::body_shape(scene.body), 1000).points_m;
   const SurfaceSampler<3> sampler(mesh, points_m, choice.mirror_x, choice.mirror_y);
-  EXPECT_LT((sampler.displacement_m(mesh.points_m) - points_m).cwiseAbs().maxCoeff(), 2e-4);
+  EXPECT_LT((sampler.at_points(mesh.points_m) - points_m).cwiseAbs().maxCoeff(), 2e-4);
 }
 
 TEST(SurfaceSampler, GivesBackALinearFieldEverywhereAroundTheBody) {
@@ -317,7 +317,7 @@ TEST(SurfaceSampler, GivesBackALinearFieldEverywhereAroundTheBody) {
   Eigen::Matrix3Xd points_m(3, 3);
   points_m << .0123, -.0123, .03, .0077, -.0177, -.011, .06, .06, .02;
   const SurfaceSampler<3> sampler(mesh, points_m, choice.mirror_x, choice.mirror_y);
-  const Eigen::Matrix3Xd u_m = sampler.displacement_m(0.1 * mesh.points_m);  // odd in x and y, as symmetry asks
+  const Eigen::Matrix3Xd u_m = sampler.at_points(0.1 * mesh.points_m);  // odd in x and y, as symmetry asks
   EXPECT_LT((u_m - 0.1 * points_m).cwiseAbs().maxCoeff(), 1e-14);
   Eigen::Matrix3Xd inside(3, 1);
   inside << 0, 0, .03;
