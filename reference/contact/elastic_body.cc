@@ -280,11 +280,13 @@ void ElasticBody<dim>::assemble_share(const State<dim>& state, Stiffness stiffne
   in_lanes(threads_, static_cast<int>(tangent_cells_.size()), [&](int number, int begin, int end) {
     constexpr int n = CellResult<dim>::unknowns;
     Lane& lane = lanes_[number];
-    lane.value.assign(matrix_.row.size(), 0.0);
+    // The first lane's is the matrix itself.
+    std::vector<double>& value = number == 0 ? matrix_.value : lane.value;
+    value.assign(matrix_.row.size(), 0.0);
     lane.right_n.assign(static_cast<std::size_t>(unknowns_), 0.0);
     lane.reaction_n.assign(static_cast<std::size_t>(sums), 0.0);
     lane.reaction_rows.clear();
-    LowerTriangle matrix(matrix_, unknown_, lane.value);
+    LowerTriangle matrix(matrix_, unknown_, value);
     RightSide right{unknown_, lane.right_n.data()};
     std::vector<Dof> dofs(n);
     dealii::FullMatrix<double> K(n, n);
@@ -307,7 +309,6 @@ void ElasticBody<dim>::assemble_share(const State<dim>& state, Stiffness stiffne
       if (sums > 0) add_reactions(dofs, reactions, lane);
     }
   });
-  matrix_.value = lanes_[0].value;
   right_n_ = Eigen::Map<const Eigen::VectorXd>(lanes_[0].right_n.data(), unknowns_);
   reactions_ = {lanes_[0].reaction_rows, Eigen::Map<const Eigen::VectorXd>(lanes_[0].reaction_n.data(), sums)};
   for (std::size_t l = 1; l < lanes_.size(); ++l) {
