@@ -330,6 +330,28 @@ TEST_F(RefinementTest, SensitivitiesAreMeasuredOnce) {
   }
 }
 
+/// The answer is kept where a solve that only serves its uncertainty fails.
+TEST_F(RefinementTest, ASensitivityThatDoesNotConvergeCostsTheBandAlone) {
+  scene_.reference.levels = 4;
+  watch_ = [](const Progress& progress) {
+    if (progress.note == "sensitivity to the contact_parameter") throw NotConverged("the sensitivity failed");
+  };
+  const Result result = run();
+  EXPECT_EQ(result.levels.size(), 4u);
+  EXPECT_GT(result.instants.back().force_n().z(), 0.1);
+  EXPECT_TRUE(std::isnan(result.instants.back().force_uncertainty_n));
+  EXPECT_TRUE(std::isnan(result.instants.back().pressure_peak_uncertainty_pa));
+  EXPECT_EQ(result.refinement.ended_by, EndedBy::sensitivity);
+  EXPECT_THAT(result.refinement.why_ended, HasSubstr("uncertainty is unknown after 3 meshes: the sensitivity failed"));
+  // Without a number of meshes it ends where the uncertainty would be known.
+  scene_.reference.levels.reset();
+  const Result refined = run_to(0.02);
+  EXPECT_EQ(refined.levels.size(), 3u);
+  EXPECT_EQ(refined.refinement.ended_by, EndedBy::sensitivity);
+  watch_ = {};
+  EXPECT_TRUE(std::isfinite(run_to(0.02).instants.back().force_uncertainty_n));
+}
+
 /// The band holds the differences of the levels and, on top, what those do not show.
 TEST_F(RefinementTest, SensitivitiesWidenTheBand) {
   scene_.reference.levels = 3;

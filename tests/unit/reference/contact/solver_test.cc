@@ -53,6 +53,8 @@ class SolverTest : public testing::Test {
       EXPECT_EQ(a.instants[i].force_n(), b.instants[i].force_n());
       EXPECT_EQ(a.instants[i].displacement_m, b.instants[i].displacement_m);
       EXPECT_EQ(a.levels[0].force_n[i], b.levels[0].force_n[i]);
+      EXPECT_EQ(a.instants[i].traction_pa, b.instants[i].traction_pa);
+      EXPECT_EQ(a.instants[i].pressure_peak_pa, b.instants[i].pressure_peak_pa);
       ASSERT_EQ(a.instants[i].regions.size(), b.instants[i].regions.size());
       for (std::size_t r = 0; r < a.instants[i].regions.size(); ++r) {
         EXPECT_EQ(a.instants[i].regions[r].friction_n, b.instants[i].regions[r].friction_n);
@@ -103,6 +105,10 @@ TEST_F(SolverTest, GivesItsOwnSurfaceAtTheDeepestInstant) {
   const auto& seen_m = again.instants[static_cast<std::size_t>(deepest - solved.instants.begin())].displacement_m;
   EXPECT_LT((seen_m - own.displacement_m).colwise().norm().maxCoeff(), 1e-6 * deepest->depth_m);
   EXPECT_EQ(again.deepest_surface.displacement_m, own.displacement_m);
+  const auto& traction_pa = again.instants[static_cast<std::size_t>(deepest - solved.instants.begin())].traction_pa;
+  const double peak_pa = own.traction_pa.colwise().norm().maxCoeff();
+  EXPECT_LT((traction_pa - own.traction_pa).colwise().norm().maxCoeff(), 1e-5 * peak_pa);
+  EXPECT_NEAR(deepest->pressure_peak_pa, peak_pa, 0.02 * peak_pa);
   EXPECT_EQ(again.deepest_surface.rest.points_m, own.rest.points_m);
 }
 
