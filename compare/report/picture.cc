@@ -362,6 +362,15 @@ void show_contact(Plot& plot, const Window& window) {
   plot.y_range = {1e3 * (window.top_m - 0.75 * window.half_m), 1e3 * (window.top_m + 0.5 * window.half_m)};
 }
 
+namespace {
+
+bool is_node(const reference::BoundarySurface& own, const EdgePoint& p) {
+  const bool at_a = p.share < 0.5;
+  return (at_a ? p.share : 1.0 - p.share) < 1e-3 && own.is_node[static_cast<std::size_t>(at_a ? p.a : p.b)];
+}
+
+}  // namespace
+
 std::string section_svg(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
                         std::size_t instant, bool around_contact) {
   const scene::Pose& pose = result.instants[instant].tool;
@@ -372,11 +381,7 @@ std::string section_svg(const scene::Scene& scene, const fast::Run& run, const r
   if (around_contact) {
     plot.title = "Around the contact";
     const double y_m = cut_y_m(run.surface, pose);
-    const auto is_node = [&](const EdgePoint& p) {
-      const bool at_a = p.share < 0.5;
-      return (at_a ? p.share : 1.0 - p.share) < 1e-3 && own.is_node[static_cast<std::size_t>(at_a ? p.a : p.b)];
-    };
-    add_points(plot, reference, y_m, is_node);
+    add_points(plot, reference, y_m, [&](const EdgePoint& p) { return is_node(own, p); });
     add_points(plot, fast, y_m, [](const EdgePoint&) { return true; });
     show_contact(plot, contact_window(scene, run.surface, result.instants[instant]));
   } else {
@@ -391,6 +396,7 @@ std::optional<Plot> traction_plot(const scene::Surface& surface, const reference
   std::vector<std::pair<double, double>> points;  // deformed place, traction
   for (const auto& outline : cut_at_y(own.rest, cut_y_m(surface, result.instants[instant].tool))) {
     for (const EdgePoint& p : outline) {
+      if (!is_node(own, p)) continue;
       const double traction_pa = p.of(own.traction_pa).norm();
       if (traction_pa > 0.0)
         points.emplace_back(p.of(own.rest.points_m).x() + p.of(own.displacement_m).x(), traction_pa);
