@@ -17,8 +17,8 @@ Discretisation<3> graded_block() {
   BlockSpec spec;
   spec.lower_m = {-0.01, -0.01, 0.0};
   spec.upper_m = {0.01, 0.01, 0.02};
-  spec.grading.discs.push_back({{0.0, 0.0, 0.02}, {0.0, 0.0, 1.0}, 0.002, 0.006});
-  spec.grading.largest_m = 0.02;
+  spec.grading.discs.push_back({{0.0, 0.0, 0.02}, {0.0, 0.0, 1.0}, 0.001, 0.005});
+  spec.grading.largest_m = 0.01;
   return block_mesh(spec);
 }
 

@@ -18,7 +18,7 @@ constexpr double side_m = 0.02, depth_m = 0.001, radius_m = 0.01;
 /// A ball beside the middle of a block's top, moved a little along it.
 TEST(ContactTraction, SumsToForceAndTorque) {
   const Discretisation<3> mesh =
-      block_mesh({{0.0, 0.0, 0.0}, {side_m, side_m, side_m}, false, false, {{}, 0.5, 0.002}});
+      block_mesh({{0.0, 0.0, 0.0}, {side_m, side_m, side_m}, false, false, {{}, 0.5, 0.005}});
   ContactProblem<3> problem(mesh, {3e6, 0.3}, scene::Kinematics::finite, false, false, 1);
   problem.set_friction({.K = 0.2, .beta = 1.0, .mu_D = 0.2}, 0.004);
   State<3> state = problem.rest();
