@@ -157,6 +157,29 @@ void compare_regions(const scene::Answer& answer, const std::vector<scene::Refer
   }
 }
 
+void compare_tractions(const scene::Answer& answer, const std::vector<scene::ReferenceInstant>& reference,
+                       Errors& errors) {
+  const Eigen::Index points = answer.surface.points_m.cols();
+  SquareSums sums;
+  double peak_fast_pa = 0.0, peak_pa = 0.0, band_at_peak_pa = 0.0;
+  for (std::size_t t = 0; t < errors.instants.size(); ++t) {
+    const InstantRecord& fast = answer.instants[t];
+    const scene::ReferenceInstant& instant = reference[t];
+    if (fast.traction_pa.cols() != points || instant.traction_pa.cols() != points) return;
+    for (Eigen::Index i = 0; i < points; ++i) {
+      sums.add(answer.surface.vertex_area_m2[static_cast<std::size_t>(i)],
+               (fast.traction_pa.col(i) - instant.traction_pa.col(i)).norm(), instant.traction_uncertainty_pa[i],
+               instant.traction_pa.col(i).norm());
+    }
+    if (instant.pressure_peak_pa > peak_pa) band_at_peak_pa = instant.pressure_peak_uncertainty_pa;
+    keep_larger(peak_fast_pa, fast.pressure_peak_pa);
+    keep_larger(peak_pa, instant.pressure_peak_pa);
+  }
+  errors.contact_pressure_rel_l2 = sums.relative();
+  if (peak_pa > 0.0)
+    errors.contact_pressure_peak_rel = {peak_fast_pa / peak_pa - 1.0, known(band_at_peak_pa / peak_pa)};
+}
+
 }  // namespace
 
 void compare_contacts(const scene::Scene& scene, const scene::Answer& answer,
@@ -165,6 +188,7 @@ void compare_contacts(const scene::Scene& scene, const scene::Answer& answer,
   if (errors.friction) compare_friction(answer, reference, errors);
   compare_torques(answer, reference, errors);
   compare_regions(answer, reference, errors);
+  compare_tractions(answer, reference, errors);
 }
 
 }  // namespace touchstone::compare

@@ -1,4 +1,5 @@
-// What acts at the contact beyond the total force: friction, its work, the onset of slip, torque, single regions.
+// What acts at the contact beyond the total force: friction, its work, the onset of slip, torque, single regions,
+// tractions.
 #pragma once
 
 #include "compare/errors/errors.h"
@@ -7,7 +8,7 @@
 
 namespace touchstone::compare {
 
-/// Fills the friction, slip, torque and region figures of errors whose forces are compared already.
+/// Fills the friction, slip, torque, region and traction figures of errors whose forces are compared already.
 void compare_contacts(const scene::Scene& scene, const scene::Answer& answer,
                       const std::vector<scene::ReferenceInstant>& reference, Errors& errors);
 

@@ -102,6 +102,11 @@ struct Errors {
   double volume_change_reference_surface_rel = 0.0;  ///< on the triangles the fast model's is measured on
   /// Largest depth of a fast model's point inside the tool / depth, over deep instants; absent where there is none.
   std::optional<double> penetration_fast_rel;
+  /// sqrt(sum over instants and rest points of A |t_f - t_r|^2 / the same of A |t_r|^2), t the traction. Uncertainty:
+  /// of t_r, same sum. This and the next are absent where the model or the reference gives no traction.
+  Measure contact_pressure_rel_l2;
+  /// (peak p_f - peak p_r) / peak p_r, p the largest pressure of an instant. Uncertainty: the reference's there / peak.
+  Measure contact_pressure_peak_rel;
   /// Area in contact in both, summed over instants, / area in contact in either. Absent where none ever is.
   std::optional<double> contact_area_iou;
 

@@ -52,6 +52,9 @@ constexpr Meaning meanings[] = {
      "Volume the fast model's body gains or loses; an incompressible body keeps its volume."},
     {"contact.penetration_rel",
      "Largest penetration of the tool that remains in the fast model's deformed surface, relative to the depth."},
+    {"contact.pressure_rel_l2",
+     "Error of the traction over the traction, root mean square over the surface by area and over all instants."},
+    {"contact.pressure_peak_rel", "Error of the largest contact pressure of the track."},
     {"contact.area_iou",
      "Contact area of both sides (intersection) over that of either (union), summed over the track; 100 % is equal.",
      false, Worst::smallest},
@@ -213,6 +216,9 @@ scene::Figures error_figures(const Errors& errors) {
   out.measure("shape.hausdorff_m", errors.shape_hausdorff_m, "m");
   out.number("shape.volume_change_rel", errors.volume_change_fast_rel);
   out.number_or_absent("contact.penetration_rel", errors.penetration_fast_rel);
+  const std::string no_traction = "undefined: the model gives no traction";
+  out.measure_or_why("contact.pressure_rel_l2", errors.contact_pressure_rel_l2, contact ? no_traction : apart);
+  out.measure_or_why("contact.pressure_peak_rel", errors.contact_pressure_peak_rel, contact ? no_traction : apart);
   out.number_or_why("contact.area_iou", errors.contact_area_iou, "undefined: neither side is ever in contact");
   return out.take();
 }

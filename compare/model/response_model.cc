@@ -31,7 +31,14 @@ class ResponseContactModel final : public ContactModel {
             Eigen::Map<const Eigen::RowVectorXf>(column.data(), std::ssize(column)).cast<double>();
       }
       const fast::ResponseContact& contact = state_.contact;
+      instant.traction_pa.setZero(3, instant.displacement_m.cols());
       if (!(contact.load.force_n > 0.0)) continue;
+      for (Eigen::Index i = 0; i < instant.traction_pa.cols(); ++i) {
+        if (asked.surface.normals.col(i).dot(contact.load.normal) <= 0.0) continue;
+        instant.traction_pa.col(i) =
+            -fast::spread_pressure_pa(contact.load, asked.surface.points_m.col(i)) * contact.load.normal;
+      }
+      instant.pressure_peak_pa = fast::spread_pressure_pa(contact.load, contact.load.center_m);
       instant.support_force_n = -state_.wrench.force_n;
       instant.regions.push_back({.depth_m = instant.depth_m,
                                  .force_n = state_.wrench.force_n,

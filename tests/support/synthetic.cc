@@ -69,6 +69,7 @@ Sides pressed(int instants, int triangles) {
                                    static_cast<int>(level),
                                    2.4 * std::pow(11.0, static_cast<double>(level)),
                                    4.1 * std::pow(11.0, static_cast<double>(level)),
+                                   {},
                                    {}});
   }
   for (const double time_s : scene::instants_s(sides.scene)) {

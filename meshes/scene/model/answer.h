@@ -34,6 +34,7 @@ struct InstantRecord {
   Eigen::Matrix3Xd normal;              ///< of the moved surface, unit, per rest point; empty where not computed
   Eigen::Matrix3Xd traction_pa;         ///< of the tool on the body, per rest point and area at rest; empty where not
                                         ///< computed
+  double pressure_peak_pa = 0.0;        ///< largest contact pressure, per area at rest; 0 where not computed
 
   // Sums over the regions.
   [[nodiscard]] Vec3 force_n() const { return sum(&RegionRecord::force_n); }
@@ -60,7 +61,6 @@ struct ReferenceInstant : InstantRecord {
   double force_uncertainty_n = 0.0;            ///< conservative half width; NaN where unknown
   Eigen::VectorXd displacement_uncertainty_m;  ///< the same per rest point
   Eigen::VectorXd traction_uncertainty_pa;     ///< the same
-  double pressure_peak_pa = 0.0;               ///< largest contact pressure at a node, per area at rest
   double pressure_peak_uncertainty_pa = 0.0;   ///< conservative half width; NaN where unknown
   double residual_penetration_m = 0.0;         ///< largest over contact nodes
   double between_nodes_penetration_m = 0.0;    ///< largest over face quadrature points

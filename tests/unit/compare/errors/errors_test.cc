@@ -127,6 +127,30 @@ TEST(Errors, HausdorffIsNoLargerThanThePointErrorAndKnownToTheUncertainty) {
   EXPECT_NEAR(*e.shape_hausdorff_m.uncertainty, 3e-4, 1e-15);
 }
 
+/// Over points of areas 1, 2, 3, 4; the force's are other instants' errors.
+TEST(Errors, TractionsAreComparedWhereBothSidesGiveThem) {
+  Sides sides = with_forces();
+  EXPECT_FALSE(errors_of(sides).contact_pressure_rel_l2.value);
+  for (std::size_t t : {0, 1}) {
+    sides.run.instants[t].traction_pa = sides.result.instants[t].traction_pa = Eigen::Matrix3Xd::Zero(3, 4);
+    sides.result.instants[t].traction_uncertainty_pa = Eigen::VectorXd::Zero(4);
+  }
+  sides.result.instants[1].traction_pa.col(0) = Vec3(0.0, 0.0, -100.0);
+  sides.result.instants[1].traction_pa.col(1) = Vec3(30.0, 0.0, -40.0);
+  sides.result.instants[1].traction_uncertainty_pa[1] = 5.0;
+  sides.result.instants[1].pressure_peak_pa = 100.0;
+  sides.result.instants[1].pressure_peak_uncertainty_pa = 3.0;
+  sides.run.instants[1].traction_pa.col(0) = Vec3(0.0, 0.0, -90.0);
+  sides.run.instants[1].traction_pa.col(3) = Vec3(0.0, 0.0, -20.0);
+  sides.run.instants[1].pressure_peak_pa = 90.0;
+  const Errors e = errors_of(sides);
+  const double scale = 1.0 * 100.0 * 100.0 + 2.0 * 50.0 * 50.0;
+  EXPECT_NEAR(*e.contact_pressure_rel_l2.value, std::sqrt((100.0 + 2.0 * 2500.0 + 4.0 * 400.0) / scale), 1e-13);
+  EXPECT_NEAR(*e.contact_pressure_rel_l2.uncertainty, std::sqrt(2.0 * 25.0 / scale), 1e-13);
+  EXPECT_NEAR(*e.contact_pressure_peak_rel.value, -0.1, 1e-13);
+  EXPECT_NEAR(*e.contact_pressure_peak_rel.uncertainty, 0.03, 1e-13);
+}
+
 TEST(Errors, EqualSidesHaveNone) {
   Sides sides = testing::pressed(5, 200);
   sides.run.instants.assign(sides.result.instants.begin(), sides.result.instants.end());

@@ -72,6 +72,25 @@ TEST(SpreadLoad, HertzAndThePunchOnTheSurface) {
   EXPECT_NEAR(inward_m(1.0, 0.01), std::asin(0.4) / (std::numbers::pi * a * E_star_pa), 1e-11);
 }
 
+/// Over the patch the pressure is the force; beside it there is none.
+TEST(SpreadLoad, PressureCarriesTheForce) {
+  const Vec3 side = normal.unitOrthogonal();
+  const double a = 0.004, force_n = 7.0;
+  for (const double flat : {0.0, 0.4, 1.0}) {
+    const SpreadLoad load{center_m, normal, force_n, a, flat};
+    double sum_n = 0.0;
+    constexpr int steps = 4000;
+    for (int i = 0; i < steps; ++i) {  // r = a sin(angle), where the flat punch's pressure is smooth
+      const double angle = 0.5 * std::numbers::pi * (i + 0.5) / steps, r = a * std::sin(angle);
+      sum_n += spread_pressure_pa(load, center_m + r * side) * 2.0 * std::numbers::pi * r * a * std::cos(angle) * 0.5 *
+               std::numbers::pi / steps;
+    }
+    EXPECT_NEAR(sum_n, force_n, 1e-3 * force_n) << flat;
+    EXPECT_EQ(spread_pressure_pa(load, center_m + 1.01 * a * side), 0.0);
+    EXPECT_EQ(spread_pressure_pa(load, center_m - 1.01 * a * normal), 0.0);
+  }
+}
+
 TEST(SpreadLoad, TheLoopAgreesFromTheNearVerticesOn) {
   const double a = 0.004;
   Columns rest_m, out_m;
