@@ -47,6 +47,8 @@ JudgedModel judged(const ModelEntry& entry, const scene::Scene& scene, const sce
     return {.force_nrmse = errors.force_nrmse,
             .shape_rel_l2 = errors.shape_rel_l2,
             .step_p50_us = step_p50_us(*model, scene),
+            .pressure_rel_l2 = errors.contact_pressure_rel_l2,
+            .pressure_peak_rel = errors.contact_pressure_peak_rel,
             .trouble = model->trouble()};
   } catch (const Unavailable& why) {
     return {.absent = why.what()};

@@ -32,6 +32,7 @@ struct JudgedModel {
   std::string method{};  ///< law and skeleton, "Duffing, published"
   Measure force_nrmse{}, shape_rel_l2{};
   double step_p50_us = std::numeric_limits<double>::quiet_NaN();  ///< over the ticks of the track
+  Measure pressure_rel_l2{}, pressure_peak_rel{};                 ///< of a model that gives tractions
   std::string trouble{};                                          ///< see ContactModel
   std::string absent{};                                           ///< why there are no errors; else empty
 };

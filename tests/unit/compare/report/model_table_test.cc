@@ -27,6 +27,20 @@ TEST(ModelTableText, SaysWhatEachErrorIsRelativeToAndAlignsItsColumns) {
   EXPECT_THAT(model_table_html(models), HasSubstr("<td>columns (absent: there is friction)</td>"));
 }
 
+TEST(ModelTableText, HasAColumnForPressureWhereAModelGivesIt) {
+  std::vector<JudgedModel> models = {{"paper", "paper as printed", "", {0.482, 0.0017}, {0.746, {}}, 11.8},
+                                     {"response", "response", "", {0.01, 0.0017}, {0.03, {}}, 9.8}};
+  EXPECT_THAT(model_table_html(models), ::testing::Not(HasSubstr("<th class=\"n\">Pressure error</th>")));
+  models[1].pressure_rel_l2 = {0.063, 0.01};
+  models[1].pressure_peak_rel = {-0.02, 0.01};
+  EXPECT_THAT(model_table_text(models), HasSubstr("6.3 %"));
+  EXPECT_THAT(model_table_html(models), HasSubstr("<th class=\"n\">Pressure error</th>"));
+  const scene::Figures figures = model_figures(models);
+  ASSERT_EQ(figures.size(), 14u);
+  EXPECT_EQ(figures[9].key, "model.response.contact.pressure_rel_l2");
+  EXPECT_EQ(figures[11].number, -0.02);
+}
+
 TEST(ModelFigures, HaveAKeyPerModel) {
   const scene::Figures figures = model_figures({{"paper", "", "", {0.482, 0.0017}, {0.746, {}}, 11.8}});
   ASSERT_EQ(figures.size(), 5u);
