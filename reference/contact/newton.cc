@@ -118,8 +118,9 @@ NewtonReport NewtonSolver<dim>::solve(State<dim>& state, const Watch& watch) {
     active_set_.eliminate(state, [this](int node) { return slipping_.sticks(node); });
     body_.constrain(step_m_, active_set_.lines(slipping_.stick_m()));
     // In a new load step, and once the contact area changes, an old factor takes longer to correct than a new one to
-    // make.
-    if (balance.status_changes || iteration == 0) body_.solver().forget();
+    // make. A linear body has one tangent.
+    const bool linear = !model_.tool && model_.kinematics == scene::Kinematics::small;
+    if (balance.status_changes || (iteration == 0 && !linear)) body_.solver().forget();
     Nodal du_m;
     if (!next_step(state, balance.step_tolerance_rel(), report, du_m)) return failed("the tangent is singular");
     if (!du_m.allFinite()) return failed("the displacement is not finite");
