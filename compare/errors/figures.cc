@@ -62,7 +62,7 @@ constexpr Meaning meanings[] = {
     {"reference.shape_uncertainty_rel",
      "The reference's own shape uncertainty, relative to its displacement, in the norm of shape.rel_l2."},
     {"reference.pressure_peak_pa",
-     "Largest contact pressure at a node of the reference's finest mesh, over all deep instants, per area at rest."},
+     "Largest contact pressure at a node of the reference's finest mesh, over all deep instants, per current area."},
     {"reference.pressure_peak_uncertainty_rel", "Its uncertainty, relative."},
     {"reference.residual_penetration_rel", "Residual penetration of the contact nodes, relative to the depth."},
     {"reference.penetration_between_nodes_rel", "The same between the nodes, where contact is not enforced."},

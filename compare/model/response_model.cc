@@ -2,9 +2,11 @@
 
 #include "fast/response/response_step.h"
 #include "reference/response/prepare.h"
+#include "reference/tool/tool_distance.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 namespace touchstone::compare {
@@ -16,6 +18,7 @@ class ResponseContactModel final : public ContactModel {
       : note_(fmt::format("{} columns, {} unknowns; displacements only, no normals", prepared.response.grid.count(),
                           prepared.response.unknowns)),
         triangles_(surface.triangle_count()),
+        tool_(reference::tool_distance(scene.tool)),
         model_(scene, surface, std::move(prepared.response)),
         state_(model_) {}
 
@@ -33,18 +36,29 @@ class ResponseContactModel final : public ContactModel {
       const fast::ResponseContact& contact = state_.contact;
       instant.traction_pa.setZero(3, instant.displacement_m.cols());
       if (!(contact.load.force_n > 0.0)) continue;
-      for (Eigen::Index i = 0; i < instant.traction_pa.cols(); ++i) {
-        if (asked.surface.normals.col(i).dot(contact.load.normal) <= 0.0) continue;
-        instant.traction_pa.col(i) =
-            -fast::spread_pressure_pa(contact.load, asked.surface.points_m.col(i)) * contact.load.normal;
-      }
-      instant.pressure_peak_pa = fast::spread_pressure_pa(contact.load, contact.load.center_m);
+      add_tractions(asked.surface, contact.load, instant);
       instant.support_force_n = -state_.wrench.force_n;
       instant.regions.push_back({.depth_m = instant.depth_m,
                                  .force_n = state_.wrench.force_n,
                                  .torque_nm = state_.wrench.torque_nm,
                                  .area_m2 = std::numbers::pi * contact.load.radius_m * contact.load.radius_m});
     }
+  }
+
+  /// The load's pressure at the deformed places, along the tool's own normal there.
+  void add_tractions(const scene::Surface& surface, const fast::SpreadLoad& load, scene::InstantRecord& instant) const {
+    constexpr double steepest = 0.1;  // cosine between the two normals
+    for (Eigen::Index i = 0; i < instant.traction_pa.cols(); ++i) {
+      if (surface.normals.col(i).dot(load.normal) <= 0.0) continue;
+      const scene::Vec3 x_m = surface.points_m.col(i) + instant.displacement_m.col(i);
+      const double pressure_pa = fast::spread_pressure_pa(load, x_m);
+      if (pressure_pa == 0.0) continue;
+      const scene::Vec3 out =
+          instant.tool.orientation *
+          tool_->at(instant.tool.orientation.conjugate() * (x_m - instant.tool.position_m)).gradient;
+      instant.traction_pa.col(i) = pressure_pa / std::max(-out.dot(load.normal), steepest) * out;
+    }
+    instant.pressure_peak_pa = fast::spread_pressure_pa(load, load.center_m);
   }
 
   [[nodiscard]] int size() const override { return triangles_; }
@@ -59,6 +73,7 @@ class ResponseContactModel final : public ContactModel {
  private:
   std::string note_;
   int triangles_;
+  std::shared_ptr<const reference::ToolDistance> tool_;
   fast::ResponseModel model_;
   fast::ResponseState state_;
   fast::ResponseStatus status_ = fast::ResponseStatus::ok;

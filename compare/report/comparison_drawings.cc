@@ -171,7 +171,7 @@ Drawing largest_error(const Errors& errors, const Abscissa& x) {
 std::string traction_caption(const scene::ReferenceInstant& at) {
   const double uncertainty = at.pressure_peak_uncertainty_pa / at.pressure_peak_pa;
   return fmt::format(
-      "Pressure and friction of the tool on the body in the section's plane, per area at rest, at the deepest instant; "
+      "Pressure and friction of the tool on the body in the section's plane, per current area, at the deepest instant; "
       "the reference on its own mesh. The largest pressure at a node is {:.4g} kPa, {}.",
       1e-3 * at.pressure_peak_pa,
       std::isfinite(uncertainty) ? "known to " + percent_text(uncertainty) : "its uncertainty is unknown");

@@ -70,7 +70,7 @@ void show_contact(Plot& plot, const Window& window);
 [[nodiscard]] std::string section_svg(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
                                       std::size_t instant, bool around_contact);
 
-/// What the tool exerts on the body across the contact, in the section's plane, per area at rest; the reference on its
+/// What the tool exerts on the body across the contact, in the section's plane, per current area; the reference on its
 /// own mesh. Nothing where nothing touches.
 /// @param instant  the deepest
 [[nodiscard]] std::optional<Plot> traction_plot(const scene::Surface& surface, const reference::Result& result,

@@ -13,7 +13,7 @@ namespace touchstone::compare {
 /// Points are the rest points; "Warp By Vector" with displacement_fast_m or displacement_reference_m shows a side.
 /// Point arrays: displacement_fast_m, displacement_reference_m, displacement_error_m (fast - reference),
 /// displacement_error_magnitude_m, displacement_reference_uncertainty_m, traction_reference_pa (of the tool on the
-/// body, per area at rest), traction_reference_uncertainty_pa, normal_fast (current), region_id_fast and
+/// body, per current area), traction_reference_uncertainty_pa, normal_fast (current), region_id_fast and
 /// region_id_reference (contact region touched, -1 for none). Surfaces left by an earlier, longer run are removed.
 /// @throws std::filesystem::filesystem_error
 void write_surfaces(const std::filesystem::path& folder, const fast::Run& run, const reference::Result& result,

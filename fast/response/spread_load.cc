@@ -18,7 +18,7 @@ double spread_pressure_pa(const SpreadLoad& load, const Vec3& x_m) noexcept {
   const Vec3 d_m = x_m - load.center_m;
   const double a2 = load.radius_m * load.radius_m, below_m = d_m.dot(load.normal);
   const double r2 = d_m.squaredNorm() - below_m * below_m;
-  if (!(r2 < a2) || std::abs(below_m) > load.radius_m) return 0.0;
+  if (!(r2 < a2)) return 0.0;
   const double rim = std::sqrt(std::max(1.0 - r2 / a2, 1e-6));
   return load.force_n / (std::numbers::pi * a2) * (1.5 * (1.0 - load.flat) * rim + 0.5 * load.flat / rim);
 }

@@ -10,8 +10,8 @@ namespace touchstone::reference {
 /// Of one solved state.
 template <int dim>
 struct ContactTraction {
-  /// On the body, one column per node, zero where nothing touches [Pa]. Per area at rest: with the Gauss-Lobatto
-  /// weights of the faces it sums to the contact force.
+  /// On the body, one column per node, zero where nothing touches [Pa]. Per current area, in small strain that at rest:
+  /// with the Gauss-Lobatto rule on the faces it sums to the contact force.
   typename ContactModel<dim>::Nodal nodal_pa;
   double pressure_peak_pa = 0.0;  ///< largest part along the tool's normal at a node
 };

@@ -32,9 +32,9 @@ struct InstantRecord {
   Vec3 support_force_n = Vec3::Zero();  ///< of the support on the body
   Eigen::Matrix3Xd displacement_m;      ///< one column per rest point asked for
   Eigen::Matrix3Xd normal;              ///< of the moved surface, unit, per rest point; empty where not computed
-  Eigen::Matrix3Xd traction_pa;         ///< of the tool on the body, per rest point and area at rest; empty where not
+  Eigen::Matrix3Xd traction_pa;         ///< of the tool on the body, per rest point and current area; empty where not
                                         ///< computed
-  double pressure_peak_pa = 0.0;        ///< largest contact pressure, per area at rest; 0 where not computed
+  double pressure_peak_pa = 0.0;        ///< largest contact pressure, per current area; 0 where not computed
 
   // Sums over the regions.
   [[nodiscard]] Vec3 force_n() const { return sum(&RegionRecord::force_n); }

@@ -87,7 +87,7 @@ TEST(SpreadLoad, PressureCarriesTheForce) {
     }
     EXPECT_NEAR(sum_n, force_n, 1e-3 * force_n) << flat;
     EXPECT_EQ(spread_pressure_pa(load, center_m + 1.01 * a * side), 0.0);
-    EXPECT_EQ(spread_pressure_pa(load, center_m - 1.01 * a * normal), 0.0);
+    EXPECT_EQ(spread_pressure_pa(load, center_m - 0.5 * a * normal), spread_pressure_pa(load, center_m));
   }
 }
 
