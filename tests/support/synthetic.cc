@@ -118,6 +118,15 @@ Sides pressed(int instants, int triangles) {
   for (Eigen::Index i = 0; i < own.rest.points_m.cols(); ++i) {
     own.displacement_m.col(i) = reference_m(own.rest.points_m.col(i), sides.result.instants.back().depth_m);
   }
+  // Like Hertz's, over 7 mm.
+  own.traction_pa.setZero(3, own.rest.points_m.cols());
+  for (Eigen::Index i = 0; i < own.rest.points_m.cols(); ++i) {
+    const Vec3 p = own.rest.points_m.col(i);
+    if (p.z() > 0.0599)
+      own.traction_pa(2, i) = -2e6 * std::sqrt(std::max(0.0, 1.0 - p.head<2>().squaredNorm() / 4.9e-5));
+  }
+  sides.result.instants.back().pressure_peak_pa = 2e6;
+  sides.result.instants.back().pressure_peak_uncertainty_pa = 3e4;
   sides.run.step = {11.2, 14.9, 21.7, 63.0};
   sides.run.force = {6.1, 8.4, 12.0, 30.0};
   sides.run.setup_s = 0.042;
