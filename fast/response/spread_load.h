@@ -38,8 +38,8 @@ struct HalfSpace {
 [[nodiscard]] scene::Vec3 spread_displacement_m(const SpreadLoad& load, const HalfSpace& half_space,
                                                 const scene::Vec3& x_m) noexcept;
 
-/// Pressure of the patch, along its normal, at a point as far from its axis [Pa]; 0 outside. On a flat punch's rim, where
-/// it is infinite, that very near it.
+/// Pressure of the patch, along its normal, at a point as far from its axis [Pa]; 0 outside. On a flat punch's rim,
+/// where it is infinite, that very near it.
 [[nodiscard]] double spread_pressure_pa(const SpreadLoad& load, const scene::Vec3& x_m) noexcept;
 
 /// Distance from the load's centre below which a vertex is near, over the radius: beyond, the second moment leaves out

@@ -38,7 +38,7 @@ TEST(PlotFiles, EveryPlotOfTheReportIsSavedWhenAsked) {
   }
   EXPECT_EQ(svg,
             (std::set<std::string>{"bodies", "force-error", "force-logarithmic", "force-over-depth", "force-over-time",
-                                   "section", "section-contact", "shape-error", "shape-largest-error"}));
+                                   "section", "section-contact", "shape-error", "shape-largest-error", "traction"}));
   EXPECT_EQ(pdf, has_pdf() ? svg : std::set<std::string>{});
 }
 
