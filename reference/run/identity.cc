@@ -3,6 +3,7 @@
 #include "reference/tool/distance_grid.h"
 #include "reference/tool/tool_distance.h"
 #include "scene/base/hash.h"
+#include "scene/model/body_text.h"
 
 #include <iomanip>
 #include <sstream>
@@ -50,43 +51,11 @@ std::string tool_text(const scene::Tool& tool) {
   return text.str();
 }
 
-void add_solid(const scene::Solid& solid, std::ostream& text) {
-  switch (solid.shape) {
-    case scene::BodyShape::box:
-      text << "box " << solid.size_m.transpose();
-      break;
-    case scene::BodyShape::sphere:
-      text << "sphere " << solid.radius_m;
-      break;
-    case scene::BodyShape::ellipsoid:
-      text << "ellipsoid " << solid.semi_axes_m.transpose();
-      break;
-    case scene::BodyShape::revolution:
-      text << "revolution";
-      for (const Eigen::Vector2d& corner_m : solid.profile.rz_m) text << " (" << corner_m.transpose() << ')';
-      for (const double radius_m : solid.profile.arc_radius_m) text << ' ' << radius_m;
-      break;
-  }
-  text << '\n';
-}
-
 }  // namespace
 
 std::string identity_text(const Scene& scene) {
   std::ostringstream text;
-  text << std::setprecision(17) << method_version << '\n';
-  const auto add_material = [&](const scene::Material& material) {
-    text << "E " << material.youngs_modulus_pa << " nu " << material.poissons_ratio << '\n';
-  };
-  text << "body ";
-  add_solid(scene.body, text);
-  if (!scene.body.flat_bottom()) text << "held below " << scene.body.support_height_m << '\n';
-  add_material(scene.body.material);
-  for (const scene::Inclusion& inclusion : scene.body.inclusions) {
-    text << "inclusion at " << inclusion.center_m.transpose() << ' ';
-    add_solid(inclusion, text);
-    add_material(inclusion.material);
-  }
+  text << std::setprecision(17) << method_version << '\n' << scene::body_text(scene.body);
   text << "tool " << tool_text(scene.tool) << '\n'
        << "regions " << scene.contact.r_th_m << " apart\n"
        << "kinematics " << (scene.reference.kinematics == scene::Kinematics::finite ? "finite" : "small") << " element "
