@@ -174,7 +174,7 @@ std::string traction_caption(const scene::ReferenceInstant& at) {
       "Pressure and friction of the tool on the body in the section's plane, per current area, at the deepest instant; "
       "the reference on its own mesh. The largest pressure at a node is {:.4g} kPa, {}.",
       1e-3 * at.pressure_peak_pa,
-      std::isfinite(uncertainty) ? "known to " + percent_text(uncertainty) : "its uncertainty is unknown");
+      std::isfinite(uncertainty) ? "known to " + percent_text(uncertainty) : "with unknown uncertainty");
 }
 
 }  // namespace

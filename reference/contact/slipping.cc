@@ -138,7 +138,7 @@ template <int dim>
 void Slipping<dim>::keep_history(State<dim>& state) const {
   if (!model_.tool) return;
   const std::vector<RegionFriction> regions = region_frictions(state);
-  const double images = (model_.mirror_x ? 2.0 : 1.0) * (model_.mirror_y ? 2.0 : 1.0);
+  const double images = model_.images();
   std::fill(state.sliding.begin(), state.sliding.end(), 0);
   for (const NodeContact<dim>& contact : contacts_) {
     const RegionFriction& region = regions[contact.region];
