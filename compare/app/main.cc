@@ -9,6 +9,7 @@
 #include "compare/app/verbs.h"
 #include "compare/app/verify_verb.h"
 #include "compare/app/view_verb.h"
+#include "compare/model/engine_model.h"
 #include "compare/report/live_report.h"
 #include "fast/app/completion.h"
 #include "fast/app/new_verb.h"
@@ -80,10 +81,10 @@ int run_program(int argc, char** argv) {
             "exit 3 unless the uncertainty of force and shape is at most this, relative; results are written anyway")
         .range(1e-4, 0.5);
   };
-  add("plan", "what each solver models of a scene, what it leaves out and why",
-      "meshes/scenes/ball-on-cube-press.toml --set fast.formulation=published", compare::plan);
-  add_with_folder("fast", "the real-time model over the scene's track in virtual time",
-                  "meshes/scenes/ball-on-cube-press.toml --out out/press", compare::run_fast);
+  add_store(add("plan", "what each solver models of a scene, what it leaves out and why",
+                "meshes/scenes/ball-on-cube-press.toml --set fast.formulation=published", compare::plan));
+  add_store(add_with_folder("fast", "the real-time model over the scene's track in virtual time",
+                            "meshes/scenes/ball-on-cube-press.toml --out out/press", compare::run_fast));
   fast::Command solved =
       add_with_folder("reference", "the offline solve; uses stored results, resumes where it was interrupted",
                       "meshes/scenes/hertz-sphere.toml --error 0.005", compare::run_reference);
@@ -120,6 +121,10 @@ int run_program(int argc, char** argv) {
   fast::Command export_verb = compare::add_export_verb(program, options, export_options, reference);
   export_verb.option("--out", options.out, "result folder (default out/<scene>-export)");
   add_store(export_verb);
+  options.prepare = [&](scene::Scene& scene) {
+    scene = compare::asked(scene, reference);
+    compare::prepare_missing(scene, [](const std::string& line) { std::cerr << line << '\n'; });
+  };
   live::add_live_verb(program, options, live_options, compare::write_live_report);
   compare::add_verify_verb(program, verify_options);
   compare::GateOptions gate_options;

@@ -2,6 +2,7 @@
 
 #include "compare/comparison/compare.h"
 #include "compare/input/tuning_study.h"
+#include "compare/model/engine_model.h"
 #include "compare/model/skeleton_model.h"
 #include "compare/report/fast_report.h"
 #include "compare/report/plot_files.h"
@@ -21,10 +22,17 @@ void refuse(std::vector<scene::Fault> faults) {
   if (!faults.empty()) throw scene::InputError(std::move(faults));
 }
 
+/// Lines about what takes long, on stderr.
+std::function<void(const std::string&)> saying(bool quiet) {
+  return [quiet](const std::string& line) {
+    if (!quiet) std::cerr << line << '\n';
+  };
+}
+
 }  // namespace
 
-int plan(const fast::VerbOptions& options, const ReferenceOptions&) {
-  const scene::Scene scene = options.load();
+int plan(const fast::VerbOptions& options, const ReferenceOptions& reference) {
+  const scene::Scene scene = asked(options.load(), reference);
   std::cout << scene::explained_toml(scene) << '\n'
             << fast::plan_text("The fast model computes", fast::plan(scene)) << '\n';
   const std::vector<scene::Fault> faults = reference::unsupported(scene);
@@ -37,11 +45,12 @@ int plan(const fast::VerbOptions& options, const ReferenceOptions&) {
   return fast::done;
 }
 
-int run_fast(const fast::VerbOptions& options, const ReferenceOptions&) {
-  const scene::Scene scene = options.load();
+int run_fast(const fast::VerbOptions& options, const ReferenceOptions& reference) {
+  const scene::Scene scene = asked(options.load(), reference);
   const std::filesystem::path folder = options.folder(scene, "fast");
   const scene::FolderLock lock = scene::prepare_result_folder(folder);
   scene::Manifest manifest = scene::make_manifest(scene, "touchstone fast");
+  prepare_missing(scene, saying(options.quiet));
   const scene::Stopwatch watch;
   const fast::Run run = fast::run_into_folder(scene, folder, manifest, options.quiet);
   manifest.times.push_back(watch.read("fast"));
@@ -78,14 +87,13 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
   const scene::Scene scene = parameters.empty() ? given : with_parameters(given, parameters);
   const Contenders judged =
       contenders(given, parameters.empty() ? std::vector<std::filesystem::path>{} : std::vector{parameters},
-                 more.models, reference.store, [&](const std::string& line) {
-                   if (!options.quiet) std::cerr << line << '\n';
-                 });
+                 more.models, reference.store, saying(options.quiet));
   const std::filesystem::path folder = options.folder(scene, "compare");
   const scene::FolderLock lock = scene::prepare_result_folder(folder);
   const Call call{options.scene_file, options.overrides, reference, parameters, folder, more.models};
   return with_reference_exits([&] {
     scene::Manifest manifest = scene::make_manifest(scene, "touchstone compare");
+    prepare_missing(scene, saying(options.quiet));
     const scene::Stopwatch fast_watch;
     const fast::Run run = fast_model().set_up(scene)->track().value();
     manifest.times.push_back(fast_watch.read("fast"));

@@ -3,7 +3,7 @@
 #include "compare/errors/compute_errors.h"
 #include "compare/errors/figures.h"
 #include "compare/format/svg_plot.h"
-#include "compare/model/skeleton_model.h"
+#include "compare/model/engine_model.h"
 #include "compare/report/comparison_drawings.h"
 #include "compare/report/model_table.h"
 #include "compare/report/plot_files.h"
@@ -56,6 +56,8 @@ Comparison write_comparison(const std::filesystem::path& folder, const scene::Sc
                                                        {.force_nrmse = errors.force_nrmse,
                                                         .shape_rel_l2 = errors.shape_rel_l2,
                                                         .step_p50_us = run.step.p50_us,
+                                                        .pressure_rel_l2 = errors.contact_pressure_rel_l2,
+                                                        .pressure_peak_rel = errors.contact_pressure_peak_rel,
                                                         .trouble = trouble_of(run)});
   const ComparisonDrawings drawings = comparison_drawings(scene, run, result, errors);
   Comparison comparison{make_figures(errors, result, fast::figures(run)),

@@ -60,7 +60,9 @@ class TuningReader : TomlReader {
                 "held_out", "parameter"});
     word(document_, "kind", {"tuning"});
     study.title = text(document_, "title").value_or("");
-    study.formulations = choices<Formulation>("formulation", words_of(*tunable_field("fast.formulation")));
+    std::vector words = words_of(*tunable_field("fast.formulation"));
+    std::erase(words, scene::name_of(Formulation::response));  // has no constants
+    study.formulations = choices<Formulation>("formulation", words);
     study.laws = choices<ContactLaw>("law", words_of(*tunable_field("contact.law")));
     study.starts = static_cast<int>(number(document_, "starts", {1.0, 100.0}, 16.0));
     study.force_floor = number(document_, "force_floor", {1e-6, 1.0}, 0.01);
@@ -207,6 +209,12 @@ class TuningReader : TomlReader {
   void complete(TuningStudy& study) {
     const Scene& first = study.training.front().scene;
     if (study.formulations.empty()) study.formulations = {first.fast.formulation};
+    if (study.formulations.front() == Formulation::response) {
+      add(document_,
+          "formulation: the response model of the training contacts has no constants to tune; expected "
+          "formulation = [\"corrected\"], [\"published\"] or both");
+      return;
+    }
     if (study.laws.empty()) study.laws = {first.contact.law};
     for (const ContactLaw law : study.laws) {
       const auto tuned = [&](const Field<Scene>* field) {

@@ -5,6 +5,7 @@
 #include "fast/run/ticks.h"
 #include "scene/model/rest_depth.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -101,6 +102,8 @@ Contenders contenders(const scene::Scene& scene, const std::vector<std::filesyst
   const ModelRequest request{.scene = scene, .parameters = parameters, .store = store, .say = say};
   Contenders out{scene, list_models(request, compared_models())};
   for (const std::string& key : keys) {
+    const auto same = [&](const ModelEntry& entry) { return entry.key == key; };
+    if (std::ranges::any_of(out.models, same)) continue;
     ModelEntry& entry = out.models.emplace_back(find_model(request, key));
     entry.name = entry.label;  // a short name for the table
   }

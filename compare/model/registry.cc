@@ -22,7 +22,7 @@ const std::vector<ModelList>& registered_models() {
 }
 
 const std::vector<ModelList>& compared_models() {
-  static const std::vector<ModelList> models{skeleton_variants};
+  static const std::vector<ModelList> models{usual_models};
   return models;
 }
 

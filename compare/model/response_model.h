@@ -5,6 +5,9 @@
 
 namespace touchstone::compare {
 
+/// The scene with the response model.
+[[nodiscard]] scene::Scene with_response(scene::Scene scene);
+
 /// One model; what it needs from the reference's side is prepared when it is set up, or read from the store.
 [[nodiscard]] std::vector<ModelEntry> response_models(const ModelRequest& request);
 

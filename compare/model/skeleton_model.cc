@@ -2,10 +2,9 @@
 
 #include "compare/format/text.h"
 #include "compare/input/tuning_study.h"
-#include "fast/command/results.h"
+#include "compare/model/engine_model.h"
+#include "compare/model/response_model.h"
 #include "fast/run/replay.h"
-#include "fast/run/run.h"
-#include "fast/step/engine.h"
 #include "scene/model/area_law.h"
 
 #include <fmt/format.h>
@@ -19,43 +18,6 @@ namespace {
 
 using scene::Scene;
 using Change = std::function<Scene(Scene)>;
-
-class SkeletonModel final : public ContactModel {
- public:
-  explicit SkeletonModel(Scene scene) : scene_(std::move(scene)), engine_(scene_) {}
-
-  void step(const scene::Pose& pose) override { engine_.step(pose); }
-
-  void answer(scene::Answer& asked) override {
-    fast::Run run = fast::run(scene_);
-    trouble_ = trouble_of(run);
-    step_p50_us_ = run.step.p50_us;
-    figures_ = fast::figures(run);
-    auto of_run = run.instants.begin();
-    for (scene::InstantRecord& instant : asked.instants) {
-      while (of_run != run.instants.end() && of_run->time_s != instant.time_s) ++of_run;
-      if (of_run == run.instants.end()) throw std::logic_error("the scene has no such instant");
-      instant = std::move(*of_run);
-    }
-    asked.surface = std::move(run.surface);
-  }
-
-  [[nodiscard]] int size() const override { return engine_.model().surface.triangle_count(); }
-  [[nodiscard]] std::optional<double> memory_bytes() const override {
-    return static_cast<double>(engine_.memory_bytes());
-  }
-  [[nodiscard]] std::string trouble() const override { return trouble_; }
-  [[nodiscard]] std::optional<double> step_p50_us() const override { return step_p50_us_; }
-  [[nodiscard]] scene::Figures figures() const override { return figures_; }
-  [[nodiscard]] std::optional<fast::Run> track() override { return fast::run(scene_); }
-
- private:
-  Scene scene_;
-  fast::Engine engine_;
-  std::string trouble_;
-  std::optional<double> step_p50_us_;
-  scene::Figures figures_;
-};
 
 class SkeletonReplay final : public ModelReplay {
  public:
@@ -73,7 +35,7 @@ class SkeletonReplay final : public ModelReplay {
 };
 
 ModelEntry skeleton(ModelEntry entry, const Change& change) {
-  entry.set_up = [change](const Scene& scene) { return std::make_unique<SkeletonModel>(change(scene)); };
+  entry.set_up = [change](const Scene& scene) { return engine_model(change(scene)); };
   return entry;
 }
 
@@ -81,16 +43,16 @@ ModelFamily family_of(const Scene& scene) {
   return scene.contact.law == scene::ContactLaw::duffing ? ModelFamily::paper : ModelFamily::area_aware;
 }
 
-std::string name_of(scene::Formulation formulation) {
-  return formulation == scene::Formulation::published ? "published" : "corrected";
-}
-
 std::string method_of(const Scene& scene) {
-  return std::string(scene::name_of(scene.contact.law).title) + ", " + name_of(scene.fast.formulation);
+  return std::string(scene::name_of(scene.contact.law).title) + ", " +
+         std::string(scene::name_of(scene.fast.formulation));
 }
 
+/// Only the skeleton has constants.
 bool same_model(const Scene& a, const Scene& b) {
-  return a.fast.formulation == b.fast.formulation && a.contact == b.contact && a.fast.s_c_m2 == b.fast.s_c_m2;
+  if (a.fast.formulation != b.fast.formulation) return false;
+  return a.fast.formulation == scene::Formulation::response ||
+         (a.contact == b.contact && a.fast.s_c_m2 == b.fast.s_c_m2);
 }
 
 Scene as_given(Scene scene) { return scene; }
@@ -116,10 +78,6 @@ Scene with_untuned_area_law(Scene scene) {
   return scene;
 }
 
-std::string trouble_of(const fast::Run& run) {
-  return run.status == 0 ? "" : "status of its steps: " + fast::status_text(run.status);
-}
-
 ModelEntry fast_model() {
   ModelEntry entry =
       skeleton({.name = "fast model", .key = "fast", .family = ModelFamily::paper, .own = true}, as_given);
@@ -127,7 +85,7 @@ ModelEntry fast_model() {
   return entry;
 }
 
-std::vector<ModelEntry> skeleton_variants(const ModelRequest& request) {
+std::vector<ModelEntry> usual_models(const ModelRequest& request) {
   const Scene& given = request.scene;
   struct Variant {
     std::string key, name;
@@ -138,6 +96,7 @@ std::vector<ModelEntry> skeleton_variants(const ModelRequest& request) {
   if (given.contact.law == scene::ContactLaw::duffing) variants.push_back({"paper", "paper as printed", as_printed});
   variants.push_back({"area_aware", "untuned, from the material",
                       [](Scene scene) { return with_untuned_area_law(corrected(std::move(scene))); }});
+  variants.push_back({"response", "response, untuned", with_response});
   variants.push_back({"scene", "scene's own constants", as_given});
   const bool tuned = !request.parameters.empty();
   if (tuned) {
@@ -152,6 +111,12 @@ std::vector<ModelEntry> skeleton_variants(const ModelRequest& request) {
     const bool listed = std::any_of(scenes.begin(), std::prev(scenes.end()),
                                     [&](const Scene& other) { return same_model(other, scene); });
     if (listed && !one.tuned) continue;
+    if (scene.fast.formulation == scene::Formulation::response) {
+      ModelEntry& entry = models.emplace_back(response_models(request).front());
+      entry.name = one.name;
+      entry.own = !tuned && same_model(scene, given);
+      continue;
+    }
     models.push_back(skeleton({.name = one.name,
                                .key = one.key,
                                .method = method_of(scene),
@@ -203,7 +168,7 @@ std::vector<ModelEntry> skeleton_models(const ModelRequest& request) {
     const Scene tuned = with_parameters(request.scene, file);
     const bool duffing = tuned.contact.law == scene::ContactLaw::duffing;
     const std::string title(scene::name_of(tuned.contact.law).title);
-    const std::string form = name_of(tuned.fast.formulation);
+    const std::string form(scene::name_of(tuned.fast.formulation));
     models.push_back(
         skeleton({.name = fmt::format("{} skeleton, {} law, tuned ({})", form, title, file.filename().string()),
                   .key = "tuned-" + file.stem().string(),

@@ -17,12 +17,10 @@ namespace touchstone::compare {
 /// The fast model with the scene's own constants, which `fast`, `compare`, `tune` and gates are about.
 [[nodiscard]] ModelEntry fast_model();
 
-/// The status messages of a run's steps; empty if there are none.
-[[nodiscard]] std::string trouble_of(const fast::Run& run);
-
-/// Which constants to use: the paper's model as printed, the area-aware law that needs no tuning, the scene's own, and
-/// the first file of tuned ones. A model that is the same as another is listed once, but for the tuned ones.
-[[nodiscard]] std::vector<ModelEntry> skeleton_variants(const ModelRequest& request);
+/// Which to use: the paper's model as printed, the area-aware law and the response model, which need no tuning, the
+/// scene's own, and the first file of tuned constants. A model that is the same as another is listed once, but for the
+/// tuned ones.
+[[nodiscard]] std::vector<ModelEntry> usual_models(const ModelRequest& request);
 
 /// Both formulations with both laws, and one model for every file of tuned constants.
 [[nodiscard]] std::vector<ModelEntry> skeleton_models(const ModelRequest& request);

@@ -22,8 +22,8 @@ std::string head_section(const scene::Scene& scene, const fast::Run& run) {
   out += tag("p",
              fmt::format("What the fast contact model computed alone, in the {} formulation, at {} steps a second over "
                          "{} of track.",
-                         scene.fast.formulation == scene::Formulation::published ? "published" : "corrected",
-                         number_text(scene.fast.rate_hz), seconds_text(run.instants.back().time_s)),
+                         scene::name_of(scene.fast.formulation), number_text(scene.fast.rate_hz),
+                         seconds_text(run.instants.back().time_s)),
              "class=\"dim\"") +
          "\n<div class=\"tiles\">\n";
   out += tile("Largest force", quantity_text(strongest->force_n().norm(), "N"),
@@ -60,11 +60,12 @@ std::string fast_report_html(const scene::Scene& scene, const fast::Run& run, co
   out += forces.empty() ? tag("p", "The tool never touches the body.") + "\n" : drawings_section("Force", forces);
   out += drawings_section("Shape", shape_drawings(scene, run)) + figures_section(run);
   out += tag("h2", "What the fast model computes of the scene") + "\n" + plan_table(fast::plan(scene));
-  out += manifest_section(manifest,
-                          "Beside this page: the drawings as SVG files, summary.json (these figures), curve.csv (every "
-                          "instant), beams.csv (every beam end), manifest.json, and surface.pvd for ParaView, where "
-                          "the filter Warp By Vector with "
-                          "displacement_m shows the deformed body.");
+  out += manifest_section(
+      manifest,
+      "Beside this page: the drawings as SVG files, summary.json (these figures), curve.csv (every "
+      "instant), beams.csv (every beam end of a skeleton), manifest.json, and surface.pvd for ParaView, where "
+      "the filter Warp By Vector with "
+      "displacement_m shows the deformed body.");
   return page(scene_title(scene), out);
 }
 

@@ -95,6 +95,7 @@ class Finder {
     less_deep();
     more_regions();
     known_better();
+    if (scene_.fast.formulation == scene::Formulation::response) return std::move(steps_);  // no constants
     other_beams();
     area_law();
     tuning();

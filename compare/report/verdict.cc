@@ -169,6 +169,10 @@ std::vector<Reason> status_paragraphs(const scene::Scene& scene, const fast::Run
           "The beams are too soft for this force (fast.s_c_m2 = {} m²). An anchor point would have moved farther "
           "than the contact point, and was limited to its displacement.",
           number_text(scene.fast.s_c_m2)));
+  add(fast::StepStatus::outside_grid,
+      "The load left the part of the surface for which the body's response is known. Its nearest place was used.");
+  add(fast::StepStatus::tip_exceeded, "The tool is deeper than its tip is high. The model sees only the tip.");
+  add(fast::StepStatus::tilted, "A flat tip is tilted. The model takes it to lie flat.");
   return out;
 }
 

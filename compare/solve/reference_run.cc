@@ -34,6 +34,7 @@ std::string options_text(const ReferenceOptions& options) {
 }
 
 scene::Scene asked(scene::Scene scene, const ReferenceOptions& options) {
+  scene.fast.store = options.store;
   if (options.levels) scene.reference.levels = options.levels;
   if (options.error) {
     scene.reference.error = *options.error;

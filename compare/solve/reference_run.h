@@ -27,7 +27,7 @@ struct ReferenceOptions {
 /// The given options that affect the result, as typed: " --level 3 --minutes 20".
 [[nodiscard]] std::string options_text(const ReferenceOptions& options);
 
-/// The scene with the levels or the error that the command line asks for.
+/// The scene with the levels or the error that the command line asks for, and the store.
 [[nodiscard]] scene::Scene asked(scene::Scene scene, const ReferenceOptions& options);
 
 /// One line for the terminal, the most important first.

@@ -51,13 +51,11 @@ void set_values(scene::Scene& scene, const std::vector<TuningParameter>& paramet
 }
 
 std::string TunedModel::name() const {
-  return std::string(formulation == scene::Formulation::published ? "published" : "corrected") + " " +
-         std::string(scene::name_of(law).title);
+  return std::string(scene::name_of(formulation)) + " " + std::string(scene::name_of(law).title);
 }
 
 std::string TunedModel::key() const {
-  return std::string(formulation == scene::Formulation::published ? "published" : "corrected") + "-" +
-         std::string(scene::name_of(law).word);
+  return std::string(scene::name_of(formulation)) + "-" + std::string(scene::name_of(law).word);
 }
 
 scene::Scene tuned_scene(const scene::Scene& scene, const TunedModel& model) {

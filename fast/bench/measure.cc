@@ -2,7 +2,7 @@
 
 #include "fast/bench/floor.h"
 #include "fast/bench/statistics.h"
-#include "fast/step/engine.h"
+#include "fast/step/skeleton_engine.h"
 #include "scene/base/index.h"
 #include "scene/base/stopwatch.h"
 
@@ -29,7 +29,7 @@ struct Samples {
 
 class Measurement {
  public:
-  Measurement(const Case& which, fast::Engine& engine, HardwareCounters& counters)
+  Measurement(const Case& which, fast::SkeletonEngine& engine, HardwareCounters& counters)
       : which_(which), engine_(engine), floor_(engine.model().rest), counters_(counters) {}
 
   /// Presses the tool in. @returns the time of a step [us]
@@ -123,7 +123,7 @@ class Measurement {
   }
 
   const Case& which_;
-  fast::Engine& engine_;
+  fast::SkeletonEngine& engine_;
   CopyFloor floor_;
   HardwareCounters& counters_;
   Samples samples_;
@@ -166,7 +166,7 @@ CaseResult measure(const Case& which, const Effort& effort, HardwareCounters& co
   result.which = which;
   const scene::Scene scene = scene_of(which);
   const scene::Stopwatch watch;
-  fast::Engine engine(scene);
+  fast::SkeletonEngine engine(scene);
   const fast::FastModel& model = engine.model();
   result.setup_s = watch.wall_s();
   result.triangles = model.surface.triangle_count();

@@ -4,7 +4,7 @@
 
 #ifdef TOUCHSTONE_BULLET
 #include "fast/bench/bullet_peer.h"
-#include "fast/step/engine.h"
+#include "fast/step/skeleton_engine.h"
 #include "scene/base/stopwatch.h"
 
 #include <algorithm>
@@ -56,7 +56,7 @@ class OurStep {
   scene::Pose next_pose() { return pose_at_tick(which_, tick_++); }
 
   Case which_;
-  fast::Engine engine_;
+  fast::SkeletonEngine engine_;
   std::vector<double> step_us_;
   std::int64_t tick_ = 0;
 };

@@ -19,6 +19,8 @@ struct VerbOptions {
   std::filesystem::path out;  ///< empty: `out/<scene>-<verb>`
   std::vector<std::string> overrides;
   bool quiet = false;
+  /// Computes what a scene's formulation reads, in a program that can; empty in others.
+  std::function<void(scene::Scene&)> prepare = {};
 
   [[nodiscard]] std::filesystem::path folder(const scene::Scene& scene, const std::string& verb) const;
   /// Warns on stderr of a track on which the tool never touches the body. @throws scene::InputError

@@ -71,7 +71,8 @@ Run run_into_folder(const scene::Scene& scene, const std::filesystem::path& fold
   std::vector<scene::Column> columns = scene::track_columns(result.instants);
   for (scene::Column& c : scene::record_columns(result.instants, "")) columns.push_back(std::move(c));
   scene::write_csv(folder / "curve.csv", columns);
-  scene::write_csv(folder / "beams.csv", beam_columns(result.beams));
+  if (scene.fast.formulation != scene::Formulation::response)
+    scene::write_csv(folder / "beams.csv", beam_columns(result.beams));
   scene::write_summary(folder / "summary.json", figures(result));
   scene::write_manifest(folder / "manifest.json", manifest);
   return result;

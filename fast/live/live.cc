@@ -4,6 +4,7 @@
 #include "fast/live/live_log.h"
 #include "fast/live/replay_device.h"
 #include "fast/live/scripted_device.h"
+#include "fast/run/make_engine.h"
 #include "scene/base/error.h"
 #include "scene/base/files.h"
 
@@ -155,7 +156,8 @@ LiveResult run_live(const scene::Scene& scene, const LiveOptions& options, const
                     const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell,
                     const std::function<void(const std::string&)>& warn) {
   Setup setup = set_up(scene, options);
-  fast::Engine engine(scene);
+  const std::unique_ptr<fast::Engine> made = fast::make_engine(scene);
+  fast::Engine& engine = *made;
   WrenchLimiter limiter(WrenchLimits::of(scene.live, engine.tool_reach_m()), setup.time.period_s());
   TripleBuffer<ShapeFrame> shapes(ShapeFrame{-1, 0, engine.field()});
   RecordRing<TickRecord> ring(options.ring_records);

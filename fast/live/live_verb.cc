@@ -30,7 +30,8 @@ std::string command_line(const fast::VerbOptions& options, const LiveOptions& li
 
 int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const std::string& command,
               const WritePage& page) {
-  const scene::Scene scene = options.load();
+  scene::Scene scene = options.load();
+  if (options.prepare) options.prepare(scene);
   const std::filesystem::path folder = options.folder(scene, "live");
   const scene::FolderLock lock = scene::prepare_result_folder(folder);
   scene::Manifest manifest = scene::make_manifest(scene, command);

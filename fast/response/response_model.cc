@@ -2,20 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace touchstone::fast {
 namespace {
 
 using scene::Vec3;
-
-Columns columns_of(const Eigen::Matrix3Xd& points) {
-  Columns out;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Eigen::VectorXf row = points.row(static_cast<Eigen::Index>(i)).transpose().cast<float>();
-    out[i].assign(row.begin(), row.end());
-  }
-  return out;
-}
 
 bool alike(const LocalShape& a, const LocalShape& b, double reach_m) {
   constexpr double tolerance = 1e-6;  // of the height at the reach, over the reach
@@ -24,19 +16,15 @@ bool alike(const LocalShape& a, const LocalShape& b, double reach_m) {
 
 }  // namespace
 
-std::string response_needs(const scene::Scene& scene) {
-  if (scene.contact.friction) return "the contact is without friction";
-  if (!scene.tool.convex()) return "the tool is convex: it has one contact region";
-  if (const scene::FoundTip tip = scene::tool_tip(scene); !tip.tip) return tip.why;
-  return scene::load_grid(scene).why;
-}
-
-ResponseModel::ResponseModel(const scene::Scene& scene, const scene::Surface& surface, scene::Response given)
+ResponseModel::ResponseModel(const scene::Scene& scene, scene::Surface at_rest, scene::Response given)
     : body(scene::body_shape(scene.body)),
+      surface(std::move(at_rest)),
       tip(scene::tool_tip(scene).tip.value()),
       response(std::move(given)),
       half_space(scene.body.material),
-      rest_m(columns_of(surface.points_m)) {
+      rest_m(columns_of(surface.points_m)),
+      rest_normal(columns_of(surface.normals)),
+      normals(normal_stencils(surface)) {
   const scene::LoadGrid& grid = response.grid;
   const int n = grid.count();
   const double reach_m = tip.reach_m();
@@ -65,32 +53,17 @@ ResponseModel::ResponseModel(const scene::Scene& scene, const scene::Surface& su
 }
 
 std::size_t ResponseModel::memory_bytes() const noexcept {
-  std::size_t bytes = (rest_m[0].size() * 3 + free.size()) * sizeof(float) +
+  std::size_t bytes = (rest_m[0].size() * 6 + free.size()) * sizeof(float) + normals.memory_bytes() +
                       static_cast<std::size_t>(response.smooth_m_per_n.size()) * sizeof(float) +
                       static_cast<std::size_t>(own_compliance.size()) * (1 + 6 + 11) * sizeof(double);
   for (const ContactTable& table : tables) bytes += table.memory_bytes();
   return bytes;
 }
 
-std::string status_text(ResponseStatus status) {
-  const auto bits = static_cast<std::uint32_t>(status);
-  std::string text;
-  const auto add = [&](ResponseStatus bit, const char* words) {
-    if ((bits & static_cast<std::uint32_t>(bit)) != 0) text += (text.empty() ? "" : ", ") + std::string(words);
-  };
-  add(ResponseStatus::not_finite, "a pose that is not finite");
-  add(ResponseStatus::outside_grid, "the load left the grid of the response");
-  add(ResponseStatus::too_deep, "deeper than the tool's tip");
-  add(ResponseStatus::tilted, "the flat tip is tilted");
-  return text.empty() ? "ok" : text;
-}
-
-ResponseState::ResponseState(const ResponseModel& model) : near(model.rest_m[0].size()) {
-  for (std::vector<float>& column : displacement_m) column.assign(model.rest_m[0].size(), 0.0f);
-}
+ResponseState::ResponseState(const ResponseModel& model) : field(model.rest_normal), near(model.rest_m[0].size()) {}
 
 std::size_t ResponseState::memory_bytes() const noexcept {
-  return near.size() * (sizeof(std::int32_t) + 3 * sizeof(float));
+  return field.memory_bytes() + near.size() * sizeof(std::int32_t);
 }
 
 }  // namespace touchstone::fast

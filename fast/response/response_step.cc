@@ -59,7 +59,7 @@ double local_energy_j(const ResponseModel& model, const GridWeights& weights, do
 
 /// Adds the smooth part of one column, or sets it.
 TOUCHSTONE_WIDE_LOOPS
-void add_column(const float* column, float weight, Columns& out_m) noexcept {
+void add_column(const float* column, float weight, Columns3& out_m) noexcept {
   const std::size_t count = out_m[0].size();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float* const from = column + axis * count;
@@ -70,7 +70,7 @@ void add_column(const float* column, float weight, Columns& out_m) noexcept {
 }
 
 TOUCHSTONE_WIDE_LOOPS
-void hold(const std::vector<float>& free, Columns& out_m) noexcept {
+void hold(const std::vector<float>& free, Columns3& out_m) noexcept {
   for (std::vector<float>& column : out_m) {
     float* const to = column.data();
     const float* const share = free.data();
@@ -79,12 +79,12 @@ void hold(const std::vector<float>& free, Columns& out_m) noexcept {
   }
 }
 
-Vec3 at(const Columns& columns, std::int32_t i) noexcept {
+Vec3 at(const Columns3& columns, std::int32_t i) noexcept {
   const auto k = static_cast<std::size_t>(i);
   return {columns[0][k], columns[1][k], columns[2][k]};
 }
 
-void set(Columns& columns, std::int32_t i, const Vec3& value) noexcept {
+void set(Columns3& columns, std::int32_t i, const Vec3& value) noexcept {
   const auto k = static_cast<std::size_t>(i);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     columns[axis][k] = static_cast<float>(value[static_cast<Eigen::Index>(axis)]);
@@ -105,7 +105,7 @@ void follow_tool(const ResponseModel& model, const ResponseContact& contact, std
     const Vec3 d_m = at(model.rest_m, i) - contact.load.center_m;
     const double r_m = (d_m - d_m.dot(n) * n).norm();
     if (r_m > rim * a_m || d_m.dot(n) < -2.0 * a_m) continue;
-    Vec3 u_m = at(state.displacement_m, i);
+    Vec3 u_m = at(state.field.displacement_m, i);
     const Vec3 from_axis_m = at(model.rest_m, i) + u_m - p0;
     Vec3 across_m = from_axis_m - from_axis_m.dot(n) * n;
     const double below_m = -(at(model.rest_m, i) - p0).dot(n);  // of the rest point, under the tangent plane
@@ -120,23 +120,24 @@ void follow_tool(const ResponseModel& model, const ResponseContact& contact, std
     }
     const double new_inward_m = contact.depth_m - model.tip.height_m((across_m + slid_m).norm()) - below_m;
     u_m += slid_m - (u_m.dot(n) + new_inward_m) * n;
-    set(state.displacement_m, i, u_m);
+    set(state.field.displacement_m, i, u_m);
   }
 }
 
 }  // namespace
 
-ResponseStatus response_force(const ResponseModel& model, const scene::Pose& given, ResponseState& state) noexcept {
+StepStatus response_force(const ResponseModel& model, const scene::Pose& given, ResponseState& state) noexcept {
   if (!given.position_m.allFinite() || !given.orientation.coeffs().allFinite() || !(given.orientation.norm() > 1e-6)) {
-    return ResponseStatus::not_finite;
+    return StepStatus::not_finite;
   }
   scene::Pose pose = given;
   pose.orientation.normalize();
-  ResponseStatus status = ResponseStatus::ok;
+  StepStatus status = StepStatus::ok;
   ResponseContact& contact = state.contact;
   contact = {};
   state.wrench = {};
   contact.at = scene::touch(*model.body, model.tip, pose);
+  state.lap(Stage::detection);
   const Vec3 n = contact.at.normal;
   contact.depth_m = contact.at.depth_m;
   contact.load.center_m = contact.at.point_m;
@@ -145,14 +146,14 @@ ResponseStatus response_force(const ResponseModel& model, const scene::Pose& giv
     contact.depth_m = 0.0;
     return status;
   }
-  if (contact.at.tilt > scene::tilt_max) status = status | ResponseStatus::tilted;
+  if (contact.at.tilt > scene::tilt_max) status |= StepStatus::tilted;
   const double deepest_m = model.tip.ball() ? model.tip.radius_m : model.tables.front().largest_indentation_m();
-  if (contact.depth_m > deepest_m) status = status | ResponseStatus::too_deep;
+  if (contact.depth_m > deepest_m) status |= StepStatus::tip_exceeded;
 
   const scene::LoadGrid& grid = model.response.grid;
   LoadPath path{grid.place(contact.at.point_m), Eigen::Vector2d::Zero()};
   const GridWeights weights(grid, path.start);
-  if (!weights.inside) status = status | ResponseStatus::outside_grid;
+  if (!weights.inside) status |= StepStatus::outside_grid;
   const Vec3 sway = weights.sum<Vec3>([&](int k) -> Vec3 { return model.sway.col(k); });
   const Vec3 tilt = weights.sum<Vec3>([&](int k) -> Vec3 { return model.tilt.col(k); });
   const double curvature_per_m =
@@ -205,6 +206,7 @@ ResponseStatus response_force(const ResponseModel& model, const scene::Pose& giv
   const Vec3 center_m = pose.orientation * model.tip.center_T_m;
   const Vec3 arm_m = model.tip.ball() ? center_m : Vec3(center_m + law.force_n * shift_m_per_n);
   state.wrench.torque_nm = arm_m.cross(state.wrench.force_n);
+  state.lap(Stage::force);
   return status;
 }
 
@@ -212,33 +214,35 @@ void response_shape(const ResponseModel& model, ResponseState& state) noexcept {
   const FlushTinyNumbers flush;
   const ResponseContact& contact = state.contact;
   if (!(contact.load.force_n > 0.0)) {
-    if (state.deformed) {
-      for (std::vector<float>& column : state.displacement_m) std::fill(column.begin(), column.end(), 0.0f);
-    }
+    if (state.deformed) state.field.reset(model.rest_normal);
     state.deformed = false;
     return;
   }
   state.deformed = true;
-  const std::int32_t near_count =
-      spread_displacements_m(contact.load, model.half_space, model.rest_m, state.displacement_m, state.near.data());
+  const std::int32_t near_count = spread_displacements_m(contact.load, model.half_space, model.rest_m,
+                                                         state.field.displacement_m, state.near.data());
   for (std::int32_t k = 0; k < near_count; ++k) {
     const std::int32_t i = state.near[static_cast<std::size_t>(k)];
-    set(state.displacement_m, i, spread_displacement_m(contact.load, model.half_space, at(model.rest_m, i)));
+    set(state.field.displacement_m, i, spread_displacement_m(contact.load, model.half_space, at(model.rest_m, i)));
   }
   const scene::LoadGrid& grid = model.response.grid;
   const GridWeights weights(grid, grid.place(contact.load.center_m));
   for (int k = 0; k < weights.count; ++k) {
     const auto [point, weight] = weights.terms[static_cast<std::size_t>(k)];
     add_column(model.response.smooth_m_per_n.col(point).data(), static_cast<float>(weight * contact.load.force_n),
-               state.displacement_m);
+               state.field.displacement_m);
   }
-  hold(model.free, state.displacement_m);
+  hold(model.free, state.field.displacement_m);
+  state.lap(Stage::interpolation);
   follow_tool(model, contact, near_count, state);
+  state.lap(Stage::local_factor);
+  update_normals(model.normals, state.field);
+  state.lap(Stage::normals);
 }
 
-ResponseStatus response_step(const ResponseModel& model, const scene::Pose& pose, ResponseState& state) noexcept {
-  const ResponseStatus status = response_force(model, pose, state);
-  if (status != ResponseStatus::not_finite) response_shape(model, state);
+StepStatus response_step(const ResponseModel& model, const scene::Pose& pose, ResponseState& state) noexcept {
+  const StepStatus status = response_force(model, pose, state);
+  if (status != StepStatus::not_finite) response_shape(model, state);
   return status;
 }
 

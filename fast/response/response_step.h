@@ -2,14 +2,15 @@
 #pragma once
 
 #include "fast/response/response_model.h"
+#include "fast/step/status.h"
 
 namespace touchstone::fast {
 
 /// No heap, lock, throw, log or file access happens below; equal poses give equal bits, whatever went before.
-ResponseStatus response_step(const ResponseModel& model, const scene::Pose& pose, ResponseState& state) noexcept;
+StepStatus response_step(const ResponseModel& model, const scene::Pose& pose, ResponseState& state) noexcept;
 
 /// Its parts: the force, which a device waits for, then the shape.
-ResponseStatus response_force(const ResponseModel& model, const scene::Pose& pose, ResponseState& state) noexcept;
+StepStatus response_force(const ResponseModel& model, const scene::Pose& pose, ResponseState& state) noexcept;
 /// Of the last force.
 void response_shape(const ResponseModel& model, ResponseState& state) noexcept;
 

@@ -56,8 +56,8 @@ Vec3 spread_displacement_m(const SpreadLoad& load, const HalfSpace& half_space, 
 }
 
 TOUCHSTONE_WIDE_LOOPS
-std::int32_t spread_displacements_m(const SpreadLoad& load, const HalfSpace& half_space, const Columns& rest_m,
-                                    Columns& out_m, std::int32_t* near) noexcept {
+std::int32_t spread_displacements_m(const SpreadLoad& load, const HalfSpace& half_space, const Columns3& rest_m,
+                                    Columns3& out_m, std::int32_t* near) noexcept {
   const auto count = static_cast<std::int32_t>(rest_m[0].size());
   const float px = static_cast<float>(load.center_m.x()), py = static_cast<float>(load.center_m.y()),
               pz = static_cast<float>(load.center_m.z());

@@ -8,15 +8,12 @@
 // Sneddon 1965). Some radii away the second moment of the sources is enough.
 #pragma once
 
+#include "fast/surface/surface_patches.h"
 #include "scene/model/scene.h"
 
-#include <array>
 #include <cstdint>
-#include <vector>
 
 namespace touchstone::fast {
-
-using Columns = std::array<std::vector<float>, 3>;
 
 /// The load, its patch on a plane that touches the body from outside.
 struct SpreadLoad {
@@ -49,7 +46,7 @@ inline constexpr double near_radii = 3.0;
 /// At all vertices: those beyond near_radii get their displacement [m], the others are listed.
 /// @param near  places of vertices, room for all of them
 /// @returns their number
-std::int32_t spread_displacements_m(const SpreadLoad& load, const HalfSpace& half_space, const Columns& rest_m,
-                                    Columns& out_m, std::int32_t* near) noexcept;
+std::int32_t spread_displacements_m(const SpreadLoad& load, const HalfSpace& half_space, const Columns3& rest_m,
+                                    Columns3& out_m, std::int32_t* near) noexcept;
 
 }  // namespace touchstone::fast

@@ -1,5 +1,8 @@
+#include "fast/response/response_engine.h"
+#include "fast/run/make_engine.h"
 #include "fast/run/run.h"
-#include "fast/step/engine.h"
+#include "fast/step/skeleton_engine.h"
+#include "scene/base/error.h"
 #include "scene/base/index.h"
 #include "scene/model/rest_depth.h"
 
@@ -8,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <memory>
 
 namespace touchstone::fast {
 namespace {
@@ -16,7 +20,7 @@ namespace {
 struct Measured {
   std::array<double, stage_count> stage_us{};  ///< medians
   double step_us = 0.0;
-  int points = 0, regions = 0;
+  int regions = 0;
   bool contact = false;
   double deepest_m = 0.0;  ///< by the exact shapes
 
@@ -29,15 +33,14 @@ struct Measured {
 
 Measured measure(const scene::Scene& scene, Engine& engine) {
   const std::vector<double> times_s = scene::instants_s(scene);
-  const scene::RestDepth depth(*engine.model().body, scene.tool);
-  const FastState& state = engine.state();
+  const scene::RestDepth depth(engine.body(), scene.tool);
   // Runs the track up to that instant, so that regions and friction are as in the scene.
   double deepest_s = times_s.front();
   Measured measured;
   for (const double time_s : times_s) {
     const scene::Pose pose = scene::pose_at(scene.track, time_s);
     engine.step(pose);
-    measured.regions = std::max(measured.regions, state.region_count);
+    measured.regions = std::max(measured.regions, engine.region_count());
     if (const double here_m = depth.depth_m(pose); here_m > measured.deepest_m) {
       measured.deepest_m = here_m;
       deepest_s = time_s;
@@ -58,8 +61,7 @@ Measured measure(const scene::Scene& scene, Engine& engine) {
   }
   for (std::size_t s = 0; s < stage_count; ++s) measured.stage_us[s] = percentile_us(std::move(stage_us[s]), 0.5);
   measured.step_us = percentile_us(std::move(step_us), 0.5);
-  measured.contact = state.in_contact();
-  for (int i = 0; i < state.region_count; ++i) measured.points += nth(state.regions, i).points.count;
+  measured.contact = engine.in_contact();
   return measured;
 }
 
@@ -85,29 +87,80 @@ std::string one_region_text(const scene::Tool& tool) {
   return touch + fmt::format("; the tool's mesh has no concavity deeper than {:.2g} mm", dent_m * 1e3);
 }
 
+/// A plan as it is written.
+struct Lines {
+  scene::Plan plan;
+  void models(const char* part, std::string reason, std::string cost = "") {
+    plan.push_back({part, true, std::move(reason), std::move(cost)});
+  }
+  void leaves_out(const char* part, std::string reason) { plan.push_back({part, false, std::move(reason), "nothing"}); }
+  void whole(const Measured& measured, const Engine& engine) {
+    models("whole step", "all stages", fmt::format("{:.1f} us a tick, measured", measured.step_us));
+    models("memory", "model and state, taken before the first tick",
+           fmt::format("{:.1f} MB", static_cast<double>(engine.memory_bytes()) / 1e6));
+  }
+};
+
+scene::Plan response_plan(const scene::Scene& scene) {
+  std::unique_ptr<Engine> engine;
+  std::string not_there;
+  try {
+    engine = make_engine(scene);
+  } catch (const scene::InputError& error) {
+    not_there = error.what();
+  }
+  const Measured measured = engine ? measure(scene, *engine) : Measured{};
+  const auto cost = [&](std::initializer_list<Stage> stages) { return engine ? measured.cost(stages) : ""; };
+  const scene::ToolTip tip = scene::tool_tip(scene).tip.value();
+  const scene::LoadGrid grid = scene::load_grid(scene).grid.value();
+  Lines lines;
+  lines.models("contact detection",
+               tip.ball()
+                   ? fmt::format("a ball of {:.4g} mm radius against the exact rest shape", tip.radius_m * 1e3)
+                   : fmt::format("a flat tip of {:.4g} mm radius against the exact rest shape", tip.reach_m() * 1e3),
+               cost({Stage::detection}));
+  lines.leaves_out("several regions", one_region_text(scene.tool));
+  lines.models(
+      "contact force",
+      "of a linear half space under the tool's true surface, tabulated over the depth, times a factor of finite "
+      "strain that depends on Poisson's ratio; in series with the body's compliance",
+      cost({Stage::force}));
+  lines.leaves_out("friction", "the scene has no [contact.friction]");
+  lines.models(
+      "body",
+      fmt::format("{} columns of its linear response, {:.3g} mm apart{}", grid.count(),
+                  1e3 * std::max(grid.spacing_m[0], grid.spacing_m[1]), not_there.empty() ? "" : "; " + not_there),
+      "computed once by `touchstone prepare`");
+  lines.models("surface",
+               fmt::format("{} triangles: the half space in closed form and the columns", scene.fast.triangles),
+               cost({Stage::interpolation}));
+  lines.models("local surface", "points under the tool lie on it", cost({Stage::local_factor}));
+  lines.models("normals", "of the deformed surface", cost({Stage::normals}));
+  if (engine) lines.whole(measured, *engine);
+  lines.leaves_out("time dependence", "the force is static; the track's speed does not enter");
+  return lines.plan;
+}
+
 }  // namespace
 
 scene::Plan plan(const scene::Scene& scene) {
-  Engine engine(scene);
+  if (scene.fast.formulation == scene::Formulation::response) return response_plan(scene);
+  SkeletonEngine engine(scene);
   const FastModel& model = engine.model();
   const Measured measured = measure(scene, engine);
+  int points = 0;
+  for (int i = 0; i < engine.region_count(); ++i) points += nth(engine.state().regions, i).points.count;
   const bool published = scene.fast.formulation == scene::Formulation::published;
   const std::string printed = published ? "as printed" : "corrected", elements = published ? "samples" : "cells";
   const auto held = std::count(model.skeleton.held.begin(), model.skeleton.held.end(), true);
 
-  scene::Plan plan;
-  const auto models = [&](const char* part, std::string reason, std::string cost = "") {
-    plan.push_back({part, true, std::move(reason), std::move(cost)});
-  };
-  const auto leaves_out = [&](const char* part, std::string reason) {
-    plan.push_back({part, false, std::move(reason), "nothing"});
-  };
-  models(
+  Lines lines;
+  lines.models(
       "contact detection",
       fmt::format("{} {} of the tool, {:.3g} mm apart, against the exact rest shape{}; {} points inside at the track's "
                   "deepest instant",
                   model.tool.count(), elements, model.tool.spacing_m * 1e3,
-                  published ? "" : ", and smaller ones where few are inside", measured.points) +
+                  published ? "" : ", and smaller ones where few are inside", points) +
           (measured.deepest_m > 0.0 && !measured.contact
                ? fmt::format("; CONTACT MISSED: the tool is {:.3g} mm deep there but the force is zero; raise "
                              "fast.tool_samples",
@@ -115,7 +168,7 @@ scene::Plan plan(const scene::Scene& scene) {
                : ""),
       measured.cost({Stage::detection}));
   if (model.max_regions > 1) {
-    models(
+    lines.models(
         "several regions",
         fmt::format("the tool's mesh is not convex: up to {}, {} at the track's instants, separated at {:.3g} mm; each "
                     "is evaluated on the body deformed by the earlier ones",
@@ -126,53 +179,55 @@ scene::Plan plan(const scene::Scene& scene) {
                  : ""),
         measured.cost({Stage::regions}));
   } else {
-    leaves_out("several regions", one_region_text(scene.tool));
+    lines.leaves_out("several regions", one_region_text(scene.tool));
   }
-  models("contact force",
-         std::string(scene::name_of(scene.contact.law).title) + " law along the direction of deformation, masses " +
-             printed + ", torque about the tool's mass centre",
-         measured.cost({Stage::force}));
+  lines.models("contact force",
+               std::string(scene::name_of(scene.contact.law).title) +
+                   " law along the direction of deformation, masses " + printed +
+                   ", torque about the tool's mass centre",
+               measured.cost({Stage::force}));
   if (model.friction) {
-    models("friction",
-           fmt::format("sticking up to {:.3g} F_n^{:.3g}, slipping at {:.3g} F_n, ", scene.contact.friction->K,
-                       scene.contact.friction->beta, scene.contact.friction->mu_D) +
-               (published
-                    ? "C1 to C4 as printed"
-                    : fmt::format("tangential stiffness {:.3g} times the normal one while sticking, by return mapping",
-                                  scene.contact.friction->stiffness_ratio)),
-           measured.cost({Stage::friction}));
+    lines.models(
+        "friction",
+        fmt::format("sticking up to {:.3g} F_n^{:.3g}, slipping at {:.3g} F_n, ", scene.contact.friction->K,
+                    scene.contact.friction->beta, scene.contact.friction->mu_D) +
+            (published
+                 ? "C1 to C4 as printed"
+                 : fmt::format("tangential stiffness {:.3g} times the normal one while sticking, by return mapping",
+                               scene.contact.friction->stiffness_ratio)),
+        measured.cost({Stage::friction}));
   } else {
-    leaves_out("friction", "the scene has no [contact.friction]; the force is along the direction of deformation");
+    lines.leaves_out("friction",
+                     "the scene has no [contact.friction]; the force is along the direction of deformation");
   }
-  models(
+  lines.models(
       "beam skeleton",
       fmt::format("{} beams, {} of them ending on the support, anchor points: ", model.skeleton.anchor_m.size(), held) +
           anchors_text(*model.anchors) + "; force split " + printed,
       measured.cost({Stage::skeleton}));
   if (!scene.body.inclusions.empty()) {
-    models("inclusions", fmt::format("{}: a beam is cut where it crosses one", scene.body.inclusions.size()),
-           "within the beam skeleton");
+    lines.models("inclusions", fmt::format("{}: a beam is cut where it crosses one", scene.body.inclusions.size()),
+                 "within the beam skeleton");
   } else {
-    leaves_out("inclusions", "the body is of one material, every beam one segment");
+    lines.leaves_out("inclusions", "the body is of one material, every beam one segment");
   }
-  models("surface",
-         fmt::format("{} triangles, {} rest points, ", model.surface.triangle_count(), model.surface.vertex_count()) +
-             (published ? "lengths and angles interpolated" : "displacement vectors interpolated"),
-         measured.cost({Stage::interpolation}));
+  lines.models(
+      "surface",
+      fmt::format("{} triangles, {} rest points, ", model.surface.triangle_count(), model.surface.vertex_count()) +
+          (published ? "lengths and angles interpolated" : "displacement vectors interpolated"),
+      measured.cost({Stage::interpolation}));
   if (model.formulas.local_factor()) {
-    models(
+    lines.models(
         "local factor",
         fmt::format("C_n = {:.3g} inside {:.3g} mm of the contact, ", scene.fast.C_n, scene.fast.r_R_m * 1e3) + printed,
         measured.cost({Stage::local_factor}));
   } else {
-    leaves_out("local factor", "C_n = 0");
+    lines.leaves_out("local factor", "C_n = 0");
   }
-  models("normals", "of the deformed surface", measured.cost({Stage::normals}));
-  models("whole step", "all stages", fmt::format("{:.1f} us a tick, measured", measured.step_us));
-  models("memory", "model and state, taken before the first tick",
-         fmt::format("{:.1f} MB", static_cast<double>(engine.memory_bytes()) / 1e6));
-  leaves_out("time dependence", "the paper's law is the static force; the track's speed does not enter");
-  return plan;
+  lines.models("normals", "of the deformed surface", measured.cost({Stage::normals}));
+  lines.whole(measured, engine);
+  lines.leaves_out("time dependence", "the paper's law is the static force; the track's speed does not enter");
+  return lines.plan;
 }
 
 }  // namespace touchstone::fast

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "fast/run/recording.h"
-#include "fast/step/engine.h"
+#include "fast/step/skeleton_engine.h"
 
 #include <functional>
 #include <optional>
@@ -32,7 +32,7 @@ class Replay {
   [[nodiscard]] bool recorded() const noexcept { return recorded_.has_value(); }
 
  private:
-  Engine engine_;
+  SkeletonEngine engine_;
   double r_th_m_;  ///< of the constructor's scene
   std::optional<std::vector<RecordedTick>> recorded_;
   std::vector<ContactRegion> regions_;  ///< where recorded, per instant; what the shape follows from

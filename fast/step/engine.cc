@@ -1,11 +1,7 @@
 #include "fast/step/engine.h"
 
-#include "fast/step/step.h"
-#include "scene/base/index.h"
-
 #include <xxhash.h>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <new>
@@ -28,31 +24,31 @@ std::shared_ptr<XXH3_state_t> new_hash() {
 
 }  // namespace
 
-Engine::Engine(const scene::Scene& scene) : model_(scene), state_(model_), hash_(new_hash()) {}
+Engine::Engine() : hash_(new_hash()) {}
 
 StepStatus Engine::step_force(const scene::Pose& pose) noexcept {
-  if (state_.clock != nullptr) stages_.start();
-  const StepStatus status = fast::step_force(model_, pose, state_);
+  if (timed_) stages_.start();
+  const StepStatus status = force(pose);
   add_to_hash();
   return status;
 }
 
 StepStatus Engine::step_shape() noexcept {
-  if (state_.clock != nullptr) stages_.resume();
-  return fast::step_shape(model_, state_);
+  if (timed_) stages_.resume();
+  return shape();
 }
 
 StepStatus Engine::step(const scene::Pose& pose) noexcept {
-  const StepStatus force = step_force(pose);
-  return force == StepStatus::not_finite ? force : force | step_shape();
+  const StepStatus status = step_force(pose);
+  return status == StepStatus::not_finite ? status : status | step_shape();
 }
 
 TimedStep Engine::step_timed(const scene::Pose& pose) noexcept {
   const Clock::time_point begin = Clock::now();
-  if (state_.clock != nullptr) stages_.start();
-  StepStatus status = fast::step_force(model_, pose, state_);
+  if (timed_) stages_.start();
+  StepStatus status = force(pose);
   const Clock::time_point published = Clock::now();
-  if (status != StepStatus::not_finite) status |= fast::step_shape(model_, state_);
+  if (status != StepStatus::not_finite) status |= shape();
   const Clock::time_point end = Clock::now();
   add_to_hash();
   return {status, nanoseconds(published - begin), nanoseconds(end - begin)};
@@ -65,51 +61,15 @@ void Engine::add_to_hash() noexcept {
   XXH3_64bits_update(hash_.get(), numbers.data(), sizeof numbers);
 }
 
-scene::Wrench Engine::wrench() const noexcept { return {total_force_n(state_), total_torque_nm(state_)}; }
-
 std::uint64_t Engine::answer_hash() const {
   const std::shared_ptr<XXH3_state_t> copy = new_hash();
   XXH3_copyState(copy.get(), hash_.get());
-  for (const Columns3* columns : {&state_.field.displacement_m, &state_.field.normal}) {
+  for (const Columns3* columns : {&field().displacement_m, &field().normal}) {
     for (const auto& column : *columns) XXH3_64bits_update(copy.get(), column.data(), column.size() * sizeof(float));
   }
   return XXH3_64bits_digest(copy.get());
 }
 
-scene::InstantRecord Engine::record(double time_s, const scene::Pose& tool, double depth_m) const {
-  scene::InstantRecord record;
-  record.time_s = time_s;
-  record.tool = tool;
-  record.depth_m = depth_m;
-  record.displacement_m = matrix_of(state_.field.displacement_m);
-  record.support_force_n = support_force_n(state_);
-  for (int i = 0; i < state_.region_count; ++i) {
-    const ContactRegion& region = nth(state_.regions, i);
-    if (!region.pressing()) continue;
-    record.regions.push_back({.depth_m = model_.max_regions == 1 ? depth_m : region.extent.deepest_m,
-                              .force_n = region.force.force_n,
-                              .torque_nm = region.force.torque_nm,
-                              .area_m2 = region.extent.area_m2,
-                              .id = region.id,
-                              .friction_n = region.force.tangential_n,
-                              .sliding = region.friction.sliding});
-  }
-  return record;
-}
-
-void Engine::restart(int max_regions) {
-  StageClock* const clock = state_.clock;
-  state_ = FastState(model_, max_regions);
-  state_.clock = clock;
-  XXH3_64bits_reset(hash_.get());
-}
-
-double Engine::tool_reach_m() const noexcept {
-  const ToolSamples& tool = model_.tool;
-  double reach_m = 0.0;
-  for (std::size_t i = 0; i < tool.x_T_m.size(); ++i)
-    reach_m = std::max(reach_m, scene::Vec3(tool.x_T_m[i], tool.y_T_m[i], tool.z_T_m[i]).norm());
-  return reach_m;
-}
+void Engine::restart_hash() noexcept { XXH3_64bits_reset(hash_.get()); }
 
 }  // namespace touchstone::fast

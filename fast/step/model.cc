@@ -19,15 +19,12 @@ Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
   const scene::FastSettings& fast = scene.fast;
   const SplitForce split_force = split_force_of(fast.formulation, skeleton);
   Formulas formulas;
-  switch (fast.formulation) {
-    case scene::Formulation::published:
-      formulas = {std::nullopt,          distribute_mass_published,    resolve_friction_published, split_force,
-                  interpolate_published, apply_local_factor_published, several_regions_published};
-      break;
-    case scene::Formulation::corrected:
-      formulas = {corrected_cells,       distribute_mass_corrected,    resolve_friction_corrected, split_force,
-                  interpolate_corrected, apply_local_factor_corrected, several_regions_corrected};
-      break;
+  if (fast.formulation == scene::Formulation::published) {
+    formulas = {std::nullopt,          distribute_mass_published,    resolve_friction_published, split_force,
+                interpolate_published, apply_local_factor_published, several_regions_published};
+  } else {
+    formulas = {corrected_cells,       distribute_mass_corrected,    resolve_friction_corrected, split_force,
+                interpolate_corrected, apply_local_factor_corrected, several_regions_corrected};
   }
   // With several regions the normals of all cells together describe no single region, so the lever does not refine
   // cells.

@@ -7,33 +7,12 @@
 #include "fast/realtime/stage_clock.h"
 #include "fast/skeleton/beam_stress.h"
 #include "fast/step/model.h"
+#include "fast/step/status.h"
 
-#include <cstdint>
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace touchstone::fast {
-
-/// What went other than planned in a step: bits, ok for none. The answer is finite in every case.
-enum class StepStatus : std::uint32_t {
-  ok = 0,
-  not_finite = 1u << 0,       ///< the pose was invalid; the last valid result was kept
-  depth_limited = 1u << 1,    ///< deeper than depth_limit_rel of the body's thickness; press less deep
-  law_saturated = 1u << 2,    ///< past the peak of a softening law; raise contact.k3_n_per_m3 or press less deep
-  anchors_limited = 1u << 3,  ///< an anchor point moved further than the contact and was limited; raise fast.s_c_m2
-  regions_full = 1u << 4,     ///< more contact regions than fast.max_regions; the smallest were left out
-  /// Set for a run over a track, never in a step, which sees the tool by its samples alone: at a recorded instant the
-  /// tool is inside the body by the exact shapes, and none of its samples is. Raise fast.tool_samples.
-  contact_missed = 1u << 5
-};
-[[nodiscard]] constexpr StepStatus operator|(StepStatus a, StepStatus b) noexcept {
-  return static_cast<StepStatus>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
-}
-constexpr StepStatus& operator|=(StepStatus& a, StepStatus b) noexcept { return a = a | b; }
-
-/// Status bits in words, "ok" for none.
-[[nodiscard]] std::string status_text(std::uint32_t status);
 
 /// The tool's poses around a tick.
 struct Motion {

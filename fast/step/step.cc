@@ -10,7 +10,7 @@ namespace {
 /// No contact: the body returns to its rest shape.
 void return_to_rest(const FastModel& model, FastState& state) noexcept {
   if (!state.deformed) return;
-  state.field.reset(model.rest);
+  state.field.reset(model.rest.normal);
   for (ContactRegion& region : state.regions) region.ends.clear();
   state.deformed = false;
 }

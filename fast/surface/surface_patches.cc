@@ -83,15 +83,24 @@ SurfacePatches surface_patches(const scene::Surface& surface, const AnchorPoints
   return rest;
 }
 
-SurfaceField::SurfaceField(const SurfacePatches& rest) : normal(rest.normal) {
-  for (auto& column : displacement_m) column.assign(rest.vertex_count(), 0.0f);
+SurfaceField::SurfaceField(const Columns3& rest_normal) : normal(rest_normal) {
+  for (auto& column : displacement_m) column.assign(rest_normal[0].size(), 0.0f);
 }
 
-void SurfaceField::reset(const SurfacePatches& rest) noexcept {
+void SurfaceField::reset(const Columns3& rest_normal) noexcept {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::fill(displacement_m[axis].begin(), displacement_m[axis].end(), 0.0f);
-    std::copy(rest.normal[axis].begin(), rest.normal[axis].end(), normal[axis].begin());
+    std::copy(rest_normal[axis].begin(), rest_normal[axis].end(), normal[axis].begin());
   }
+}
+
+Columns3 columns_of(const Eigen::Matrix3Xd& matrix) {
+  Columns3 columns;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::VectorXf row = matrix.row(axis).transpose().cast<float>();
+    nth(columns, axis).assign(row.begin(), row.end());
+  }
+  return columns;
 }
 
 Eigen::Matrix3Xd matrix_of(const Columns3& columns) {

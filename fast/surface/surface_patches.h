@@ -16,6 +16,7 @@ using Columns3 = std::array<std::vector<float>, 3>;
 
 /// The same as one column per vertex.
 [[nodiscard]] Eigen::Matrix3Xd matrix_of(const Columns3& columns);
+[[nodiscard]] Columns3 columns_of(const Eigen::Matrix3Xd& matrix);
 using Columns4 = std::array<std::vector<float>, patch_corners_max>;
 
 inline constexpr std::int32_t block_vertices = 32;
@@ -62,12 +63,13 @@ struct SurfacePatches {
 
 /// The deformed surface: what the passes write. Storage is fixed at construction.
 struct SurfaceField {
-  explicit SurfaceField(const SurfacePatches& rest);
+  explicit SurfaceField(const SurfacePatches& rest) : SurfaceField(rest.normal) {}
+  explicit SurfaceField(const Columns3& rest_normal);
   Columns3 displacement_m;
   Columns3 normal;  ///< unit length, outward
 
   /// Back to rest.
-  void reset(const SurfacePatches& rest) noexcept;
+  void reset(const Columns3& rest_normal) noexcept;
   [[nodiscard]] std::size_t memory_bytes() const noexcept { return 6 * displacement_m[0].size() * sizeof(float); }
 };
 

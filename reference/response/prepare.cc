@@ -14,7 +14,7 @@ Prepared prepare_response(const scene::Scene& scene, const scene::Surface& surfa
   if (!found.grid) throw scene::InputError("the response model needs that " + found.why);
   const std::string identity = scene::response_identity(scene.body, *found.grid, surface);
   Prepared out;
-  out.file = store / "response" / scene::response_file_name(identity);
+  out.file = scene::response_path(store, identity);
   if (std::filesystem::exists(out.file)) {
     try {
       out.response = scene::read_response(out.file, identity);

@@ -18,7 +18,7 @@ using test::live_scene;
 /// Runs the whole loop with an overflowing ring under the heap check.
 Ledger run_without_heap(const scene::Scene& scene, Device& device, TickListener* listener, VirtualClock& clock,
                         std::int64_t ticks) {
-  fast::Engine engine(scene);
+  fast::SkeletonEngine engine(scene);
   const LoopTime time{1000, ticks};
   WrenchLimiter limiter(WrenchLimits::of(scene.live, engine.tool_reach_m()), time.period_s());
   TripleBuffer<ShapeFrame> shapes(ShapeFrame{-1, 0, engine.field()});

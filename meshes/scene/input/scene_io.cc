@@ -10,6 +10,7 @@
 #include "scene/mesh/mesh_file.h"
 #include "scene/model/first_contact.h"
 #include "scene/model/rules.h"
+#include "scene/response/response.h"
 
 #include <toml++/toml.h>
 
@@ -70,6 +71,10 @@ class Reader {
     if (faults_.empty()) fill_in_defaults(scene);
     if (faults_.empty()) place_tool(rows, scene);
     if (faults_.empty()) report(broken_rules(scene));
+    if (faults_.empty() && scene.fast.formulation == Formulation::response) {
+      if (const std::string needs = response_needs(scene); !needs.empty())
+        add_fault("fast.formulation", "the response model needs that " + needs);
+    }
     if (!faults_.empty()) throw InputError(sorted(faults_));
     return scene;
   }

@@ -8,6 +8,7 @@
 #include "scene/shape/surface.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,7 +30,10 @@ struct LawName {
 /// In the order of the enumeration.
 inline constexpr LawName contact_law_names[] = {{"duffing", "Duffing"}, {"area_aware", "area-aware"}};
 [[nodiscard]] constexpr const LawName& name_of(ContactLaw law) { return contact_law_names[static_cast<int>(law)]; }
-enum class Formulation { published, corrected };
+/// The paper's method as printed, its corrected form, or the response model.
+enum class Formulation { published, corrected, response };
+inline constexpr std::string_view formulation_words[] = {"published", "corrected", "response"};
+[[nodiscard]] constexpr std::string_view name_of(Formulation f) { return formulation_words[static_cast<int>(f)]; }
 enum class Kinematics { finite, small };
 
 /// Isotropic elastic material.
@@ -143,6 +147,8 @@ struct FastSettings {
   double C_n = 0.0;      ///< local factor, strength
   double C_r_m = 0.0;    ///< local factor, core radius
   double s_c_m2 = 0.0;   ///< total beam cross-section, (19)
+  /// Folder of results; the response model reads its file there. Not a key: where a program runs decides.
+  std::filesystem::path store = "out/reference-store";
 };
 
 struct ReferenceSettings {

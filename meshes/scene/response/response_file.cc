@@ -56,7 +56,9 @@ class Reader {
 
 }  // namespace
 
-std::string response_file_name(const std::string& identity) { return hash_text(identity) + ".response"; }
+std::filesystem::path response_path(const std::filesystem::path& store, const std::string& identity) {
+  return store / "response" / (hash_text(identity) + ".response");
+}
 
 std::string response_bytes(const Response& response, const std::string& identity) {
   const LoadGrid& grid = response.grid;

@@ -8,8 +8,8 @@
 
 namespace touchstone::scene {
 
-/// The name of the file of an identity: its hash, with an extension.
-[[nodiscard]] std::string response_file_name(const std::string& identity);
+/// The path of the file of an identity, named by its hash, in a folder of content-addressed results.
+[[nodiscard]] std::filesystem::path response_path(const std::filesystem::path& store, const std::string& identity);
 
 /// A file's bytes: a versioned header with units, a checksum of all that follows it, the identity, and numbers in SI
 /// units, little-endian.

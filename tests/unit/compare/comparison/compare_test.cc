@@ -30,6 +30,7 @@ class WriteComparison : public ::testing::Test {
   }
   static Contenders with_springs(const scene::Scene& scene) {
     Contenders out = contenders(scene);
+    std::erase_if(out.models, [](const ModelEntry& entry) { return entry.family == ModelFamily::response; });
     for (ModelEntry& entry : testing::springs({.scene = scene})) out.models.push_back(std::move(entry));
     return out;
   }

@@ -30,6 +30,12 @@ class JudgeModels : public ::testing::Test {
   [[nodiscard]] std::vector<JudgedModel> judge(const Contenders& contenders, const JudgedModel& own = {}) const {
     return judge_models(contenders, sides_.run.surface, sides_.result.instants, own);
   }
+  /// Those of every comparison, but for the one that computes the body's response.
+  [[nodiscard]] Contenders skeletons(const std::vector<std::filesystem::path>& parameters = {}) const {
+    Contenders out = contenders(sides_.scene, parameters);
+    std::erase_if(out.models, [](const ModelEntry& entry) { return entry.family == ModelFamily::response; });
+    return out;
+  }
   [[nodiscard]] std::vector<std::string> keys() const {
     std::vector<std::string> out;
     for (const ModelEntry& entry : contenders(sides_.scene).models) out.push_back(entry.key);
@@ -44,11 +50,11 @@ class JudgeModels : public ::testing::Test {
 };
 
 TEST_F(JudgeModels, ThePapersModelTheUntunedAreaLawAndTheScenesOwn) {
-  Contenders all = contenders(sides_.scene);
+  Contenders all = skeletons();
   const std::vector<JudgedModel> with_own = judge(all, {.force_nrmse = {0.5, {}}, .trouble = "tired"});
   for (ModelEntry& entry : all.models) entry.own = false;
   const std::vector<JudgedModel> models = judge(all);
-  ASSERT_THAT(keys(), ElementsAre("paper", "area_aware", "scene"));
+  ASSERT_THAT(keys(), ElementsAre("paper", "area_aware", "response", "scene"));
   const Errors paper = errors_of(as_printed(sides_.scene));
   const Errors area = errors_of(with_untuned_area_law(sides_.scene));
   EXPECT_EQ(models[0].force_nrmse.value, paper.force_nrmse.value);
@@ -69,7 +75,7 @@ TEST_F(JudgeModels, ThePapersModelTheUntunedAreaLawAndTheScenesOwn) {
 TEST_F(JudgeModels, TunedConstantsAreARowBesideTheScenesOwn) {
   const std::filesystem::path file = folder_.path() / "ball.toml";
   scene::write_file(file, "[contact]\nlaw = \"area_aware\"\nk1_per_radius_n_per_m2 = 7.0e6\nk3_n_per_m3 = 0.0\n");
-  Contenders all = contenders(sides_.scene, {file});
+  Contenders all = skeletons({file});
   EXPECT_TRUE(all.models.back().own);
   all.models.back().own = false;
   const std::vector<JudgedModel> models = judge(all);
@@ -84,12 +90,30 @@ TEST_F(JudgeModels, TunedConstantsAreARowBesideTheScenesOwn) {
 
 TEST_F(JudgeModels, AModelAppearsOnce) {
   sides_.scene.fast.formulation = scene::Formulation::published;
-  EXPECT_THAT(keys(), ElementsAre("paper", "area_aware"));
+  EXPECT_THAT(keys(), ElementsAre("paper", "area_aware", "response"));
   sides_.scene.fast.formulation = scene::Formulation::corrected;
   sides_.scene = with_untuned_area_law(sides_.scene);
-  EXPECT_THAT(keys(), ElementsAre("area_aware"));
+  EXPECT_THAT(keys(), ElementsAre("area_aware", "response"));
   sides_.scene.contact.k1_per_radius_n_per_m2 *= 0.9;
-  EXPECT_THAT(keys(), ElementsAre("area_aware", "scene"));
+  EXPECT_THAT(keys(), ElementsAre("area_aware", "response", "scene"));
+  sides_.scene.fast.formulation = scene::Formulation::response;
+  EXPECT_THAT(keys(), ElementsAre("area_aware", "response"));
+  EXPECT_TRUE(contenders(sides_.scene).models.back().own);
+}
+
+TEST_F(JudgeModels, TheResponseModelIsOneOfThem) {
+  Contenders all = contenders(sides_.scene, {}, {"response"}, folder_.path());
+  EXPECT_EQ(std::ranges::count(all.models, "response", &ModelEntry::key), 1);
+  std::erase_if(all.models, [](const ModelEntry& entry) { return entry.family != ModelFamily::response; });
+  const JudgedModel model = judge(all).front();
+  EXPECT_EQ(model.absent, "");
+  EXPECT_EQ(model.name, "response, untuned");
+  EXPECT_TRUE(model.force_nrmse.value && model.shape_rel_l2.value);
+  EXPECT_GT(model.step_p50_us, 0.0);
+  // A scene that it cannot answer.
+  sides_.scene.contact.friction = scene::Friction{.K = 1.0, .beta = 1.0, .mu_D = 0.5};
+  all.scene = sides_.scene;
+  EXPECT_THAT(judge(all).front().absent, HasSubstr("without friction"));
 }
 
 TEST_F(JudgeModels, AModelThatNobodyHereKnows) {

@@ -44,7 +44,7 @@ TEST(DeviceLoop, ScriptedGivesTheModelsOwnAnswerAtThePosesOfTheTrack) {
   ScriptedDevice device(scene.track, 1e-3);
   const LockStep run = lock_step(scene, device, 501);
   ASSERT_EQ(run.records.size(), 501u);
-  fast::Engine engine(scene);
+  fast::SkeletonEngine engine(scene);
   double largest_n = 0.0;
   for (std::int64_t k = 0; k < 501; ++k) {
     const TickRecord& record = run.records[static_cast<std::size_t>(k)];
@@ -151,7 +151,7 @@ TEST(DeviceLoop, MissedTicksAreSkippedAndCounted) {
 
 TEST(DeviceLoop, PublishesForceBeforeShape) {
   const scene::Scene scene = live_scene();
-  fast::Engine engine(scene);
+  fast::SkeletonEngine engine(scene);
   const LoopTime time{1000, 300};
   WrenchLimiter limiter(WrenchLimits::of(scene.live, engine.tool_reach_m()), time.period_s());
   VirtualClock clock;
@@ -196,7 +196,7 @@ TEST(DeviceLoop, PublishesForceBeforeShape) {
 
 TEST(DeviceLoop, AFullRingDropsAndCounts) {
   const scene::Scene scene = live_scene();
-  fast::Engine engine(scene);
+  fast::SkeletonEngine engine(scene);
   const LoopTime time{1000, 100};
   WrenchLimiter limiter(WrenchLimits::of(scene.live, engine.tool_reach_m()), time.period_s());
   VirtualClock clock;
@@ -215,7 +215,7 @@ TEST(DeviceLoop, AFullRingDropsAndCounts) {
 
 TEST(DeviceLoop, StopsWhenAsked) {
   const scene::Scene scene = live_scene();
-  fast::Engine engine(scene);
+  fast::SkeletonEngine engine(scene);
   const LoopTime time{1000, 1000};
   WrenchLimiter limiter(WrenchLimits::of(scene.live, engine.tool_reach_m()), time.period_s());
   VirtualClock clock;

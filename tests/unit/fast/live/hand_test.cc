@@ -18,7 +18,7 @@ using test::LockStep;
 
 /// Force of the model at rest at this depth [N].
 double force_at_n(const scene::Scene& scene, double depth_m) {
-  fast::Engine engine(scene);
+  fast::SkeletonEngine engine(scene);
   engine.step_force(test::pressed(-0.001));
   engine.step_force(test::pressed(depth_m));
   return engine.wrench().force_n.z();

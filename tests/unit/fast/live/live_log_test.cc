@@ -245,7 +245,7 @@ TEST_F(LiveLogTest, AReplayThatMissesTicksPlaysEveryRow) {
     if (tick.index % 41 == 0) clock.advance_ns(3'200'000);
     return replay.read(tick, sample);
   });
-  fast::Engine engine(scene);
+  fast::SkeletonEngine engine(scene);
   const LoopTime time{1000, 1'000'000, first.ledger.ticks};
   WrenchLimiter limiter(WrenchLimits::of(scene.live, engine.tool_reach_m()), time.period_s());
   Ledger ledger;
@@ -263,7 +263,7 @@ TEST_F(LiveLogTest, AReplaySeesAnAnswerThatIsNotTheLogs) {
     scene::Scene other = scene;
     other.contact.k3_n_per_m3 *= 1.0 + 1e-13;
     ReplayDevice device(first.records);
-    fast::Engine engine(other);
+    fast::SkeletonEngine engine(other);
     VirtualClock clock;
     const LoopTime time{1000, first.ledger.ticks};
     WrenchLimiter limiter(WrenchLimits::of(other.live, engine.tool_reach_m()), time.period_s());

@@ -54,7 +54,7 @@ struct LockStep {
 /// Runs the loop in lock-step.
 inline LockStep lock_step(const scene::Scene& scene, Device& device, std::int64_t ticks, VirtualClock& clock,
                           int rate_hz = 1000) {
-  fast::Engine engine(scene);
+  fast::SkeletonEngine engine(scene);
   const LoopTime time{rate_hz, ticks};
   WrenchLimiter limiter(WrenchLimits::of(scene.live, engine.tool_reach_m()), time.period_s());
   Keep keep(static_cast<std::size_t>(ticks));

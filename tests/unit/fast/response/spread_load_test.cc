@@ -93,7 +93,7 @@ TEST(SpreadLoad, PressureCarriesTheForce) {
 
 TEST(SpreadLoad, TheLoopAgreesFromTheNearVerticesOn) {
   const double a = 0.004;
-  Columns rest_m, out_m;
+  Columns3 rest_m, out_m;
   std::vector<std::int32_t> near;
   const Vec3 first = normal.unitOrthogonal(), second = normal.cross(first);
   for (int i = 0; i < 1000; ++i) {

@@ -1,4 +1,4 @@
-#include "fast/step/engine.h"
+#include "fast/step/skeleton_engine.h"
 
 #include "fast/run/run.h"
 #include "fast/run/ticks.h"
@@ -27,7 +27,7 @@ scene::Scene rubbed() {
 }
 
 TEST(Engine, EqualPosesGiveEqualHashesHoweverTheyAreStepped) {
-  Engine whole(rubbed()), timed(rubbed()), halves(rubbed());
+  SkeletonEngine whole(rubbed()), timed(rubbed()), halves(rubbed());
   halves.time_stages(true);
   std::uint64_t before = whole.answer_hash();
   for (const scene::Pose& pose : poses) {
@@ -48,7 +48,7 @@ TEST(Engine, EqualPosesGiveEqualHashesHoweverTheyAreStepped) {
 }
 
 TEST(Engine, ABadPoseHoldsTheAnswer) {
-  Engine engine(rubbed());
+  SkeletonEngine engine(rubbed());
   engine.step(poses[1]);
   const scene::Wrench before = engine.wrench();
   scene::Pose bad = poses[2];
@@ -60,7 +60,7 @@ TEST(Engine, ABadPoseHoldsTheAnswer) {
 }
 
 TEST(Engine, RestartsFromBeforeTheFirstStep) {
-  Engine engine(rubbed());
+  SkeletonEngine engine(rubbed());
   std::uint64_t first = 0;
   for (int times = 0; times < 2; ++times) {
     for (const scene::Pose& pose : poses) engine.step(pose);
@@ -74,7 +74,7 @@ TEST(Engine, RecordsWhatTheRunLeaves) {
   for (const char* name : {"ball-on-cube-slide", "compass-two-pins"}) {
     const scene::Scene scene = test::shipped_scene(name, Formulation::corrected);
     const auto result = run(scene);
-    Engine engine(scene);
+    SkeletonEngine engine(scene);
     Ticks ticks(scene);
     while (const std::optional<Tick> tick = ticks.next()) {
       const scene::Pose pose = scene::pose_at(scene.track, tick->time_s);

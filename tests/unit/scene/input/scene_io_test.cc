@@ -142,6 +142,13 @@ TEST(SceneFile, RulesAcrossKeysAreReportedAtTheKey) {
   EXPECT_EQ(message_for("[tool]", "[fast]\nC_n = 0.9\nformulation = \"published\"\n[tool]"), "no error");
 }
 
+TEST(SceneFile, TheResponseModelIsRefusedWhereItCannotAnswer) {
+  const std::string fast = "[fast]\nformulation = \"response\"\n";
+  EXPECT_EQ(message_for("[tool]", fast + "[tool]"), "no error");
+  EXPECT_THAT(message_for("[tool]", fast + "[contact.friction]\nK = 1.0\nbeta = 1.0\nmu_D = 0.5\n[tool]"),
+              HasSubstr("a.toml:8:15: fast.formulation: the response model needs that the contact is without friction"));
+}
+
 TEST(SceneFile, AllFaultsComeAtOnceInOrder) {
   try {
     (void)parse_scene("a = 1\n[body]\nshape = 3\n[tool]\nshape = \"cube\"\n", "b.toml");

@@ -73,7 +73,7 @@ TEST_F(ResponseFile, RefusesNumbersThatAreNotFinite) {
 
 TEST_F(ResponseFile, NamesTheFile) {
   const compare::testing::TemporaryFolder folder;
-  const auto file = folder.path() / response_file_name("body");
+  const auto file = response_path(folder.path(), "body");
   write_file(file, bytes_.substr(0, bytes_.size() - 8));
   EXPECT_THAT([&] { (void)read_response(file, "body"); },
               ThrowsMessage<InputError>(AllOf(HasSubstr(file.string()), HasSubstr("cut short"))));

@@ -1,0 +1,25 @@
+// The fast model of a scene, of whichever formulation.
+#pragma once
+
+#include "compare/model/model.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace touchstone::compare {
+
+/// Computes what the scene's formulation reads from the store where it is not there: the body's response.
+/// @param say  one line about what takes long; may be empty
+/// @throws scene::InputError as of reference::prepare_response(); std::filesystem::filesystem_error
+void prepare_missing(const scene::Scene& scene, const std::function<void(const std::string&)>& say = {});
+
+/// The engine of the scene's formulation as a model, with what it needs prepared.
+/// @throws Unavailable with the reason where it cannot be
+[[nodiscard]] std::unique_ptr<ContactModel> engine_model(scene::Scene scene,
+                                                         const std::function<void(const std::string&)>& say = {});
+
+/// What was reported in the steps of a run; empty where nothing was.
+[[nodiscard]] std::string trouble_of(const fast::Run& run);
+
+}  // namespace touchstone::compare

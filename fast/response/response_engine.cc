@@ -1,0 +1,80 @@
+#include "fast/response/response_engine.h"
+
+#include "fast/response/response_step.h"
+#include "scene/base/error.h"
+#include "scene/response/response_file.h"
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+namespace touchstone::fast {
+namespace {
+
+using scene::Vec3;
+
+/// Traction on the body at a point under the tool, from its pressure over the load's plane.
+Vec3 traction_pa(const ResponseModel& model, const ResponseContact& contact, const Vec3& x_m, const Vec3& axis) {
+  constexpr double steepest = 0.1;  // cosine between the tool's normal and its axis
+  const double pressure_pa = spread_pressure_pa(contact.load, x_m);
+  if (pressure_pa == 0.0) return Vec3::Zero();
+  const Vec3 from_axis_m = x_m - contact.at.point_m, across_m = from_axis_m - from_axis_m.dot(axis) * axis;
+  const double r_m = across_m.norm();
+  const double slope = model.tip.slope(std::min(r_m, 0.99 * model.tip.reach_m()));
+  const Vec3 out = (r_m > 0.0 ? Vec3(axis + slope / r_m * across_m) : axis).normalized();
+  return pressure_pa / std::max(out.dot(axis), steepest) * out;
+}
+
+}  // namespace
+
+scene::Response stored_response(const scene::Scene& scene, const scene::Surface& surface) {
+  const std::string identity = scene::response_identity(scene.body, scene::load_grid(scene).grid.value(), surface);
+  const std::filesystem::path file = scene::response_path(scene.fast.store, identity);
+  if (!std::filesystem::exists(file)) {
+    throw scene::InputError("fast.formulation: the response of this body is not there; expected the file " +
+                            file.string() + ", which `touchstone prepare` writes for this scene");
+  }
+  return scene::read_response(file, identity);
+}
+
+ResponseEngine::ResponseEngine(const scene::Scene& scene, scene::Surface surface, scene::Response response)
+    : model_(scene, std::move(surface), std::move(response)),
+      state_(model_),
+      tool_reach_m_(scene::tool_surface(scene.tool, scene.fast.tool_samples).points_m.colwise().norm().maxCoeff()) {}
+
+StepStatus ResponseEngine::force(const scene::Pose& pose) noexcept {
+  state_.clock = clock();
+  return response_force(model_, pose, state_);
+}
+
+StepStatus ResponseEngine::shape() noexcept {
+  state_.clock = clock();
+  response_shape(model_, state_);
+  return StepStatus::ok;
+}
+
+scene::InstantRecord ResponseEngine::record(double time_s, const scene::Pose& tool, double depth_m) const {
+  scene::InstantRecord record;
+  record.time_s = time_s;
+  record.tool = tool;
+  record.depth_m = depth_m;
+  record.displacement_m = matrix_of(state_.field.displacement_m);
+  record.traction_pa.setZero(3, record.displacement_m.cols());
+  if (!in_contact()) return record;
+  const ResponseContact& contact = state_.contact;
+  const Vec3 axis = model_.tip.ball() ? -contact.at.normal : Vec3(tool.orientation * model_.tip.axis_T);
+  for (Eigen::Index i = 0; i < record.traction_pa.cols(); ++i) {
+    if (model_.surface.normals.col(i).dot(contact.load.normal) <= 0.0) continue;
+    const Vec3 x_m = model_.surface.points_m.col(i) + record.displacement_m.col(i);
+    record.traction_pa.col(i) = traction_pa(model_, contact, x_m, axis);
+  }
+  record.pressure_peak_pa = spread_pressure_pa(contact.load, contact.load.center_m);
+  record.support_force_n = state_.wrench.force_n;
+  record.regions.push_back({.depth_m = depth_m,
+                            .force_n = state_.wrench.force_n,
+                            .torque_nm = state_.wrench.torque_nm,
+                            .area_m2 = std::numbers::pi * contact.load.radius_m * contact.load.radius_m});
+  return record;
+}
+
+}  // namespace touchstone::fast

@@ -1,0 +1,42 @@
+// The response model as an engine.
+#pragma once
+
+#include "fast/response/response_model.h"
+#include "fast/step/engine.h"
+
+namespace touchstone::fast {
+
+/// Reads the response's file in the scene's store. @throws scene::InputError where it is not there, or not as it should
+/// be, with the command that writes it
+[[nodiscard]] scene::Response stored_response(const scene::Scene& scene, const scene::Surface& surface);
+
+class ResponseEngine final : public Engine {
+ public:
+  /// @param scene  validated, one of which scene::response_needs() nothing; may go out of scope
+  ResponseEngine(const scene::Scene& scene, scene::Surface surface, scene::Response response);
+
+  [[nodiscard]] scene::Wrench wrench() const noexcept override { return state_.wrench; }
+  [[nodiscard]] bool in_contact() const noexcept override { return state_.contact.load.force_n > 0.0; }
+  [[nodiscard]] int region_count() const noexcept override { return in_contact() ? 1 : 0; }
+  [[nodiscard]] const SurfaceField& field() const noexcept override { return state_.field; }
+  /// With the traction on the deformed surface: the load's pressure, along the tool's normal.
+  [[nodiscard]] scene::InstantRecord record(double time_s, const scene::Pose& tool, double depth_m) const override;
+  [[nodiscard]] const scene::Shape& body() const noexcept override { return *model_.body; }
+  [[nodiscard]] const scene::Surface& surface() const noexcept override { return model_.surface; }
+  [[nodiscard]] double tool_reach_m() const noexcept override { return tool_reach_m_; }
+  [[nodiscard]] std::size_t memory_bytes() const noexcept override {
+    return model_.memory_bytes() + state_.memory_bytes();
+  }
+
+  [[nodiscard]] const ResponseModel& model() const noexcept { return model_; }
+
+ private:
+  StepStatus force(const scene::Pose& pose) noexcept override;
+  StepStatus shape() noexcept override;
+
+  ResponseModel model_;
+  ResponseState state_;
+  double tool_reach_m_;
+};
+
+}  // namespace touchstone::fast
