@@ -4,6 +4,8 @@
 #include "fast/live/hand_device.h"
 #include "fast/live/replay_device.h"
 #include "fast/live/scripted_device.h"
+#include "fast/response/response_engine.h"
+#include "support/synthetic_response.h"
 #include "unit/fast/live/lock_step.h"
 
 #include <gtest/gtest.h>
@@ -16,9 +18,8 @@ namespace {
 using test::live_scene;
 
 /// Runs the whole loop with an overflowing ring under the heap check.
-Ledger run_without_heap(const scene::Scene& scene, Device& device, TickListener* listener, VirtualClock& clock,
-                        std::int64_t ticks) {
-  fast::SkeletonEngine engine(scene);
+Ledger run_without_heap(fast::Engine& engine, const scene::Scene& scene, Device& device, TickListener* listener,
+                        VirtualClock& clock, std::int64_t ticks) {
   const LoopTime time{1000, ticks};
   WrenchLimiter limiter(WrenchLimits::of(scene.live, engine.tool_reach_m()), time.period_s());
   TripleBuffer<ShapeFrame> shapes(ShapeFrame{-1, 0, engine.field()});
@@ -34,6 +35,21 @@ Ledger run_without_heap(const scene::Scene& scene, Device& device, TickListener*
   EXPECT_GT(ring.dropped(), 0u);
   EXPECT_TRUE(shapes.take());
   return ledger;
+}
+
+Ledger run_without_heap(const scene::Scene& scene, Device& device, TickListener* listener, VirtualClock& clock,
+                        std::int64_t ticks) {
+  fast::SkeletonEngine engine(scene);
+  return run_without_heap(engine, scene, device, listener, clock, ticks);
+}
+
+TEST(LiveNoHeap, ResponseModel) {
+  const scene::Scene scene = live_scene();
+  const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
+  fast::ResponseEngine engine(scene, surface, touchstone::test::synthetic_response(scene, surface));
+  HandDevice hand(scene.track, scene.live, 1e-3);
+  VirtualClock clock;
+  EXPECT_GT(run_without_heap(engine, scene, hand, nullptr, clock, 600).force_max_n, 1.0);
 }
 
 TEST(LiveNoHeap, Scripted) {

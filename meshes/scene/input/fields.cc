@@ -156,7 +156,7 @@ std::vector<Field<Scene>> make_scene_fields() {
            "kappa: stiffness F_t / D_t of the sticking contact over F_n / D_n; 1 as in the paper. Only the corrected formulation allows other values.", Tunable{.stage = TuningStage::force, .formulation = Formulation::corrected}},
 
       {"fast.formulation", "", any, "\"corrected\"", fast, choice({std::begin(formulation_words), std::end(formulation_words)}, +[](S& s) -> Formulation& { return s.fast.formulation; }), always,
-           "The paper's printed method, its corrected form, or the response model, which needs the file that `touchstone prepare` writes.", model},
+           "The paper's printed method, its corrected form, or the response model, which reads what `touchstone prepare` computes.", model},
       {"fast.triangles", "", between(12, 1e5), "3952", fast, +[](S& s) -> int& { return s.fast.triangles; }, always,
            "Triangles of the body's surface; their corners are the rest points compared. Times compare.instants at most 1e7."},
       {"fast.tool_samples", "", between(1, 1e5), "2000", fast, +[](S& s) -> int& { return s.fast.tool_samples; }, always,

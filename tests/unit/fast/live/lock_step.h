@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fast/live/device_loop.h"
+#include "fast/step/skeleton_engine.h"
 #include "support/press.h"
 
 #include <cstdint>

@@ -44,7 +44,7 @@ class ResponseEngineTest : public ::testing::Test {
     scene::write_file(file, scene::response_bytes(test::synthetic_response(scene_, surface()), identity()));
   }
 
-  test::TemporaryFolder folder_;
+  compare::testing::TemporaryFolder folder_;
   scene::Scene scene_ = test::ball_on_cube();
 };
 
@@ -61,6 +61,7 @@ TEST_F(ResponseEngineTest, RecordsTheContactInEquilibrium) {
 }
 
 TEST_F(ResponseEngineTest, TheTractionIsAPressureAlongTheBallsNormal) {
+  scene_.fast.triangles = 24000;
   ResponseEngine engine = this->engine();
   const scene::Pose pose = test::pressed(0.004);
   engine.step(pose);
@@ -78,9 +79,9 @@ TEST_F(ResponseEngineTest, TheTractionIsAPressureAlongTheBallsNormal) {
     EXPECT_LT(traction_pa.norm(), 1.3 * record.pressure_peak_pa);
     sum_n += rest.vertex_area_m2[static_cast<std::size_t>(i)] * traction_pa;
   }
-  EXPECT_GT(loaded, 3);
-  // Rest points are far apart, and their areas are those at rest.
-  EXPECT_NEAR(-sum_n.z(), engine.wrench().force_n.z(), 0.3 * engine.wrench().force_n.z());
+  EXPECT_GT(loaded, 40);
+  // By the areas at rest, of which a ball stretches those at its side.
+  EXPECT_NEAR(-sum_n.z(), engine.wrench().force_n.z(), 0.25 * engine.wrench().force_n.z());
 }
 
 TEST_F(ResponseEngineTest, NormalsFollowTheSurfaceAndComeBack) {
@@ -123,7 +124,8 @@ TEST_F(ResponseEngineTest, TellsWhoseTimeItTakes) {
   ResponseEngine engine = this->engine();
   engine.time_stages(true);
   engine.step(test::pressed(0.004));
-  for (const Stage stage : {Stage::detection, Stage::force, Stage::interpolation, Stage::local_factor, Stage::normals}) {
+  for (const Stage stage :
+       {Stage::detection, Stage::force, Stage::interpolation, Stage::local_factor, Stage::normals}) {
     EXPECT_GT(engine.stages().spent_ns(stage), 0) << stage_names[static_cast<std::size_t>(stage)];
   }
   EXPECT_EQ(engine.stages().spent_ns(Stage::skeleton), 0);
@@ -145,7 +147,7 @@ TEST_F(ResponseEngineTest, AMissingFileIsNamedWithTheCommandThatWritesIt) {
 
 TEST_F(ResponseEngineTest, RunsOverATrackFromItsFile) {
   store_response();
-  const Run run = fast::run(scene_);
+  const fast::Run run = fast::run(scene_);
   EXPECT_EQ(status_text(run.status), "ok");
   EXPECT_TRUE(run.beams.empty());
   EXPECT_EQ(run.regions_max, 1);
@@ -165,9 +167,7 @@ TEST_F(ResponseEngineTest, RunsOverATrackFromItsFile) {
   }
 }
 
-TEST_F(ResponseEngineTest, ReachesAsFarAsTheTool) {
-  EXPECT_NEAR(engine().tool_reach_m(), scene_.tool.radius_m, 1e-9);
-}
+TEST_F(ResponseEngineTest, ReachesAsFarAsTheTool) { EXPECT_NEAR(engine().tool_reach_m(), scene_.tool.radius_m, 1e-9); }
 
 }  // namespace
 }  // namespace touchstone::fast

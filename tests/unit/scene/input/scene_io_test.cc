@@ -145,8 +145,9 @@ TEST(SceneFile, RulesAcrossKeysAreReportedAtTheKey) {
 TEST(SceneFile, TheResponseModelIsRefusedWhereItCannotAnswer) {
   const std::string fast = "[fast]\nformulation = \"response\"\n";
   EXPECT_EQ(message_for("[tool]", fast + "[tool]"), "no error");
-  EXPECT_THAT(message_for("[tool]", fast + "[contact.friction]\nK = 1.0\nbeta = 1.0\nmu_D = 0.5\n[tool]"),
-              HasSubstr("a.toml:8:15: fast.formulation: the response model needs that the contact is without friction"));
+  EXPECT_THAT(
+      message_for("[tool]", fast + "[contact.friction]\nK = 1.0\nbeta = 1.0\nmu_D = 0.5\n[tool]"),
+      HasSubstr("a.toml:8:15: fast.formulation: the response model needs that the contact is without friction"));
 }
 
 TEST(SceneFile, AllFaultsComeAtOnceInOrder) {

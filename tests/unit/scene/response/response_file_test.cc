@@ -74,6 +74,7 @@ TEST_F(ResponseFile, RefusesNumbersThatAreNotFinite) {
 TEST_F(ResponseFile, NamesTheFile) {
   const compare::testing::TemporaryFolder folder;
   const auto file = response_path(folder.path(), "body");
+  std::filesystem::create_directories(file.parent_path());
   write_file(file, bytes_.substr(0, bytes_.size() - 8));
   EXPECT_THAT([&] { (void)read_response(file, "body"); },
               ThrowsMessage<InputError>(AllOf(HasSubstr(file.string()), HasSubstr("cut short"))));
