@@ -161,7 +161,10 @@ ContactTable::ContactTable(const scene::ToolTip& tip, const LocalShape& local, d
     const double dF_dD = 2.0 * E_star_pa * at.a_m * factor - linear_n * (strain.c1 + 2.0 * strain.c2 * x) * dx_dD;
     const double moment_m2 = i > 0 ? at.moment_m4 / at.sum_m2 : 0.0, a2_m2 = at.a_m * at.a_m;
     const double flat = a2_m2 > 0.0 ? (moment_m2 / a2_m2 - 1.0 / 5.0) / (1.0 / 3.0 - 1.0 / 5.0) : 0.0;
-    nodes_.push_back({linear_n * factor, dF_dD * 2.0 * s, at.a_m, std::clamp(flat, 0.0, 1.0), 0.0});
+    const double widening = tip.ball() ? strain.widening(x) : 1.0, between = std::clamp(flat, 0.0, 1.0);
+    // (1 - peaked) (3/2 - flat) + 5/2 peaked is the pressure in the middle over its mean.
+    const double peaked = tip.ball() ? (strain.peak(x) * widening * widening - 1.5 + between) / (1.0 + between) : 0.0;
+    nodes_.push_back({linear_n * factor, dF_dD * 2.0 * s, at.a_m, between, widening, peaked, 0.0});
   }
   if (tip.flat_radius_m > 0.0) nodes_[0].flat = 1.0;
   for (std::size_t i = 1; i < nodes_.size(); ++i) nodes_[i].energy_j = energy_j(i - 1, 1.0);
@@ -180,6 +183,8 @@ LocalContact ContactTable::at(double indentation_m) const noexcept {
   out.stiffness_n_per_m = (m0 + t * (2.0 * c2 + 3.0 * t * c3)) / (step_ * 2.0 * s);
   out.radius_m = low.radius_m + t * (high.radius_m - low.radius_m);
   out.flat = low.flat + t * (high.flat - low.flat);
+  out.widening = low.widening + t * (high.widening - low.widening);
+  out.peaked = low.peaked + t * (high.peaked - low.peaked);
   return out;
 }
 

@@ -31,9 +31,10 @@ struct LocalShape {
 /// A contact at one local indentation.
 struct LocalContact {
   double force_n = 0.0;
-  double stiffness_n_per_m = 0.0;  ///< dF / d(indentation)
-  double radius_m = 0.0;           ///< a
-  double flat = 0.0;               ///< pressure between a ball's (0) and a flat punch's (1), by its second moment
+  double stiffness_n_per_m = 0.0;       ///< dF / d(indentation)
+  double radius_m = 0.0;                ///< a
+  double flat = 0.0;                    ///< pressure between a ball's (0) and a flat punch's (1), by its second moment
+  double widening = 1.0, peaked = 0.0;  ///< of the pressure, as of SpreadLoad
 };
 
 class ContactTable {
@@ -54,7 +55,7 @@ class ContactTable {
   /// At even steps of s = sqrt(indentation), in which force and radius are smooth.
   struct Node {
     double force_n, slope;  ///< dF / ds
-    double radius_m, flat;
+    double radius_m, flat, widening, peaked;
     double energy_j;
   };
   /// Up to share t of the way from node i to the next.

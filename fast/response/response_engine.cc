@@ -13,16 +13,16 @@ namespace {
 
 using scene::Vec3;
 
-/// Traction on the body at a point under the tool, from its pressure over the load's plane.
+/// Traction on the body at a point under the tool, along the tool's normal. Pressure is force along the load per area
+/// across it, and so is the normal traction on a surface of any slope.
 Vec3 traction_pa(const ResponseModel& model, const ResponseContact& contact, const Vec3& x_m, const Vec3& axis) {
-  constexpr double steepest = 0.1;  // cosine between the tool's normal and its axis
   const double pressure_pa = spread_pressure_pa(contact.load, x_m);
   if (pressure_pa == 0.0) return Vec3::Zero();
   const Vec3 from_axis_m = x_m - contact.at.point_m, across_m = from_axis_m - from_axis_m.dot(axis) * axis;
   const double r_m = across_m.norm();
   const double slope = model.tip.slope(std::min(r_m, 0.99 * model.tip.reach_m()));
   const Vec3 out = (r_m > 0.0 ? Vec3(axis + slope / r_m * across_m) : axis).normalized();
-  return pressure_pa / std::max(out.dot(axis), steepest) * out;
+  return pressure_pa * out;
 }
 
 }  // namespace
@@ -70,10 +70,11 @@ scene::InstantRecord ResponseEngine::record(double time_s, const scene::Pose& to
   }
   record.pressure_peak_pa = spread_pressure_pa(contact.load, contact.load.center_m);
   record.support_force_n = state_.wrench.force_n;
+  const double radius_m = contact.load.widening * contact.load.radius_m;
   record.regions.push_back({.depth_m = depth_m,
                             .force_n = state_.wrench.force_n,
                             .torque_nm = state_.wrench.torque_nm,
-                            .area_m2 = std::numbers::pi * contact.load.radius_m * contact.load.radius_m});
+                            .area_m2 = std::numbers::pi * radius_m * radius_m});
   return record;
 }
 

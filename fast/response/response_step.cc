@@ -40,7 +40,7 @@ double body_energy_j(const ResponseModel& model, const LoadPath& path, double fo
 
 LocalContact local_contact(const ResponseModel& model, const GridWeights& weights, double indentation_m) noexcept {
   if (model.tables.size() == 1) return model.tables.front().at(indentation_m);
-  LocalContact out;
+  LocalContact out{.widening = 0.0};
   for (int k = 0; k < weights.count; ++k) {
     const auto [point, weight] = weights.terms[static_cast<std::size_t>(k)];
     const LocalContact one = model.tables[static_cast<std::size_t>(point)].at(indentation_m);
@@ -48,6 +48,8 @@ LocalContact local_contact(const ResponseModel& model, const GridWeights& weight
     out.stiffness_n_per_m += weight * one.stiffness_n_per_m;
     out.radius_m += weight * one.radius_m;
     out.flat += weight * one.flat;
+    out.widening += weight * one.widening;
+    out.peaked += weight * one.peaked;
   }
   return out;
 }
@@ -199,7 +201,7 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
   const scene::SurfaceQuery loaded =
       model.body->query(contact.at.point_m + moved[0] * grid.spacing_m[0] * grid.axes.col(0) +
                         moved[1] * grid.spacing_m[1] * grid.axes.col(1));
-  contact.load = {loaded.point_m, loaded.normal, law.force_n, law.radius_m, law.flat};
+  contact.load = {loaded.point_m, loaded.normal, law.force_n, law.radius_m, law.flat, law.widening, law.peaked};
   contact.energy_j = local_energy_j(model, weights, indentation_m) + contact.depth_m * law.force_n -
                      indentation_m * law.force_n - body_energy_j(model, path, law.force_n);
   state.wrench.force_n = law.force_n * n + lateral_n;

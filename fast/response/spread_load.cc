@@ -16,11 +16,12 @@ HalfSpace::HalfSpace(const scene::Material& material)
 
 double spread_pressure_pa(const SpreadLoad& load, const Vec3& x_m) noexcept {
   const Vec3 d_m = x_m - load.center_m;
-  const double a2 = load.radius_m * load.radius_m, below_m = d_m.dot(load.normal);
+  const double a_m = load.widening * load.radius_m, a2 = a_m * a_m, below_m = d_m.dot(load.normal);
   const double r2 = d_m.squaredNorm() - below_m * below_m;
   if (!(r2 < a2)) return 0.0;
   const double rim = std::sqrt(std::max(1.0 - r2 / a2, 1e-6));
-  return load.force_n / (std::numbers::pi * a2) * (1.5 * (1.0 - load.flat) * rim + 0.5 * load.flat / rim);
+  const double spread = 1.5 * (1.0 - load.flat) * rim + 0.5 * load.flat / rim;
+  return load.force_n / (std::numbers::pi * a2) * ((1.0 - load.peaked) * spread + 2.5 * load.peaked * rim * rim * rim);
 }
 
 Vec3 spread_displacement_m(const SpreadLoad& load, const HalfSpace& half_space, const Vec3& x_m) noexcept {

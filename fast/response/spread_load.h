@@ -22,6 +22,9 @@ struct SpreadLoad {
   double force_n = 0.0;
   double radius_m = 0.0;  ///< a
   double flat = 0.0;      ///< share of the flat punch's pressure
+  // Of the pressure alone, by finite strain:
+  double widening = 1.0;  ///< radius of the contact over a
+  double peaked = 0.0;    ///< share of a pressure as (1 - r^2)^(3/2)
 };
 
 /// Elastic numbers of the formulas.

@@ -98,6 +98,21 @@ TEST(ContactTable, FiniteStrainTakesItsFactor) {
   EXPECT_NEAR(force_n / linear_n, 1.0 - 0.1 * x - 0.3 * x * x, 1e-5);
 }
 
+TEST(ContactTable, FiniteStrainMovesThePressureOfABallAlone) {
+  const FiniteStrain strain{.k1 = 0.1, .p1 = -0.4, .p2 = 0.2};
+  const ContactTable table(ball_tip(0.01), {}, E_star_pa, strain);
+  for (const double D : {0.0005, 0.004}) {
+    const double x = D * (0.03 - D) / 3.0 / (0.02 - D) / std::sqrt(D * (0.02 - D));
+    const LocalContact contact = table.at(D);
+    EXPECT_NEAR(contact.widening, 1.0 + 0.1 * x, 1e-4);
+    const double over_mean = (1.0 - contact.peaked) * (1.5 - contact.flat) + 2.5 * contact.peaked;
+    EXPECT_NEAR(over_mean, strain.peak(x) * contact.widening * contact.widening, 1e-3);
+  }
+  const LocalContact flat = ContactTable(flat_tip(0.0045, 0.0015), {}, E_star_pa, strain).at(0.001);
+  EXPECT_EQ(flat.widening, 1.0);
+  EXPECT_EQ(flat.peaked, 0.0);
+}
+
 TEST(LocalShape, OfSimpleBodies) {
   const auto cube = scene::body_shape(test::ball_on_cube().body);
   const LocalShape flat = local_shape(*cube, {0.0, 0.0, 0.06}, scene::Vec3::UnitZ(), 0.01);

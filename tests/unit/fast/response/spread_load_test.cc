@@ -77,7 +77,7 @@ TEST(SpreadLoad, PressureCarriesTheForce) {
   const Vec3 side = normal.unitOrthogonal();
   const double a = 0.004, force_n = 7.0;
   for (const double flat : {0.0, 0.4, 1.0}) {
-    const SpreadLoad load{center_m, normal, force_n, a, flat};
+    const SpreadLoad load{center_m, normal, force_n, a / 1.1, flat, 1.1, 0.2 - 0.3 * flat};
     double sum_n = 0.0;
     constexpr int steps = 4000;
     for (int i = 0; i < steps; ++i) {  // r = a sin(angle), where the flat punch's pressure is smooth
