@@ -3,6 +3,7 @@
 #include "reference/contact/contact_problem.h"
 #include "reference/contact/load_path.h"
 #include "reference/mesh/sampling.h"
+#include "reference/run/inside.h"
 #include "reference/run/model_choice.h"
 #include "reference/run/run.h"
 #include "reference/solver.h"
@@ -12,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <unistd.h>
+#include <cmath>
 #include <filesystem>
 
 namespace touchstone::reference {
@@ -143,6 +145,31 @@ TEST_F(UncertaintyBand, HoldsWhatFewLoadStepsDoToFriction) {
   EXPECT_GT(error_n, 1e-3 * many.instants.back().force_n().norm());
   EXPECT_LT(error_n, 1.5 * 4.0 / 3.0 * load_step_rel * many.instants.back().force_n().norm());
   EXPECT_LE(error_n, few.instants.back().force_uncertainty_n);
+}
+
+TEST_F(UncertaintyBand, HoldsTheErrorAtProbes) {
+  scene_.probes = {{"below", {0.0, 0.0, 0.057}},
+                   {"beside", {0.003, 0.002, 0.055}},
+                   {"deep", {0.0, 0.0, 0.03}},
+                   {"surface", {0.01, 0.0, 0.03 + std::sqrt(8e-4)}}};
+  const Result fine = solved("fine", 0.0005, 3);
+  const auto exact = inside(scene_, fine, root_ / "fine")->probes();
+  const Result coarse = solved("coarse", 0.003, 3);
+  const auto reported = inside(scene_, coarse, root_ / "coarse")->probes();
+  for (std::size_t i = 1; i < reported.size(); ++i) {
+    const Eigen::Matrix<double, 9, Eigen::Dynamic> error_pa = reported[i].values.stress_pa - exact[i].values.stress_pa;
+    const Eigen::Matrix3Xd error_m = reported[i].values.displacement_m - exact[i].values.displacement_m;
+    for (Eigen::Index k = 0; k < error_m.cols(); ++k) {
+      const std::string where = scene_.probes[static_cast<std::size_t>(k)].name + ", instant " + std::to_string(i + 1);
+      EXPECT_LE(error_m.col(k).norm(), reported[i].displacement_uncertainty_m[k]) << where;
+      EXPECT_LE(error_pa.col(k).norm(), reported[i].stress_uncertainty_pa[k]) << where;
+      EXPECT_LE(std::abs(pressure_pa(error_pa)[k]), reported[i].pressure_uncertainty_pa[k]) << where;
+    }
+    // An uncertainty that is too large would say nothing.
+    if (i + 1 == reported.size()) {
+      EXPECT_LT(reported[i].stress_uncertainty_pa[0], 0.2 * reported[i].values.stress_pa.col(0).norm());
+    }
+  }
 }
 
 TEST_F(UncertaintyBand, HoldsTheErrorInSpace) {
