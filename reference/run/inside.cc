@@ -173,7 +173,8 @@ class StoredInside : public Inside {
 }  // namespace
 
 Eigen::RowVectorXd pressure_pa(const Eigen::Matrix<double, 9, Eigen::Dynamic>& stress_pa) {
-  return -(stress_pa.row(0) + stress_pa.row(4) + stress_pa.row(8)) / 3.0;
+  // Not minus zero at rest.
+  return (0.0 - (stress_pa.row(0) + stress_pa.row(4) + stress_pa.row(8)).array() / 3.0).matrix();
 }
 
 Eigen::RowVectorXd von_mises_pa(const Eigen::Matrix<double, 9, Eigen::Dynamic>& stress_pa) {
