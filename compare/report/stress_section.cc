@@ -19,11 +19,8 @@ constexpr int section_columns = 97, section_rows = 41;  // odd: one column at th
 constexpr int section_colours = 32;
 constexpr int section_px = 560, section_drawing_px = 400, section_bar_px = 56;
 
-/// From 0 to 1, with small steps first.
-double graded(double share) {
-  constexpr double strength = 3.0;
-  return std::sinh(strength * share) / std::sinh(strength);
-}
+/// From 0 to 1, with small steps at both ends: at the contact, and where a round body's outline is steep.
+double graded(double share) { return share * share * (3.0 - 2.0 * share); }
 
 /// Where a line of constant x cuts a closed convex outline: lowest and highest z.
 std::pair<double, double> z_range_m(const Outlines& outlines_m, double x_m) {

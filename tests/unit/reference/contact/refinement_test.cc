@@ -293,7 +293,11 @@ TEST_F(RefinementTest, TheFirstEstimateIsOfAllMeshesAndTheSensitivities) {
   };
   EXPECT_THROW((void)run({.store = {}, .progress = {}, .stop = &stop}), Interrupted);
   ASSERT_GT(sensitivities_s, 0.05 * meshes_s);
-  EXPECT_NEAR(first_s.value(), meshes_s + sensitivities_s, 0.01 * sensitivities_s);
+  // The first instant, which is apart, counts as a load step until it is over.
+  const double step_s =
+      expected_cost({.dim = 2, .unknowns = unknowns_of(coarsest), .load_steps = 1}, ranks::threads()).seconds;
+  ASSERT_LT(step_s, 0.5 * sensitivities_s);
+  EXPECT_NEAR(first_s.value(), meshes_s + sensitivities_s + step_s, 0.01 * sensitivities_s);
 }
 
 /// Without friction the answer does not depend on where Newton starts: a level followed along its own load path ends
