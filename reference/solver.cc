@@ -151,6 +151,12 @@ scene::Plan plan(const Scene& scene) {
         std::to_string(inclusions) + " of another material, each integration point has the material at its place",
         "small cells at their surfaces");
   }
+  if (!scene.probes.empty()) {
+    std::string names;
+    for (const scene::Probe& probe : scene.probes) names += (names.empty() ? "" : ", ") + probe.name;
+    add("probes", true, "displacement, stress and pressure with their uncertainty in probes.csv at " + names,
+        "read from the solutions");
+  }
   const int levels = scene.reference.levels.value_or(3);
   std::string uncertainty = "unknown with fewer than three meshes";
   if (!scene.reference.levels) {

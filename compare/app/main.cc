@@ -74,6 +74,10 @@ int run_program(int argc, char** argv) {
                 "end a reference solve after this time, finished steps are kept (default 60; none with --level)")
         .range(0.01, 1e6);
   };
+  const auto add_volume = [&](fast::Command command) {
+    command.flag("--volume", reference.volume,
+                 "also stress, pressure, J - 1 and displacement inside the reference's body: volume.pvd for ParaView");
+  };
   const auto add_require_error = [&](fast::Command command) {
     command
         .option(
@@ -90,6 +94,7 @@ int run_program(int argc, char** argv) {
                       "meshes/scenes/hertz-sphere.toml --error 0.005", compare::run_reference);
   add_reference(solved);
   add_require_error(solved);
+  add_volume(solved);
   compare::CompareOptions compare_options;
   fast::Command compared = add_with_folder(
       "compare", "both solvers, then force and shape errors: tables, VTK, report",
@@ -104,6 +109,7 @@ int run_program(int argc, char** argv) {
                 "every plot of the report also as SVG and PDF, in the folder's plots/");
   add_reference(compared);
   add_require_error(compared);
+  add_volume(compared);
   add_store(compare::add_prepare_verb(program, options, reference));
   compare::StudyOptions study_options;
   compare::add_study_verb(program, study_options);

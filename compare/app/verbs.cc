@@ -5,10 +5,12 @@
 #include "compare/model/engine_model.h"
 #include "compare/model/skeleton_model.h"
 #include "compare/report/fast_report.h"
+#include "compare/report/inside_files.h"
 #include "compare/report/plot_files.h"
 #include "compare/report/vtk_out.h"
 #include "compare/solve/reference_run.h"
 #include "fast/command/results.h"
+#include "reference/run/inside.h"
 #include "reference/solver.h"
 #include "scene/input/scene_io.h"
 #include "scene/output/results.h"
@@ -75,7 +77,9 @@ int run_reference(const fast::VerbOptions& options, const ReferenceOptions& refe
     write_reference(folder, result, manifest);
     write_reference_surfaces(folder, surface, result);
     write_tool(folder, scene.tool, result.instants);
-    std::cout << reference_text(result) << "Results: " << folder.string() << '\n';
+    const auto inside = reference::inside(scene, result, reference.store);
+    const std::string files = write_inside(folder, scene, result, *inside, reference.volume);
+    std::cout << reference_text(result) << files << "Results: " << folder.string() << '\n';
     return exit_of(result, reference);
   });
 }
@@ -104,12 +108,16 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
     manifest.entries.emplace_back("linear_solver", result.linear_solver);
     manifest.entries.emplace_back("reference_key", result.key);
     manifest.entries.emplace_back("command_line", command_text(call, ""));
-    const Comparison comparison = write_comparison(folder, scene, run, result, manifest, judged, call, more.plots);
+    const auto inside = reference::inside(given, result, reference.store);
+    const Comparison comparison =
+        write_comparison(folder, scene, run, result, manifest, judged, call, more.plots, inside.get());
+    const std::string files = write_inside(folder, given, result, *inside, reference.volume);
     if (more.plots) {
       std::cout << "Plots: " << (folder / "plots").string() << " (SVG"
                 << (has_pdf() ? " and PDF" : "; PDF needs a build with librsvg, Debian's librsvg2-dev") << ")\n";
     }
-    std::cout << comparison.text << refinement_text(result) << "Report: " << (folder / "report.html").string() << '\n';
+    std::cout << comparison.text << refinement_text(result) << files << "Report: " << (folder / "report.html").string()
+              << '\n';
     return exit_of(result, reference);
   });
 }

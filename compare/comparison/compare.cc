@@ -48,7 +48,8 @@ std::vector<scene::Column> curve_columns(const fast::Run& run, const reference::
 
 Comparison write_comparison(const std::filesystem::path& folder, const scene::Scene& scene, const fast::Run& run,
                             const reference::Result& result, const scene::Manifest& manifest,
-                            const Contenders& contenders, const Call& call, bool plots) {
+                            const Contenders& contenders, const Call& call, bool plots,
+                            const reference::Inside* inside) {
   const Errors errors = compute_errors(scene, run, result.instants);
   const Plans plans{fast::plan(scene), reference::plan(scene)};
   const Verdict told = verdict(scene, run, result, errors, call);
@@ -59,7 +60,7 @@ Comparison write_comparison(const std::filesystem::path& folder, const scene::Sc
                                                         .pressure_rel_l2 = errors.contact_pressure_rel_l2,
                                                         .pressure_peak_rel = errors.contact_pressure_peak_rel,
                                                         .trouble = trouble_of(run)});
-  const ComparisonDrawings drawings = comparison_drawings(scene, run, result, errors);
+  const ComparisonDrawings drawings = comparison_drawings(scene, run, result, errors, inside);
   Comparison comparison{make_figures(errors, result, fast::figures(run)),
                         told.text() + model_table_text(models) + "\n"};
   for (scene::Figure& figure : model_figures(models)) comparison.figures.push_back(std::move(figure));

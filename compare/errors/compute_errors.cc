@@ -231,6 +231,8 @@ Errors compute_errors(const scene::Scene& scene, const scene::Answer& answer,
   compare_forces(answer, reference, errors);
   compare_contacts(scene, answer, reference, errors);
   compare_shapes(scene, answer, reference, errors);
+  const Eigen::VectorXd moved_m = reference[errors.deepest].displacement_m.colwise().norm();
+  errors.shape_points_moved = static_cast<int>((moved_m.array() > Errors::moved_share * moved_m.maxCoeff()).count());
   return errors;
 }
 

@@ -80,6 +80,10 @@ struct Errors {
 
   /// sqrt(sum over instants and rest points of A |u_f - u_r|^2 / the same of A |u_r|^2). Uncertainty: of u_r, same sum.
   Measure shape_rel_l2;
+  /// Of the rest points those that the reference moves by more than moved_share of its largest displacement, at the
+  /// deepest instant: where they are few, the shape's errors rest on them alone.
+  int shape_points_moved = 0;
+  static constexpr double moved_share = 0.1;
   /// The same sums over rest points within, and beyond, fast.r_R_m of a contact point, instants in contact.
   /// Contact points are the points of the rest surface nearest to the middles of the reference's regions, to the tool's
   /// centre where it has none; the distance is straight, at rest, to the nearest.

@@ -41,6 +41,10 @@ constexpr Meaning meanings[] = {
     {"force.peak_reference_n", "Largest force on the tool, reference.", false, Worst::none},
     {"shape.rel_l2",
      "Displacement error over displacement, root mean square over the whole surface by area and over all instants."},
+    {"shape.points_moved",
+     "Rest points that the reference moves by more than 10 % of its largest displacement, at the deepest instant: few "
+     "of them say little about the shape.",
+     true, Worst::none},
     {"shape.max_over_depth", "Largest displacement error of any point, relative to the depth at that instant."},
     {"shape.inside_r_rel_l2", "As shape.rel_l2, for points nearer to the contact than the local radius fast.r_R_m."},
     {"shape.outside_r_rel_l2", "As shape.rel_l2, for points farther away than that."},
@@ -207,6 +211,7 @@ scene::Figures error_figures(const Errors& errors) {
   out.number("force.peak_fast_n", errors.force_peak_fast_n, "N");
   out.number("force.peak_reference_n", errors.force_peak_reference_n, "N");
   out.measure("shape.rel_l2", errors.shape_rel_l2);
+  out.number("shape.points_moved", errors.shape_points_moved);
   out.measure("shape.max_over_depth", errors.shape_max_over_depth);
   out.measure("shape.inside_r_rel_l2", errors.shape_inside_r_rel_l2);
   out.measure("shape.outside_r_rel_l2", errors.shape_outside_r_rel_l2);

@@ -2,6 +2,7 @@
 
 #include "compare/format/text.h"
 #include "compare/report/picture.h"
+#include "compare/report/stress_section.h"
 
 #include <fmt/format.h>
 
@@ -191,7 +192,7 @@ std::vector<Drawing> ComparisonDrawings::all() const {
 const std::vector<std::string>& ComparisonDrawings::names() {
   static const std::vector<std::string> all_names = {
       "force-over-depth", "force-over-time", "force-logarithmic",   "friction", "force-error", "shape-error",
-      "section",          "section-contact", "shape-largest-error", "traction", "bodies"};
+      "section",          "section-contact", "shape-largest-error", "traction", "stress",      "bodies"};
   return all_names;
 }
 
@@ -232,7 +233,7 @@ Plot force_plot(const Errors& errors) {
 }
 
 ComparisonDrawings comparison_drawings(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
-                                       const Errors& errors) {
+                                       const Errors& errors, const reference::Inside* inside) {
   const Abscissa depth = depth_of(errors), time = time_of(errors);
   const bool deeper = only_deeper(depth);
   const Abscissa &first = deeper ? depth : time, &second = deeper ? time : depth;
@@ -258,6 +259,13 @@ ComparisonDrawings comparison_drawings(const scene::Scene& scene, const fast::Ru
       largest_error(errors, first)};
   if (const std::optional<Plot> plot = traction_plot(run.surface, result, errors.deepest)) {
     out.shapes.push_back({"traction", traction_caption(result.instants[errors.deepest]), to_svg(*plot)});
+  }
+  if (inside) {
+    const scene::InstantRecord& record = result.instants[errors.deepest];
+    const SectionGrid grid = section_grid(run.surface, record.tool);
+    const reference::PointValues values = inside->at(grid.rest_m, errors.deepest);
+    out.shapes.push_back(
+        {"stress", stress_section_caption(grid, values), stress_section_svg(scene, run.surface, record, grid, values)});
   }
   const std::vector<std::string> bodies = half_cut_svgs(scene, run, result, errors.deepest);
   out.bodies = {{"reference", "", bodies[0]}, {"fast", "", bodies[1]}, {"error", "", bodies[2]}};

@@ -5,6 +5,7 @@
 #include "compare/format/svg_plot.h"
 #include "compare/report/fast_drawings.h"
 #include "fast/run/run.h"
+#include "reference/run/inside.h"
 #include "reference/solver.h"
 
 #include <optional>
@@ -28,8 +29,10 @@ struct ComparisonDrawings {
   [[nodiscard]] static const std::vector<std::string>& names();
 };
 
+/// @param inside  of the result, for the stress in the section; nullptr: not drawn
 [[nodiscard]] ComparisonDrawings comparison_drawings(const scene::Scene& scene, const fast::Run& run,
-                                                     const reference::Result& result, const Errors& errors);
+                                                     const reference::Result& result, const Errors& errors,
+                                                     const reference::Inside* inside = nullptr);
 
 /// Force of both solvers with the reference's uncertainty, over depth or, where that does not only grow, over time.
 [[nodiscard]] Plot force_plot(const Errors& errors);

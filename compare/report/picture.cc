@@ -136,34 +136,6 @@ std::string label(double x, double y, const std::string& anchor, const std::stri
                      anchor, extra, escape_xml(text));
 }
 
-/// The quantity that the colours show.
-struct ColourScale {
-  ColourMap map;
-  double full_m;  ///< value of the last colour
-  std::string what;
-  bool clipped = false;  ///< some values exceed the scale and have its last colour
-};
-
-/// A horizontal colour bar, in millimetres.
-std::string colour_bar(const ColourScale& scale, double left_px, double top_px, double width_px) {
-  constexpr int strips = 48;
-  std::string out;
-  for (int i = 0; i < strips; ++i) {
-    out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"11\" fill=\"{}\"/>\n",
-                       left_px + width_px * i / strips, top_px, width_px / strips + 0.5,
-                       hex(colour_of(scale.map, (i + 0.5) / strips), 1.0));
-  }
-  const double full_mm = 1e3 * scale.full_m;
-  for (const double tick : nice_ticks(0.0, full_mm, 5)) {
-    const double x = left_px + width_px * tick / full_mm;
-    out += fmt::format("<line x1=\"{0:.1f}\" y1=\"{1:.1f}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" stroke=\"currentColor\"/>\n",
-                       x, top_px + 11, top_px + 15);
-    out += label(x, top_px + 27, "middle", number_text(tick));
-  }
-  return out + label(left_px + 0.5 * width_px, top_px + 44, "middle",
-                     fmt::format("{} [mm]{}", scale.what, scale.clipped ? "; larger values have the last colour" : ""));
-}
-
 double largest(const Eigen::VectorXd& values) {
   double found = 0.0;
   for (const double v : values) found = std::max(found, std::isfinite(v) ? v : 0.0);
@@ -206,7 +178,7 @@ struct HalfCut {
         "{3:.0f}\" "
         "overflow=\"hidden\">\n",
         0.0, view_top_px - 6, static_cast<double>(width_px), view_px + 12);
-    out += half_body(surface, displacement_m, y_m, shade_by_m, scale.full_m, scale.map, camera);
+    out += half_body(surface, displacement_m, y_m, shade_by_m, scale.full, scale.map, camera);
     if (!inclusions_m.empty()) {
       out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.4\" stroke-dasharray=\"6 3\"/>\n",
                          camera.path(inclusions_m), colour(Look::inclusion));
@@ -282,6 +254,28 @@ const std::vector<std::array<int, 3>>& colour_table(ColourMap map) {
                                                         {229, 80, 100},  {181, 54, 122},  {129, 37, 129},
                                                         {79, 18, 123},   {28, 16, 68}};
   return map == ColourMap::displacement ? viridis : magma;
+}
+
+std::string colour_at(ColourMap map, double share) { return hex(colour_of(map, share), 1.0); }
+
+std::string colour_bar(const ColourScale& scale, double left_px, double top_px, double width_px) {
+  constexpr int strips = 48;
+  std::string out;
+  for (int i = 0; i < strips; ++i) {
+    out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"11\" fill=\"{}\"/>\n",
+                       left_px + width_px * i / strips, top_px, width_px / strips + 0.5,
+                       colour_at(scale.map, (i + 0.5) / strips));
+  }
+  const double full = scale.per_unit * scale.full;
+  for (const double tick : nice_ticks(0.0, full, 5)) {
+    const double x = left_px + width_px * tick / full;
+    out += fmt::format("<line x1=\"{0:.1f}\" y1=\"{1:.1f}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" stroke=\"currentColor\"/>\n",
+                       x, top_px + 11, top_px + 15);
+    out += label(x, top_px + 27, "middle", number_text(tick));
+  }
+  return out + label(left_px + 0.5 * width_px, top_px + 44, "middle",
+                     fmt::format("{} [{}]{}", scale.what, scale.unit,
+                                 scale.clipped ? "; larger values have the last colour" : ""));
 }
 
 double tool_shown_below_m(const scene::Surface& surface) {

@@ -21,6 +21,20 @@ enum class ColourMap { displacement, error };
 /// pale.
 [[nodiscard]] const std::vector<std::array<int, 3>>& colour_table(ColourMap map);
 
+/// What the colours of a drawing show.
+struct ColourScale {
+  ColourMap map;
+  double full;  ///< value of the last colour, SI; the first one's is zero
+  std::string what;
+  bool clipped = false;     ///< some values exceed the scale and have its last colour
+  std::string unit = "mm";  ///< of the ticks
+  double per_unit = 1e3;    ///< the ticks' numbers over the SI values
+};
+/// "#rrggbb" at a share of the scale.
+[[nodiscard]] std::string colour_at(ColourMap map, double share);
+/// A horizontal bar, its ticks and its title below, 48 px high, as parts of an `<svg>` element.
+[[nodiscard]] std::string colour_bar(const ColourScale& scale, double left_px, double top_px, double width_px);
+
 /// Three half-cut bodies: the reference and the fast model coloured by how far each point moved, on one scale, and the
 /// reference's shape coloured by how far the fast model's points are from there. The body is cut at the tool's centre,
 /// so that the tool does not hide the dimple; the tool's own cut is drawn as an outline.

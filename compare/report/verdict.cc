@@ -188,28 +188,47 @@ Reason friction_paragraph(const Errors& errors) {
   return {"Friction", text + ".", slip_text(errors)};
 }
 
+/// Fewer points than this say little about a shape.
+constexpr int few_points = 10;
+
+/// On how many points the shape's error rests, where they are few.
+std::string few_points_text(const Errors& errors) {
+  const int moved = errors.shape_points_moved;
+  if (moved >= few_points) return "";
+  return fmt::format(
+      " It rests on {} point{} of the surface: the others move by less than {} of the largest displacement. More "
+      "fast.triangles give more points.",
+      moved, moved == 1 ? "" : "s", percent_text(Errors::moved_share));
+}
+
 std::string shape_sentence(const Errors& errors) {
   if (!errors.shape_rel_l2.value)
     return "The reference's body does not move, so a relative shape error has no meaning.";
   const double error = *errors.shape_rel_l2.value;
   if (!errors.shape_rel_l2.distinguishable()) {
     return fmt::format(
-        "The deformed shapes are not distinguishable: they differ by {} of the displacement, and the reference's "
-        "uncertainty is "
-        "{}.",
-        percent_text(error), percent_text(*errors.shape_rel_l2.uncertainty));
+               "The deformed shapes are not distinguishable: they differ by {} of the displacement, and the "
+               "reference's "
+               "uncertainty is "
+               "{}.",
+               percent_text(error), percent_text(*errors.shape_rel_l2.uncertainty)) +
+           few_points_text(errors);
   }
   const std::string known = errors.shape_rel_l2.uncertainty ? " ± " + percent_text(*errors.shape_rel_l2.uncertainty)
                                                             : std::string(" (uncertainty unknown)");
   if (error > 1.0) {
     return fmt::format(
-        "The fast model's shape error is {}{} of the displacement. That is worse than no deformation: a surface that "
-        "never moves has an error of 100{}%.",
-        percent_text(error), known, no_break);
+               "The fast model's shape error is {}{} of the displacement. That is worse than no deformation: a surface "
+               "that "
+               "never moves has an error of 100{}%.",
+               percent_text(error), known, no_break) +
+           few_points_text(errors);
   }
   return fmt::format(
-      "The fast model's shape error is {}{} of the displacement; a surface that never moves has an error of 100{}%.",
-      percent_text(error), known, no_break);
+             "The fast model's shape error is {}{} of the displacement; a surface that never moves has an error of "
+             "100{}%.",
+             percent_text(error), known, no_break) +
+         few_points_text(errors);
 }
 
 /// Mean ratio of the fast model's displacement to the reference's: sum A u_f.u_r / sum A u_r.u_r. 1 for equal

@@ -49,24 +49,16 @@ void add_region(vtkPolyData* data, const char* name, const std::vector<bool>& to
   data->GetPointData()->AddArray(array);
 }
 
-/// Writes <name>_0000.vtp ..., one file per instant, and the collection <name>.pvd.
-/// @param at  the surface at an instant
-void write_series(const std::filesystem::path& folder, const std::string& name, const scene::Instants& instants,
-                  const std::function<vtkSmartPointer<vtkPolyData>(std::size_t)>& at) {
-  const auto file_name = [&](std::size_t instant) { return fmt::format("{}_{:04}.vtp", name, instant); };
+/// Writes <name>_0000.<ending> ..., one file per instant, and the collection <name>.pvd.
+/// @param bytes  of the file of an instant
+void write_series(const std::filesystem::path& folder, const std::string& name, const std::string& ending,
+                  const scene::Instants& instants, const std::function<std::string(std::size_t)>& bytes) {
+  const auto file_name = [&](std::size_t instant) { return fmt::format("{}_{:04}.{}", name, instant, ending); };
   std::string collection =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  "
       "<Collection>\n";
   for (std::size_t t = 0; t < instants.size(); ++t) {
-    const vtkSmartPointer<vtkPolyData> data = at(t);
-    vtkNew<vtkXMLPolyDataWriter> writer;
-    writer->SetInputData(data);
-    writer->SetDataModeToBinary();
-    writer->SetCompressorTypeToZLib();
-    writer->SetCompressionLevel(1);
-    writer->WriteToOutputStringOn();
-    writer->Write();
-    scene::write_file(folder / file_name(t), writer->GetOutputString());
+    scene::write_file(folder / file_name(t), bytes(t));
     collection +=
         fmt::format("    <DataSet timestep=\"{:.17g}\" part=\"0\" file=\"{}\"/>\n", instants[t].time_s, file_name(t));
   }
@@ -75,11 +67,28 @@ void write_series(const std::filesystem::path& folder, const std::string& name, 
   }
 }
 
+/// The same of surfaces.
+/// @param at  the surface at an instant
+void write_surface_series(const std::filesystem::path& folder, const std::string& name, const scene::Instants& instants,
+                          const std::function<vtkSmartPointer<vtkPolyData>(std::size_t)>& at) {
+  write_series(folder, name, "vtp", instants, [&](std::size_t t) {
+    vtkNew<vtkXMLPolyDataWriter> writer;
+    const vtkSmartPointer<vtkPolyData> data = at(t);
+    writer->SetInputData(data);
+    writer->SetDataModeToBinary();
+    writer->SetCompressorTypeToZLib();
+    writer->SetCompressionLevel(1);
+    writer->WriteToOutputStringOn();
+    writer->Write();
+    return writer->GetOutputString();
+  });
+}
+
 /// Writes the body's rest surface; `add_arrays(instant, data)` adds its point arrays.
 void write_body(const std::filesystem::path& folder, const scene::Surface& surface, const scene::Instants& instants,
                 const std::function<void(std::size_t, vtkPolyData*)>& add_arrays) {
   const vtkSmartPointer<vtkPolyData> rest = polydata_of(surface.points_m, surface.triangles);
-  write_series(folder, "surface", instants, [&](std::size_t t) {
+  write_surface_series(folder, "surface", instants, [&](std::size_t t) {
     auto data = vtkSmartPointer<vtkPolyData>::New();
     data->ShallowCopy(rest);
     add_arrays(t, data);
@@ -109,7 +118,7 @@ void write_surfaces(const std::filesystem::path& folder, const fast::Run& run, c
 
 void write_tool(const std::filesystem::path& folder, const scene::Tool& tool, const scene::Instants& instants) {
   const scene::Surface own = scene::tool_surface(tool, vtk_tool_triangles);
-  write_series(folder, "tool", instants, [&](std::size_t t) {
+  write_surface_series(folder, "tool", instants, [&](std::size_t t) {
     const scene::Pose& pose = instants[t].tool;
     return polydata_of((pose.orientation.toRotationMatrix() * own.points_m).colwise() + pose.position_m, own.triangles);
   });
@@ -129,6 +138,11 @@ void write_reference_surfaces(const std::filesystem::path& folder, const scene::
     add_numbers(data, "displacement_uncertainty_m", result.instants[t].displacement_uncertainty_m);
     add_traction(data, result.instants[t], "traction");
   });
+}
+
+void write_volume(const std::filesystem::path& folder, const scene::Instants& instants,
+                  const reference::Inside& inside) {
+  write_series(folder, "volume", "vtu", instants, [&](std::size_t t) { return inside.volume_file(t); });
 }
 
 }  // namespace touchstone::compare

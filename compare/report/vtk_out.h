@@ -3,6 +3,7 @@
 
 #include "compare/errors/errors.h"
 #include "fast/run/run.h"
+#include "reference/run/inside.h"
 #include "reference/solver.h"
 
 #include <filesystem>
@@ -31,5 +32,10 @@ void write_fast_surfaces(const std::filesystem::path& folder, const fast::Run& r
 /// @param surface the rest points the result was asked for
 void write_reference_surfaces(const std::filesystem::path& folder, const scene::Surface& surface,
                               const reference::Result& result);
+
+/// Writes the inside of the reference's body at each instant: volume_0000.vtu ... and volume.pvd, see
+/// reference::Inside::volume_file.
+void write_volume(const std::filesystem::path& folder, const scene::Instants& instants,
+                  const reference::Inside& inside);
 
 }  // namespace touchstone::compare

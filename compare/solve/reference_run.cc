@@ -30,6 +30,7 @@ std::string options_text(const ReferenceOptions& options) {
   if (options.error) text += fmt::format(" --error {}", *options.error);
   if (options.memory_gib) text += fmt::format(" --memory-gib {}", *options.memory_gib);
   if (options.minutes) text += fmt::format(" --minutes {}", *options.minutes);
+  if (options.volume) text += " --volume";
   return text;
 }
 

@@ -21,6 +21,7 @@ struct ReferenceOptions {
   std::optional<double> error = {};                     ///< in place of the scene's levels or error
   std::optional<double> memory_gib = {};                ///< limit of one solve, as the next
   std::optional<double> minutes = {};  ///< absent: default_minutes, and no limit where a number of meshes is asked for
+  bool volume = false;                 ///< also write the inside of the body
   std::optional<double> require_error = {};  ///< uncertainty of force and shape that the exit code depends on
 };
 

@@ -284,6 +284,11 @@ const dealii::AffineConstraints<double>& Discretisation<dim>::hanging_nodes() co
   return parts_->hanging;
 }
 
+template <int dim>
+const dealii::Mapping<dim, dim>& Discretisation<dim>::mapping() const {
+  return parts_->mapping;
+}
+
 template class Discretisation<2>;
 template class Discretisation<3>;
 

@@ -21,6 +21,8 @@ template <int, int>
 class Triangulation;
 template <int, int>
 class DoFHandler;
+template <int, int>
+class Mapping;
 template <typename>
 class AffineConstraints;
 }  // namespace dealii
@@ -111,6 +113,8 @@ class Discretisation {
 
   [[nodiscard]] const dealii::DoFHandler<dim, dim>& dof_handler() const;
   [[nodiscard]] const dealii::AffineConstraints<double>& hanging_nodes() const;
+  /// From the grid's cells to those of the body at rest.
+  [[nodiscard]] const dealii::Mapping<dim, dim>& mapping() const;
 
  private:
   struct Parts;

@@ -60,7 +60,7 @@ Element<dim>::Element(const MixedMaterial& body, const std::vector<MixedMaterial
 
 template <int dim>
 bool Element<dim>::evaluate(const CellGeometry<dim>& cell, const Nodal& u_m, const Pressure& p_pa, Stiffness stiffness,
-                            CellResult<dim>& out, const Materials* materials) const {
+                            CellResult<dim>& out, const Materials* materials, PointStates* at_points) const {
   const bool with_tangent = stiffness != Stiffness::none;
   constexpr int padded = (nodes + 3) / 4 * 4;
   constexpr int pressures = CellResult<dim>::pressures;
@@ -154,6 +154,7 @@ bool Element<dim>::evaluate(const CellGeometry<dim>& cell, const Nodal& u_m, con
 
     const Eigen::Matrix<double, nodes, dim> gradients = G * law.F_inverse.template topLeftCorner<dim, dim>();
     const Eigen::Matrix3d tau = law.tau_iso_pa + law.pJ_pa * Eigen::Matrix3d::Identity();
+    if (at_points) (*at_points)[q] = {tau / law.J, law.J_minus_1};
     const Eigen::Matrix<double, nodes, dim> tractions = gradients * tau.template topLeftCorner<dim, dim>();
     for (int i = 0; i < dim; ++i) out.force_n.segment(i * nodes, nodes) += W_m3 * tractions.col(i);
     if constexpr (dim == 2) {

@@ -47,6 +47,12 @@ struct CellResult {
   Pressure pressure_offset_pa;
 };
 
+/// What the material does at one point. dim = 2: the directions are r, z and around the axis.
+struct PointState {
+  Eigen::Matrix3d stress_pa;  ///< Cauchy's, tension positive
+  double J_minus_1 = 0.0;     ///< volume change; in small strain the trace of the strain
+};
+
 /// What is wanted of a cell beside its forces.
 enum class Stiffness {
   none,
@@ -70,12 +76,15 @@ class Element {
   explicit Element(const MixedMaterial& body, const std::vector<MixedMaterial>& inclusions = {},
                    double bulk_factor = 1.0);
 
+  using PointStates = std::array<PointState, CellGeometry<dim>::points>;
+
   /// @param u_m nodal displacements
   /// @param p_pa pressure coefficients of 1, (X - Xc) / h
   /// @param materials nullptr: the body's throughout
+  /// @param at_points nullptr, or what receives the state at the Gauss points
   /// @returns false, with the result unfinished, when some point has J <= smallest_allowed_J (finite strain only)
   bool evaluate(const CellGeometry<dim>& cell, const Nodal& u_m, const Pressure& p_pa, Stiffness stiffness,
-                CellResult<dim>& out, const Materials* materials = nullptr) const;
+                CellResult<dim>& out, const Materials* materials = nullptr, PointStates* at_points = nullptr) const;
 
   /// Newton may pass through strongly distorted states, not through these.
   static constexpr double smallest_allowed_J = 0.02;

@@ -360,8 +360,11 @@ std::string round_fault(const RoundSpec& spec) {
   for (int k = 0; k < shape.piece_count(); ++k) whole_m += shape.piece(k).length_m;
   std::vector<Section> sections{cuts.bottom, cuts.top};
   sections.insert(sections.end(), cuts.sides.begin(), cuts.sides.end());
-  if (support_edge_m(spec).y() + shape.piece(0).start_m.y() >= shape.meridian(cuts.top.piece, cuts.top.begin).rz_m.y())
-    return "the support's edge lies on the body's top; the reference needs it lower";
+  const double top_m = shape.meridian(cuts.top.piece, cuts.top.begin).rz_m.y() - shape.piece(0).start_m.y();
+  if (support_edge_m(spec).y() >= top_m) {
+    return fmt::format("the support's edge lies on the body's top; expected it below {:.4g} m, found {:.4g} m", top_m,
+                       support_edge_m(spec).y());
+  }
   for (const Section& section : sections) {
     const double share = length_m(shape, section) / whole_m;
     if (share >= smallest_share) continue;

@@ -229,9 +229,14 @@ std::vector<scene::Fault> unsupported_parts(const Scene& scene) {
     const bool round = scene.tool.shape == scene::ToolShape::sphere || scene.tool.shape == scene::ToolShape::capsule;
     const std::string where = fmt::format("track, t = {:g} s: ", time_s);
     if (round && depth_m >= scene.tool.radius_m) {
-      add(where + "the tool's centre is inside the body's rest shape; press less deep");
-    } else if (lowest_m(scene.tool, pose) < body->bounds().lower_m.z()) {
-      add(where + "the tool reaches below the support; keep it above z = 0");
+      add(where + fmt::format("the tool's centre is inside the body's rest shape; expected a depth below the radius, "
+                              "{:g} m, found {:.4g} m",
+                              scene.tool.radius_m, depth_m));
+    } else if (const double z_m = lowest_m(scene.tool, pose); z_m < body->bounds().lower_m.z()) {
+      add(where +
+          fmt::format("the tool reaches below the support; expected its lowest point above z = 0 m, found it at "
+                      "{:.4g} m",
+                      z_m));
     } else {
       continue;
     }

@@ -390,8 +390,7 @@ class Run {
     }
     const std::vector<double> bands_n = force_band(forces_n, finer),
                               peak_bands_pa = force_band(pressure_peaks_pa, finer);
-    std::vector<Eigen::VectorXd> bands_m = displacement_band(shapes_, finer),
-                                 bands_pa = displacement_band(tractions_pa_, finer);
+    std::vector<Eigen::VectorXd> bands_m = point_band(shapes_, finer), bands_pa = point_band(tractions_pa_, finer);
     for (std::size_t i = 0; i < result_.instants.size(); ++i) {
       result_.instants[i].force_uncertainty_n = bands_n[i];
       result_.instants[i].displacement_uncertainty_m = std::move(bands_m[i]);

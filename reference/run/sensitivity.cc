@@ -191,6 +191,22 @@ std::vector<SensitivityWork> missing_sensitivities(const scene::Scene& scene, co
 }
 
 template <int dim>
+std::optional<ChangedSolution<dim>> stored_sensitivity(const scene::Scene& scene, const ModelChoice& choice,
+                                                       const Discretisation<dim>& coarsest, const Store& store,
+                                                       const std::string& part) {
+  for (const Change& change : changes(scene)) {
+    if (change.part != part) continue;
+    ChangedSolution<dim> result{changed_mesh(scene, choice, coarsest, change), {}};
+    const auto record = store.read(name_of(change));
+    auto found = record ? from_record<dim>(*record, result.mesh) : std::nullopt;
+    if (!found) return std::nullopt;
+    result.solved = std::move(found->first);
+    return result;
+  }
+  return std::nullopt;
+}
+
+template <int dim>
 std::vector<Sensitivity> sensitivities(const SensitivityCase<dim>& given, const Store& store,
                                        const SensitivityWatch& watch) {
   const auto sampled = [&](const Discretisation<dim>& mesh, const Solved<dim>& solved) {

@@ -9,6 +9,7 @@
 #include "reference/run/store.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,19 @@ template <int dim>
 [[nodiscard]] std::vector<SensitivityWork> missing_sensitivities(const scene::Scene& scene, const ModelChoice& choice,
                                                                  const Discretisation<dim>& coarsest, int touching,
                                                                  const Store* store);
+
+/// A solution with one choice changed, as the store keeps it, on its mesh.
+template <int dim>
+struct ChangedSolution {
+  Discretisation<dim> mesh;
+  Solved<dim> solved;
+};
+/// @param part  which choice; @returns nothing where the store does not have it
+template <int dim>
+[[nodiscard]] std::optional<ChangedSolution<dim>> stored_sensitivity(const scene::Scene& scene,
+                                                                     const ModelChoice& choice,
+                                                                     const Discretisation<dim>& coarsest,
+                                                                     const Store& store, const std::string& part);
 
 using SensitivityWatch = std::function<void(const std::string& part, int iteration)>;
 

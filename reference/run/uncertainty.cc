@@ -48,8 +48,10 @@ std::vector<double> force_band(const std::vector<std::vector<double>>& levels, c
   return band;
 }
 
-std::vector<Eigen::VectorXd> displacement_band(const std::vector<std::vector<Eigen::Matrix3Xd>>& levels,
-                                               const std::vector<double>& finer) {
+template <int rows>
+std::vector<Eigen::VectorXd> point_band(
+    const std::vector<std::vector<Eigen::Matrix<double, rows, Eigen::Dynamic>>>& levels,
+    const std::vector<double>& finer) {
   const std::size_t instants = levels.empty() ? 0 : levels.back().size();
   std::vector<Eigen::VectorXd> own(instants), band(instants);
   for (std::size_t i = 0; i < instants; ++i) {
@@ -60,8 +62,8 @@ std::vector<Eigen::VectorXd> displacement_band(const std::vector<std::vector<Eig
     }
     own[i].setZero(points);
     for (const Pair& pair : pairs(finer)) {
-      const Eigen::Matrix3Xd change_m = levels[pair.fine][i] - levels[pair.coarse][i];
-      own[i] = own[i].cwiseMax(safety * pair.weight * change_m.colwise().norm().transpose());
+      const Eigen::Matrix<double, rows, Eigen::Dynamic> change = levels[pair.fine][i] - levels[pair.coarse][i];
+      own[i] = own[i].cwiseMax(safety * pair.weight * change.colwise().norm().transpose());
     }
   }
   for (std::size_t i = 0; i < instants; ++i) {
@@ -71,6 +73,12 @@ std::vector<Eigen::VectorXd> displacement_band(const std::vector<std::vector<Eig
   }
   return band;
 }
+
+template <int rows>
+using Levels = std::vector<std::vector<Eigen::Matrix<double, rows, Eigen::Dynamic>>>;
+template std::vector<Eigen::VectorXd> point_band<1>(const Levels<1>&, const std::vector<double>&);
+template std::vector<Eigen::VectorXd> point_band<3>(const Levels<3>&, const std::vector<double>&);
+template std::vector<Eigen::VectorXd> point_band<9>(const Levels<9>&, const std::vector<double>&);
 
 std::vector<bool> deep_instants(const scene::Instants& instants) {
   double deepest_m = 0.0;

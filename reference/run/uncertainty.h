@@ -27,12 +27,15 @@ namespace touchstone::reference {
 [[nodiscard]] std::vector<double> force_band(const std::vector<std::vector<double>>& levels,
                                              const std::vector<double>& finer);
 
-/// The same per rest point, with the length of the difference of two displacement vectors. Quadratic cells do better
-/// than first order, but the far field is refined less than the contact.
-/// @param levels  [level][instant], each 3 x points
+/// The same per point for a number, a vector or a 3 x 3 matrix there, with the norm of the difference of two of them.
+/// Quadratic cells do better than first order, but the far field is refined less than the contact.
+/// @param levels  [level][instant], a column per point
+/// @tparam rows  1, 3 or 9
 /// @returns per instant, per point
-[[nodiscard]] std::vector<Eigen::VectorXd> displacement_band(const std::vector<std::vector<Eigen::Matrix3Xd>>& levels,
-                                                             const std::vector<double>& finer);
+template <int rows>
+[[nodiscard]] std::vector<Eigen::VectorXd> point_band(
+    const std::vector<std::vector<Eigen::Matrix<double, rows, Eigen::Dynamic>>>& levels,
+    const std::vector<double>& finer);
 
 /// Figures "where the contact is deep" use the instants whose depth exceeds this share of the largest depth.
 inline constexpr double deep_share = 0.1;

@@ -36,6 +36,17 @@ inline double hertz_pressure_pa(const Indentation& contact, double r_m) {
   return hertz_peak_pressure_pa(contact) * std::sqrt(1.0 - std::pow(r_m / contact.contact_radius_m, 2));
 }
 
+/// Stress of Hertz's contact on the axis, a depth z below the surface [Pa], tension positive: along the axis and across
+/// it. Johnson, 3.45.
+inline double hertz_axis_stress_zz_pa(const Indentation& contact, double z_m) {
+  return -hertz_peak_pressure_pa(contact) / (1.0 + std::pow(z_m / contact.contact_radius_m, 2));
+}
+inline double hertz_axis_stress_rr_pa(const Indentation& contact, double poissons_ratio, double z_m) {
+  const double z = z_m / contact.contact_radius_m;
+  return -hertz_peak_pressure_pa(contact) *
+         ((1.0 + poissons_ratio) * (1.0 - z * std::atan(1.0 / z)) - 0.5 / (1.0 + z * z));
+}
+
 /// Sneddon: the ball itself on a half space in small strain, d = (a/2) ln((R+a)/(R-a)),
 /// F = E* [ (a^2 + R^2)/2 ln((R+a)/(R-a)) - a R ]. I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47-57.
 /// @param a_m  contact radius, below R

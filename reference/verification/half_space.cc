@@ -1,6 +1,7 @@
 #include "reference/verification/half_space.h"
 
 #include "reference/contact/contact_problem.h"
+#include "reference/contact/interior.h"
 #include "reference/contact/load_path.h"
 #include "reference/mesh/sampling.h"
 #include "reference/run/model_choice.h"
@@ -123,6 +124,8 @@ HalfSpaceAnswer indent_half_space(const HalfSpaceProblem& problem) {
                          seen.node_penetration_m,
                          {},
                          {},
+                         {},
+                         {},
                          body.unknowns(),
                          report.newton_iterations};
   if (problem.radii_m.size() > 0) {
@@ -132,6 +135,15 @@ HalfSpaceAnswer indent_half_space(const HalfSpaceProblem& problem) {
     const reference::SurfaceSampler<2> sampler(mesh, points_m, false, false);
     answer.settlement_m = -sampler.at_points(end.state.u_m).row(2).transpose();
     answer.pressure_pa = -sampler.at_points(body.contact_traction(end.state).nodal_pa).row(2).transpose();
+  }
+  if (problem.below_m.size() > 0) {
+    Eigen::Matrix3Xd points_m = Eigen::Matrix3Xd::Zero(3, problem.below_m.size());
+    points_m.row(2) = L_m - problem.below_m.transpose().array();
+    const Eigen::Matrix<double, 9, Eigen::Dynamic> stress_pa =
+        reference::BodySampler<2>(mesh, points_m, false, false)
+            .tensors(reference::interior(mesh, problem.material, problem.kinematics, end.state).stress_pa);
+    answer.stress_zz_pa = stress_pa.row(8);
+    answer.stress_rr_pa = stress_pa.row(0);
   }
   return answer;
 }

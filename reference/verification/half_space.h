@@ -44,6 +44,7 @@ struct HalfSpaceProblem {
   /// Cylinder's radius and height over the patch's radius. The far end adds about 1.13 / this to the force.
   double domain_over_patch = 3000.0;
   Eigen::VectorXd radii_m = {};  ///< where on the surface displacement and pressure are wanted
+  Eigen::VectorXd below_m = {};  ///< how far below the surface, on the axis, stress is wanted
 };
 
 struct HalfSpaceAnswer {
@@ -54,6 +55,8 @@ struct HalfSpaceAnswer {
   double node_penetration_m = 0.0;
   Eigen::VectorXd settlement_m;  ///< downwards, at radii_m
   Eigen::VectorXd pressure_pa;   ///< at radii_m
+  Eigen::VectorXd stress_zz_pa;  ///< along the axis, at below_m
+  Eigen::VectorXd stress_rr_pa;  ///< across it
   int unknowns = 0;
   int newton_iterations = 0;
 };

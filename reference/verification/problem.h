@@ -29,6 +29,7 @@ inline constexpr double limit_of_closed_form = 0.002;   ///< the model solved is
 inline constexpr double limit_of_small_strain = 0.005;  ///< finite strain in its small-strain limit
 inline constexpr double limit_of_table = 0.01;          ///< singular solutions and printed tables
 inline constexpr double limit_of_pressure = 0.005;      ///< at a point, from nodal forces
+inline constexpr double limit_of_stress = 0.005;        ///< at a point inside the body, of the largest pressure
 /// Place of a contact's edge, where the pressure falls to zero with an infinite slope within one cell.
 inline constexpr double limit_of_edge = 0.005;
 

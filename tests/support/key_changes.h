@@ -80,6 +80,9 @@ levels = 3
 element_size_m = 0.002
 [compare]
 instants = 5
+[[probe]]
+name = "below"
+position_m = [0.001, 0.0, 0.02]
 [[track]]
 time_s = 0.0
 position_m = [0.0, 0.0, 0.074]
@@ -172,7 +175,7 @@ T with_another_value(const scene::Field<T>& field, T object) {
   return object;
 }
 
-/// Every key of the three tables but those of one possible value, each at least once.
+/// Every key of the tables but those of one possible value, each at least once.
 /// @throws scene::InputError, std::logic_error where a scene is invalid or a key has no second value
 inline std::vector<KeyChange> every_key_changed() {
   std::vector<KeyChange> changes;
@@ -200,6 +203,7 @@ inline std::vector<KeyChange> every_key_changed() {
       for (const auto& field : scene::inclusion_fields())
         change(field, before->body.inclusions[i], "body.inclusion[].", "body.inclusion[" + std::to_string(i) + "].");
     }
+    for (const auto& field : scene::probe_fields()) change(field, before->probes[0], "probe[].", "probe[0].");
     for (const auto& field : scene::track_fields()) change(field, scene::TrackRow{}, "track[].", "track[1].");
   }
   return changes;

@@ -1,17 +1,22 @@
 // The reported uncertainty must cover the true error, taken from a much finer mesh: in the meridian plane, and in space
 // for a scene that can also be solved in the meridian plane.
 #include "reference/contact/contact_problem.h"
+#include "reference/contact/interior.h"
 #include "reference/contact/load_path.h"
 #include "reference/mesh/sampling.h"
+#include "reference/run/inside.h"
 #include "reference/run/model_choice.h"
 #include "reference/run/run.h"
 #include "reference/solver.h"
+#include "reference/verification/closed_forms.h"
 
 #include "scene/shape/surface.h"
 
 #include <gtest/gtest.h>
 
 #include <unistd.h>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 namespace touchstone::reference {
@@ -65,6 +70,12 @@ class UncertaintyBand : public testing::Test {
       instant.displacement_m = sampler.at_points(current.state.u_m);
       if (current.touching) instant.regions.push_back({.force_n = problem.observe(current.state).force_n});
     }
+    Eigen::Matrix3Xd probes_m(3, static_cast<Eigen::Index>(scene_.probes.size()));
+    for (Eigen::Index k = 0; k < probes_m.cols(); ++k) probes_m.col(k) = scene_.probes[k].position_m;
+    const BodySampler<2> inside(mesh, probes_m, true, true);
+    at_probes_ = {
+        inside.vectors(current.state.u_m),
+        inside.tensors(interior(mesh, scene_.body.material, scene_.reference.kinematics, current.state).stress_pa)};
     return result;
   }
 
@@ -95,6 +106,7 @@ class UncertaintyBand : public testing::Test {
   std::filesystem::path root_;
   scene::Scene scene_;
   Eigen::Matrix3Xd points_m_;
+  PointValues at_probes_;  // of the truth, at the last instant
 };
 
 TEST_F(UncertaintyBand, HoldsTheErrorAgainstAFinerSolution) {
@@ -143,6 +155,60 @@ TEST_F(UncertaintyBand, HoldsWhatFewLoadStepsDoToFriction) {
   EXPECT_GT(error_n, 1e-3 * many.instants.back().force_n().norm());
   EXPECT_LT(error_n, 1.5 * 4.0 / 3.0 * load_step_rel * many.instants.back().force_n().norm());
   EXPECT_LE(error_n, few.instants.back().force_uncertainty_n);
+}
+
+TEST_F(UncertaintyBand, HoldsTheErrorAtProbes) {
+  scene_.probes = {{"below", {0.0, 0.0, 0.057}},
+                   {"beside", {0.003, 0.002, 0.055}},
+                   {"deep", {0.0, 0.0, 0.03}},
+                   {"surface", {0.01, 0.0, 0.03 + std::sqrt(8e-4)}}};
+  scene_.reference.element_size_m = 0.003;
+  (void)truth(4);
+  const PointValues exact = at_probes_;
+  const Result coarse = solved("coarse", 0.003, 3);
+  const ProbeInstant reported = inside(scene_, coarse, root_ / "coarse")->probes().back();
+  const Eigen::Matrix<double, 9, Eigen::Dynamic> error_pa = reported.values.stress_pa - exact.stress_pa;
+  const Eigen::Matrix3Xd error_m = reported.values.displacement_m - exact.displacement_m;
+  for (Eigen::Index k = 0; k < error_m.cols(); ++k) {
+    const std::string& where = scene_.probes[static_cast<std::size_t>(k)].name;
+    EXPECT_LE(error_m.col(k).norm(), reported.displacement_uncertainty_m[k]) << where;
+    EXPECT_LE(error_pa.col(k).norm(), reported.stress_uncertainty_pa[k]) << where;
+    EXPECT_LE(std::abs(pressure_pa(error_pa)[k]), reported.pressure_uncertainty_pa[k]) << where;
+  }
+  // An uncertainty that is too large would say nothing.
+  EXPECT_LT(reported.stress_uncertainty_pa[0], 0.2 * exact.stress_pa.col(0).norm());
+}
+
+/// The stress on the axis below Hertz's contact. The half space is a cylinder 3000 contact radii wide and high.
+TEST_F(UncertaintyBand, HoldsTheClosedFormOfTheStressBelowAContact) {
+  const double depth_m = 2e-6, R_m = scene_.tool.radius_m;
+  scene_.body.material = {3e6, 0.3};
+  const verification::Indentation exact = verification::hertz(scene_.body.material.contact_modulus_pa(), R_m, depth_m);
+  const double a_m = exact.contact_radius_m, L_m = 3000.0 * a_m, peak_pa = verification::hertz_peak_pressure_pa(exact);
+  scene_.body.shape = scene::BodyShape::revolution;
+  scene_.body.profile = {{{0.0, 0.0}, {L_m, 0.0}, {L_m, L_m}, {0.0, L_m}}, {}};
+  scene_.reference.kinematics = scene::Kinematics::small;
+  scene_.reference.levels = 3;
+  scene_.track = {{0.0, {{0.0, 0.0, L_m + R_m + depth_m}, Eigen::Quaterniond::Identity()}},
+                  {1.0, {{0.0, 0.0, L_m + R_m - depth_m}, Eigen::Quaterniond::Identity()}}};
+  scene_.compare.instants = 2;
+  for (const double below : {0.2, 0.5, 1.0, 1.5, 3.0}) {
+    scene_.probes.push_back({std::to_string(below), {0.0, 0.0, L_m - below * a_m}});
+  }
+  points_m_ = Eigen::Vector3d(0.0, 0.0, L_m);
+  const Result result = solve(scene_, points_m_, {root_ / "hertz", {}, nullptr});
+  const ProbeInstant reported = inside(scene_, result, root_ / "hertz")->probes().back();
+  for (Eigen::Index k = 0; k < reported.values.stress_pa.cols(); ++k) {
+    const double z_m = L_m - scene_.probes[static_cast<std::size_t>(k)].position_m.z();
+    const double zz_pa = reported.values.stress_pa(8, k) - verification::hertz_axis_stress_zz_pa(exact, z_m);
+    const double rr_pa = reported.values.stress_pa(0, k) - verification::hertz_axis_stress_rr_pa(exact, 0.3, z_m);
+    const double band_pa = reported.stress_uncertainty_pa[k];
+    EXPECT_LE(std::abs(zz_pa), band_pa) << "z/a = " << z_m / a_m << ", largest pressure " << peak_pa;
+    EXPECT_LE(std::abs(rr_pa), band_pa) << "z/a = " << z_m / a_m << ", largest pressure " << peak_pa;
+    EXPECT_LT(band_pa, 0.05 * peak_pa) << "z/a = " << z_m / a_m;
+    std::printf("z/a = %g: errors %+.3f %% and %+.3f %% of the largest pressure, uncertainty %.3f %%\n", z_m / a_m,
+                100.0 * zz_pa / peak_pa, 100.0 * rr_pa / peak_pa, 100.0 * band_pa / peak_pa);
+  }
 }
 
 TEST_F(UncertaintyBand, HoldsTheErrorInSpace) {

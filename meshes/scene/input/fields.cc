@@ -123,7 +123,7 @@ std::vector<Field<Scene>> make_scene_fields() {
       {"tool.length_m", "m", between(0.0, 10.0), required, both, +[](S& s) -> double& { return s.tool.length_m; }, tool_long,
            "Length of a capsule's straight part, or of a cylinder from end to end."},
       {"tool.edge_radius_m", "m", between(0.0, 10.0), "0.0", both, +[](S& s) -> double& { return s.tool.edge_radius_m; }, tool_cylinder,
-           "Radius of the fillet at both rims; 0 for sharp ones."},
+           "Radius of the fillet at both rims; 0 for sharp ones. The reference refuses less than a quarter of tool.radius_m."},
       {"tool.size_m", "m", between(1e-5, 10.0), required, both, +[](S& s) -> Vec3& { return s.tool.size_m; }, tool_box,
            "Edge lengths of the box along the tool's x, y, z."},
       {"tool.file", "", any, required, both, +[](S& s) -> std::string& { return s.tool.file; }, tool_mesh,
@@ -224,6 +224,16 @@ std::vector<Field<Inclusion>> make_inclusion_fields() {
   return fields;
 }
 
+std::vector<Field<Probe>> make_probe_fields() {
+  using P = Probe;
+  return {
+      {"name", "", Range{}, {}, Side::probes, +[](P& p) -> std::string& { return p.name; }, {},
+           "Name of the point in probes.csv; without comma or quotation mark, and of one probe only."},
+      {"position_m", "m", between(-20.0, 20.0), {}, Side::probes, +[](P& p) -> Vec3& { return p.position_m; }, {},
+           "Point in the body at rest or on its surface. The reference reports its displacement, stress and pressure."},
+  };
+}
+
 std::vector<Field<TrackRow>> make_track_fields() {
   using R = TrackRow;
   return {
@@ -277,6 +287,11 @@ const std::vector<OptionalTable>& optional_tables() {
       {"contact.friction", [](Scene& s) { s.contact.friction.emplace(); }},
   };
   return tables;
+}
+
+const std::vector<Field<Probe>>& probe_fields() {
+  static const std::vector<Field<Probe>> fields = make_probe_fields();
+  return fields;
 }
 
 bool in_optional_table(const Field<Scene>& field) {
@@ -372,14 +387,16 @@ std::string expected_text(const Field<T>& field) {
 template std::string value_text(const Field<Scene>&, const Scene&);
 template std::string value_text(const Field<TrackRow>&, const TrackRow&);
 template std::string value_text(const Field<Inclusion>&, const Inclusion&);
+template std::string value_text(const Field<Probe>&, const Probe&);
 template std::string expected_text(const Field<Scene>&);
 template std::string expected_text(const Field<TrackRow>&);
 template std::string expected_text(const Field<Inclusion>&);
+template std::string expected_text(const Field<Probe>&);
 
 namespace {
 
 /// In the order of the enumeration.
-constexpr std::array<const char*, 6> side_names = {"both", "fast", "reference", "refinement", "live", "none"};
+constexpr std::array<const char*, 7> side_names = {"both", "fast", "reference", "refinement", "probes", "live", "none"};
 
 template <class T>
 std::string reference_rows(const std::vector<Field<T>>& fields, const std::string& prefix) {
@@ -401,7 +418,8 @@ std::string reference_rows(const std::vector<Field<T>>& fields, const std::strin
 
 std::string scene_reference_markdown() {
   return "| key | value | default | changes | meaning |\n|---|---|---|---|---|\n" + reference_rows(scene_fields(), "") +
-         reference_rows(inclusion_fields(), "body.inclusion[].") + reference_rows(track_fields(), "track[].");
+         reference_rows(inclusion_fields(), "body.inclusion[].") + reference_rows(probe_fields(), "probe[].") +
+         reference_rows(track_fields(), "track[].");
 }
 
 }  // namespace touchstone::scene

@@ -21,6 +21,7 @@ enum class Side {
   fast,
   reference,
   refinement,  ///< how many meshes the reference solves; the answer on each of them stays
+  probes,      ///< what is read from the reference's answers; these stay
   live,        ///< the device loop and its virtual hand alone
   none         ///< words for the reader
 };
@@ -60,7 +61,7 @@ struct TrackRow {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
 };
 
-/// Where a key's value is stored in a T (the Scene, one Inclusion or one TrackRow).
+/// Where a key's value is stored in a T (the Scene, one Inclusion, one Probe or one TrackRow).
 template <class T>
 struct Choice {
   std::vector<std::string_view> names;  ///< in the order of the enumeration
@@ -121,6 +122,9 @@ struct Field {
 
 /// The keys of one [[body.inclusion]] row.
 [[nodiscard]] const std::vector<Field<Inclusion>>& inclusion_fields();
+
+/// The keys of one [[probe]] row.
+[[nodiscard]] const std::vector<Field<Probe>>& probe_fields();
 
 /// Is the key's value in force (its condition holds)?
 template <class T>

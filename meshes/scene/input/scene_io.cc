@@ -25,6 +25,7 @@ namespace {
 
 constexpr std::string_view track_file_key = "file";
 constexpr std::string_view inclusion_key = "body.inclusion";
+constexpr std::string_view probe_key = "probe";
 constexpr std::string_view override_mark = "--set ";
 
 /// The value as written in the file, for an error message.
@@ -60,6 +61,7 @@ class Reader {
     }
     read_fields(scene_fields(), document_, "", scene);
     scene.body.inclusions = read_rows(inclusion_fields(), document_.at_path(inclusion_key), inclusion_key);
+    scene.probes = read_rows(probe_fields(), document_.at_path(probe_key), probe_key);
     read_mesh(scene);
     const std::vector<TrackRow> rows = read_track();
     check_rows(rows);
@@ -131,6 +133,7 @@ class Reader {
     std::vector<std::string> keys = keys_of(scene_fields());
     keys.emplace_back("track");
     keys.emplace_back(inclusion_key);
+    keys.emplace_back(probe_key);
     return keys;
   }
 
@@ -139,7 +142,7 @@ class Reader {
                     const std::string& row = "") {
     for (const auto& [key, node] : table) {
       const std::string here = path + std::string(key.str());
-      if (here == "track" || here == inclusion_key) continue;
+      if (here == "track" || here == inclusion_key || here == probe_key) continue;
       const std::string above = here + ".";
       const bool is_section =
           std::any_of(known.begin(), known.end(), [&](const std::string& k) { return k.starts_with(above); });
@@ -601,6 +604,7 @@ std::string toml_text(const Scene& scene, Keep keep, bool meaning = false) {
     }
   };
   for (const Inclusion& inclusion : scene.body.inclusions) row(inclusion_key, inclusion_fields(), inclusion);
+  for (const Probe& probe : scene.probes) row(probe_key, probe_fields(), probe);
   for (const Waypoint& w : scene.track) {
     row("track", track_fields(),
         TrackRow{w.time_s, {w.pose.position_m, false}, std::nullopt, std::nullopt, w.pose.orientation});

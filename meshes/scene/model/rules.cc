@@ -63,8 +63,9 @@ void check_records(const Scene& scene, std::vector<Violation>& found) {
 }
 
 void check_start(const Scene& scene, const Shape& body, std::vector<Violation>& found) {
+  constexpr double round_off_m = 1e-9;  // of a track that starts where the tool just touches the body
   const double depth_m = rest_depth_m(body, scene.tool, scene.track.front().pose);
-  if (depth_m > 0.0) {
+  if (depth_m > round_off_m) {
     found.push_back({"track[0].position_m",
                      fmt::format("the tool starts {:.4g} mm inside the body; expected a first pose with no overlap",
                                  depth_m * 1e3)});
@@ -154,6 +155,34 @@ void check_inclusions(const Body& body, const Shape& shape, std::vector<Violatio
   }
 }
 
+void check_probes(const std::vector<Probe>& probes, const Shape& body, std::vector<Violation>& found) {
+  if (probes.size() > probes_max) {
+    found.push_back({"probe[0]", fmt::format("expected at most {} probes, found {}", probes_max, probes.size())});
+    return;
+  }
+  const Bounds box = body.bounds();
+  const double round_off_m = 1e-9 * (box.upper_m - box.lower_m).maxCoeff();
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    const std::string name = "probe[" + std::to_string(i) + "]";
+    const auto first =
+        std::find_if(probes.begin(), probes.end(), [&](const Probe& p) { return p.name == probes[i].name; });
+    if (first != probes.begin() + static_cast<std::ptrdiff_t>(i)) {
+      found.push_back({name + ".name", fmt::format("\"{}\" is the name of probe[{}]; expected another one",
+                                                   probes[i].name, first - probes.begin())});
+    } else if (probes[i].name.find_first_of(",\"") != std::string::npos) {
+      found.push_back({name + ".name", "expected a name without comma or quotation mark, for a table"});
+    }
+    const double outside_m = body.signed_distance_m(probes[i].position_m);
+    if (outside_m <= round_off_m) continue;
+    found.push_back(
+        {name + ".position_m",
+         fmt::format("is {:.4g} mm outside the body at rest; expected a point in it or on its surface: x in [{:.4g}, "
+                     "{:.4g}], y in [{:.4g}, {:.4g}], z in [{:.4g}, {:.4g}] m",
+                     outside_m * 1e3, box.lower_m.x(), box.upper_m.x(), box.lower_m.y(), box.upper_m.y(),
+                     box.lower_m.z(), box.upper_m.z())});
+  }
+}
+
 void check_tool(const Tool& tool, std::vector<Violation>& found) {
   if (tool.shape != ToolShape::cylinder) return;
   const double largest_m = std::min(tool.radius_m, 0.5 * tool.length_m);
@@ -205,6 +234,7 @@ std::vector<Violation> broken_rules(const Scene& scene) {
   const auto body = body_shape(scene.body);
   check_support(scene.body, *body, found);
   check_inclusions(scene.body, *body, found);
+  check_probes(scene.probes, *body, found);
   check_start(scene, *body, found);
   check_contact_law(
       scene, [&] { return deepest_m(scene, *body); }, found);

@@ -172,12 +172,21 @@ struct LiveSettings {
   double hand_stiffness_n_per_m = 0.0;  ///< between hand and track
 };
 
+inline constexpr std::size_t probes_max = 1000;
+
+/// A point of the body at which the reference reports displacement, stress and pressure.
+struct Probe {
+  std::string name;
+  Vec3 position_m = Vec3::Zero();  ///< in the body or on its surface, world frame at rest
+};
+
 struct Scene {
   std::string name;  ///< file stem; names the output folder
   std::string title;
   Body body;
   Tool tool;
   std::vector<Waypoint> track;  ///< at least two, times strictly increasing
+  std::vector<Probe> probes;    ///< of different names
   Contact contact;
   FastSettings fast;
   LiveSettings live;

@@ -121,6 +121,24 @@ TEST(Verdict, CallsAnErrorWithinTheBandNotDistinguishable) {
   EXPECT_FALSE(says(text, "Likely cause")) << text;
 }
 
+TEST(Verdict, SaysOnHowFewPointsAShapeRests) {
+  testing::Sides sides = testing::pressed(5, 200);
+  const std::string many = told(testing::pressed(5, 3952));
+  EXPECT_FALSE(says(many, "It rests on")) << many;
+  for (std::size_t t = 0; t < 5; ++t) {
+    Eigen::Matrix3Xd& u_m = sides.result.instants[t].displacement_m;
+    if (u_m.norm() == 0.0) continue;
+    Eigen::Index most = 0;
+    u_m.colwise().norm().maxCoeff(&most);
+    const scene::Vec3 kept_m = u_m.col(most);
+    u_m *= 0.0;
+    u_m.col(most) = kept_m;
+  }
+  const std::string text = told(sides);
+  EXPECT_TRUE(says(text, "It rests on 1 point of the surface")) << text;
+  EXPECT_TRUE(says(text, "fast.triangles")) << text;
+}
+
 TEST(Verdict, DoesNotTakeAnUnknownBandForAnExcuse) {
   testing::Sides sides = testing::pressed(5, 200);
   testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n,

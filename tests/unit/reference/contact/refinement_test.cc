@@ -15,10 +15,12 @@
 
 #include <unistd.h>
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <set>
 #include <thread>
 
@@ -268,6 +270,34 @@ TEST_F(RefinementTest, TheTimeLeftIsThatOfAllMeshes) {
   EXPECT_GT(middle->second, 0.1 * all_s);
   EXPECT_LT(middle->second, 3.0 * all_s);
   EXPECT_LT(left.back().second, middle->second);
+}
+
+TEST_F(RefinementTest, TheFirstEstimateIsOfAllMeshesAndTheSensitivities) {
+  const ModelChoice choice = choose_model(scene_);
+  const Discretisation<2> coarsest = level_mesh<2>(scene_, choice, 0);
+  constexpr int load_steps = 5;  // of six instants the first is apart
+  double meshes_s = 0.0, sensitivities_s = 0.0;
+  for (int level = 0; level < 3; ++level) {
+    const double unknowns = unknowns_of(level_mesh<2>(scene_, choice, level));
+    meshes_s += expected_cost({.dim = 2, .unknowns = unknowns, .load_steps = load_steps}, ranks::threads()).seconds;
+  }
+  for (const SensitivityWork& one : missing_sensitivities<2>(scene_, choice, coarsest, load_steps, nullptr)) {
+    sensitivities_s += expected_cost(one.work, ranks::threads()).seconds;
+  }
+  std::optional<double> first_s;
+  std::atomic<bool> stop = false;
+  watch_ = [&](const Progress& p) {
+    if (!p.event || first_s) return;
+    first_s = p.seconds_left;
+    stop = true;
+  };
+  EXPECT_THROW((void)run({.store = {}, .progress = {}, .stop = &stop}), Interrupted);
+  ASSERT_GT(sensitivities_s, 0.05 * meshes_s);
+  // The first instant, which is apart, counts as a load step until it is over.
+  const double step_s =
+      expected_cost({.dim = 2, .unknowns = unknowns_of(coarsest), .load_steps = 1}, ranks::threads()).seconds;
+  ASSERT_LT(step_s, 0.5 * sensitivities_s);
+  EXPECT_NEAR(first_s.value(), meshes_s + sensitivities_s + step_s, 0.01 * sensitivities_s);
 }
 
 /// Without friction the answer does not depend on where Newton starts: a level followed along its own load path ends

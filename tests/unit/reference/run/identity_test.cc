@@ -22,6 +22,7 @@ TEST(Identity, ChangesWithWhatTheTableSaysThatTheReferenceReadsAndNothingElse) {
   std::set<std::string> all;
   for (const auto& field : scene::scene_fields()) all.emplace(field.key);
   for (const auto& field : scene::inclusion_fields()) all.insert("body.inclusion[]." + std::string(field.key));
+  for (const auto& field : scene::probe_fields()) all.insert("probe[]." + std::string(field.key));
   for (const auto& field : scene::track_fields()) all.insert("track[]." + std::string(field.key));
   EXPECT_EQ(changed, all);
 }

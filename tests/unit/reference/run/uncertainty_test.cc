@@ -46,7 +46,7 @@ TEST(Uncertainty, TakesTheLastThreeLevels) {
 
 TEST(Uncertainty, UnknownWithFewerThanThreeLevels) {
   for (const double half_width : force_band({{1.0, 2.0}, {1.0, 2.0}}, {1.0, 1.5})) EXPECT_TRUE(std::isnan(half_width));
-  const auto shape = displacement_band({{Eigen::Matrix3Xd::Zero(3, 2)}}, {1.0});
+  const auto shape = point_band<3>({{Eigen::Matrix3Xd::Zero(3, 2)}}, {1.0});
   EXPECT_TRUE(std::isnan(shape[0][1]));
 }
 
@@ -59,7 +59,7 @@ TEST(Uncertainty, ShapeHoldsAnErrorOfFirstOrder) {
     for (const double order : {1.0, 1.7, 2.0, 3.0}) {
       std::vector<std::vector<Eigen::Matrix3Xd>> levels;
       for (const double f : finer) levels.push_back({Eigen::Matrix3Xd::Ones(3, 2) + std::pow(f, -order) * error});
-      const Eigen::VectorXd band = displacement_band(levels, finer)[0];
+      const Eigen::VectorXd band = point_band(levels, finer)[0];
       EXPECT_EQ(band[0], 0.0);
       const double left = 0.5 * std::pow(finer.back(), -order);
       if (order == 1.0) {

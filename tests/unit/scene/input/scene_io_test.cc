@@ -51,6 +51,37 @@ std::string message_for(const std::string& from, const std::string& to, const st
   return "no error";
 }
 
+TEST(SceneFile, HoldsProbesAndKeepsThem) {
+  const std::string probes =
+      "[[probe]]\nname = \"top\"\nposition_m = [0, 0.03, 0.06]\n"
+      "[[probe]]\nname = \"below\"\nposition_m = [0.001, 0, 0.05]\n";
+  const Scene scene = parse_scene(good + probes, "a.toml");
+  ASSERT_EQ(scene.probes.size(), 2u);
+  EXPECT_EQ(scene.probes[1].name, "below");
+  EXPECT_EQ(scene.probes[1].position_m, Vec3(0.001, 0.0, 0.05));
+  const Scene again = parse_scene(resolved_toml(scene), "a.toml");
+  ASSERT_EQ(again.probes.size(), 2u);
+  EXPECT_EQ(again.probes[0].position_m, scene.probes[0].position_m);
+  EXPECT_NE(scene_hash(scene), scene_hash(parse_scene(good, "a.toml")));
+}
+
+TEST(SceneFile, RefusesAProbeThatIsNotInTheBody) {
+  const auto message = [](const std::string& probes) { return message_for("[contact]", probes + "[contact]"); };
+  EXPECT_THAT(message("[[probe]]\nname = \"a\"\nposition_m = [0, 0, 0.061]\n"),
+              AllOf(StartsWith("a.toml:18:"), HasSubstr("probe[0].position_m: is 1 mm outside the body at rest; "
+                                                        "expected a point in it or on its surface: x in [-0.03, 0.03], "
+                                                        "y in [-0.03, 0.03], z in [0, 0.06] m")));
+  EXPECT_THAT(message("[[probe]]\nname = \"a\"\nposition_m = [0, 0, 0.05]\n"
+                      "[[probe]]\nname = \"a\"\nposition_m = [0, 0, 0.04]\n"),
+              AllOf(StartsWith("a.toml:20:"), HasSubstr("probe[1].name: \"a\" is the name of probe[0]")));
+  EXPECT_THAT(message("[[probe]]\nname = \"a,b\"\nposition_m = [0, 0, 0.05]\n"), HasSubstr("without comma"));
+  EXPECT_THAT(message("[[probe]]\nposition_m = [0, 0, 0.05]\n"),
+              HasSubstr("probe[0].name: missing; expected a text, not empty"));
+  EXPECT_THAT(message("[[probe]]\nname = \"a\"\nposition_m = [0, 0, 21]\n"),
+              HasSubstr("probe[0].position_m = [0, 0, 21]; expected three numbers, each in [-20, 20] m"));
+  EXPECT_THAT(message("[[probe]]\nname = \"a\"\nposition_m = [0, 0, 0.05]\nradius_m = 1\n"), HasSubstr("radius_m"));
+}
+
 TEST(SceneFile, ANamedShapeIsABodyOfRevolution) {
   const std::string box = "shape = \"box\"\nsize_m = [0.06, 0.06, 0.06]";
   std::string text = good;
@@ -123,6 +154,11 @@ TEST(SceneFile, EveryFaultNamesItsPlaceAndWhatWasExpected) {
   EXPECT_THAT(message_for("[tool]", "[tol]"), HasSubstr("unknown key \"tol\"; did you mean \"tool\"?"));
   EXPECT_EQ(message_for("position_m = [0.0, 0.0, 0.065]", "position_m = [0.0, 0.0, 0.065]\nspeed = 3"),
             "a.toml:16:1: unknown key \"track[1].speed\"; did you mean \"time_s\"?");
+}
+
+TEST(SceneFile, ATrackMayStartWhereTheToolJustTouches) {
+  EXPECT_EQ(message_for("0.0705", "0.06999999999999999"), "no error");  // 1e-17 m inside
+  EXPECT_THAT(message_for("0.0705", "0.069999"), HasSubstr("the tool starts 0.001 mm inside the body"));
 }
 
 TEST(SceneFile, RulesAcrossKeysAreReportedAtTheKey) {
