@@ -100,6 +100,76 @@ void set_rises(const scene::BoxExit& given, const Mat3& R_WT, const Vec3& d, Reg
   }
 }
 
+void bend_depths(const scene::Box& box, const Mat3& R_WT, const Vec3& d, RegionPoints& points) noexcept {
+  // Ways along -d to the planes of the three faces ahead, of which the least counts.
+  const Vec3 slope = d.unaryExpr([](double x) { return 1.0 / (std::abs(x) > 1e-300 ? x : std::copysign(1e-300, x)); });
+  const Vec3 from_m = box.half_m().cwiseProduct(slope.cwiseAbs()) - slope.cwiseProduct(box.center_m());
+  for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
+    const Vec3 way_m = from_m + slope.cwiseProduct(points.p_W_m(i));
+    Eigen::Index first = 0;
+    const double least_m = way_m.minCoeff(&first);
+    if (!(least_m > 0.0)) continue;
+    const Spread spread_T_m = points.spread_T_m(i);
+    const double spread2_m2 = spread_T_m[0].squaredNorm() + spread_T_m[1].squaredNorm();
+    double mean_m = least_m;
+    for (Eigen::Index other = 0; other < 3; ++other) {
+      const double apart_m = way_m[other] - least_m;
+      // None of it is as far.
+      if (other == first ||
+          !(apart_m * apart_m < 6.0 * spread2_m2 * (slope[first] * slope[first] + slope[other] * slope[other])))
+        continue;
+      const Vec3 way_slope_T = slope[first] * R_WT.row(first) - slope[other] * R_WT.row(other);
+      // None of it is beyond a face.
+      const double half_m = std::min(way_m[other], std::numbers::sqrt3 * std::hypot(way_slope_T.dot(spread_T_m[0]),
+                                                                                    way_slope_T.dot(spread_T_m[1])));
+      if (half_m > apart_m) mean_m -= (half_m - apart_m) * (half_m - apart_m) / (4.0 * half_m);
+    }
+    points.depth_m[i] = std::max(0.0, mean_m);
+  }
+}
+
+TOUCHSTONE_WIDE_LOOPS
+void bend_depths(const scene::Sphere& body, const Mat3& R_WT, const Vec3& direction, RegionPoints& p) noexcept {
+  const Numbers d = numbers(direction), d_T = numbers(R_WT.transpose() * direction);
+  const double half_per_m = 0.5 / body.radius_m();
+  const auto count = static_cast<std::size_t>(p.count);
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const double against = -(p.rest_nx_W[i] * d.x + p.rest_ny_W[i] * d.y + p.rest_nz_W[i] * d.z);
+    const double rise1_m = p.rise1_m[i], rise2_m = p.rise2_m[i];
+    const double ax = p.e1x_T_m[i] - rise1_m * d_T.x, ay = p.e1y_T_m[i] - rise1_m * d_T.y,
+                 az = p.e1z_T_m[i] - rise1_m * d_T.z;
+    const double bx = p.e2x_T_m[i] - rise2_m * d_T.x, by = p.e2y_T_m[i] - rise2_m * d_T.y,
+                 bz = p.e2z_T_m[i] - rise2_m * d_T.z;
+    const double bend_m2 = ax * ax + ay * ay + az * az + (bx * bx + by * by + bz * bz);
+    p.depth_m[i] = larger(0.0, p.depth_m[i] - straight_part(against) * half_per_m * bend_m2 / larger(against, 0.5));
+  }
+}
+
+TOUCHSTONE_WIDE_LOOPS
+void bend_depths(const scene::Ellipsoid& body, const Mat3& R_WT, const Vec3& direction, RegionPoints& p) noexcept {
+  const Numbers d = numbers(direction), a = numbers(body.semi_axes_m()),
+                per_a = numbers(body.semi_axes_m().cwiseInverse());
+  // From frame T to semi-axes as units.
+  const Mat3 S = body.semi_axes_m().cwiseInverse().asDiagonal() * R_WT;
+  const auto count = static_cast<std::size_t>(p.count);
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const double nx = p.rest_nx_W[i], ny = p.rest_ny_W[i], nz = p.rest_nz_W[i];
+    const double against = -(nx * d.x + ny * d.y + nz * d.z);
+    const double hx = a.x * nx, hy = a.y * ny, hz = a.z * nz, support_m = std::sqrt(hx * hx + hy * hy + hz * hz);
+    const auto bend = [&](double x, double y, double z, double rise_m) {
+      const double ux = S(0, 0) * x + S(0, 1) * y + S(0, 2) * z - rise_m * d.x * per_a.x,
+                   uy = S(1, 0) * x + S(1, 1) * y + S(1, 2) * z - rise_m * d.y * per_a.y,
+                   uz = S(2, 0) * x + S(2, 1) * y + S(2, 2) * z - rise_m * d.z * per_a.z;
+      return ux * ux + uy * uy + uz * uz;
+    };
+    const double both = bend(p.e1x_T_m[i], p.e1y_T_m[i], p.e1z_T_m[i], p.rise1_m[i]) +
+                        bend(p.e2x_T_m[i], p.e2y_T_m[i], p.e2z_T_m[i], p.rise2_m[i]);
+    p.depth_m[i] = larger(0.0, p.depth_m[i] - straight_part(against) * 0.5 * support_m * both / larger(against, 0.5));
+  }
+}
+
 TOUCHSTONE_WIDE_LOOPS
 static double most_with_spread_m(const RegionPoints& p) noexcept {
   const auto count = static_cast<std::size_t>(p.count);
