@@ -30,7 +30,7 @@ std::string probes_csv(const scene::Scene& scene, const reference::Result& resul
       for (const int row : {0, 4, 8, 1, 5, 2}) add(now.values.stress_pa(row, k));
       add(now.stress_uncertainty_pa[k]);
       add(pressures_pa[k]);
-      add(now.pressure_uncertainty_pa[k]);
+      add(now.pressure_uncertainty_pa()[k]);
       text += "\n";
     }
   }

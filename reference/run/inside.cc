@@ -53,23 +53,19 @@ class StoredInside : public Inside {
     std::vector<double> finer;
     std::vector<std::vector<Eigen::Matrix3Xd>> displacement_m(meshes_.size());
     std::vector<std::vector<Eigen::Matrix<double, 9, Eigen::Dynamic>>> stress_pa(meshes_.size());
-    std::vector<std::vector<Eigen::RowVectorXd>> mean_pa(meshes_.size());
     for (int level = 0; level <= finest(); ++level) {
       finer.push_back(refinement(level));
       const BodySampler<dim> sampler = this->sampler(mesh(level), points_m);
       for (std::size_t i = 0; i < result_.instants.size(); ++i) {
         PointValues values = at(sampler, mesh(level), solved(level, i));
         displacement_m[level].push_back(std::move(values.displacement_m));
-        mean_pa[level].push_back(pressure_pa(values.stress_pa));
         stress_pa[level].push_back(std::move(values.stress_pa));
       }
     }
-    const auto bands_m = point_band(displacement_m, finer), bands_pa = point_band(stress_pa, finer),
-               pressure_bands_pa = point_band(mean_pa, finer);
+    const auto bands_m = point_band(displacement_m, finer), bands_pa = point_band(stress_pa, finer);
     std::vector<ProbeInstant> probes;
     for (std::size_t i = 0; i < result_.instants.size(); ++i) {
-      probes.push_back(
-          {{displacement_m.back()[i], stress_pa.back()[i]}, bands_m[i], bands_pa[i], pressure_bands_pa[i]});
+      probes.push_back({{displacement_m.back()[i], stress_pa.back()[i]}, bands_m[i], bands_pa[i]});
     }
     add_sensitivities(points_m, {displacement_m[0], stress_pa[0]}, probes);
     return probes;
@@ -151,15 +147,12 @@ class StoredInside : public Inside {
         const double part = share * instants[i].depth_m / instants[deepest].depth_m;
         probes[i].displacement_uncertainty_m += part * change_m;
         probes[i].stress_uncertainty_pa += part * change_pa.colwise().norm().transpose();
-        probes[i].pressure_uncertainty_pa += part * pressure_pa(change_pa).cwiseAbs().transpose();
       }
     }
     for (std::size_t i = 0; i < probes.size(); ++i) {
       if (!std::isnan(instants[i].force_uncertainty_n)) continue;
-      for (Eigen::VectorXd* band : {&probes[i].displacement_uncertainty_m, &probes[i].stress_uncertainty_pa,
-                                    &probes[i].pressure_uncertainty_pa}) {
-        band->setConstant(std::numeric_limits<double>::quiet_NaN());
-      }
+      probes[i].displacement_uncertainty_m.setConstant(std::numeric_limits<double>::quiet_NaN());
+      probes[i].stress_uncertainty_pa.setConstant(std::numeric_limits<double>::quiet_NaN());
     }
   }
 

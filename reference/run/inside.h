@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -30,7 +31,8 @@ struct ProbeInstant {
   PointValues values;
   Eigen::VectorXd displacement_uncertainty_m;  ///< of the vector's length and of each component
   Eigen::VectorXd stress_uncertainty_pa;       ///< of each component: that of the tensor's Frobenius norm
-  Eigen::VectorXd pressure_uncertainty_pa;
+  /// What that allows the pressure, 1 / sqrt(3) of it: differences of a single number vanish by chance.
+  [[nodiscard]] Eigen::VectorXd pressure_uncertainty_pa() const { return stress_uncertainty_pa / std::sqrt(3.0); }
 };
 
 /// The solutions of a result. Where a point lies on the common side of several cells it has the mean of their stresses;

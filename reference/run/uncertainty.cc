@@ -76,7 +76,6 @@ std::vector<Eigen::VectorXd> point_band(
 
 template <int rows>
 using Levels = std::vector<std::vector<Eigen::Matrix<double, rows, Eigen::Dynamic>>>;
-template std::vector<Eigen::VectorXd> point_band<1>(const Levels<1>&, const std::vector<double>&);
 template std::vector<Eigen::VectorXd> point_band<3>(const Levels<3>&, const std::vector<double>&);
 template std::vector<Eigen::VectorXd> point_band<9>(const Levels<9>&, const std::vector<double>&);
 

@@ -27,10 +27,10 @@ namespace touchstone::reference {
 [[nodiscard]] std::vector<double> force_band(const std::vector<std::vector<double>>& levels,
                                              const std::vector<double>& finer);
 
-/// The same per point for a number, a vector or a 3 x 3 matrix there, with the norm of the difference of two of them.
+/// The same per point for a vector or a 3 x 3 matrix there, with the norm of the difference of two of them.
 /// Quadratic cells do better than first order, but the far field is refined less than the contact.
 /// @param levels  [level][instant], a column per point
-/// @tparam rows  1, 3 or 9
+/// @tparam rows  3 or 9
 /// @returns per instant, per point
 template <int rows>
 [[nodiscard]] std::vector<Eigen::VectorXd> point_band(

@@ -173,7 +173,7 @@ TEST_F(UncertaintyBand, HoldsTheErrorAtProbes) {
     const std::string& where = scene_.probes[static_cast<std::size_t>(k)].name;
     EXPECT_LE(error_m.col(k).norm(), reported.displacement_uncertainty_m[k]) << where;
     EXPECT_LE(error_pa.col(k).norm(), reported.stress_uncertainty_pa[k]) << where;
-    EXPECT_LE(std::abs(pressure_pa(error_pa)[k]), reported.pressure_uncertainty_pa[k]) << where;
+    EXPECT_LE(std::abs(pressure_pa(error_pa)[k]), reported.pressure_uncertainty_pa()[k]) << where;
   }
   // An uncertainty that is too large would say nothing.
   EXPECT_LT(reported.stress_uncertainty_pa[0], 0.2 * exact.stress_pa.col(0).norm());

@@ -58,7 +58,6 @@ TEST_F(InsideTest, ProbesOfAnOldStoreNeedNoSolve) {
   // Under the tool its pressure acts on the body.
   EXPECT_NEAR(-deepest.values.stress_pa(8, 0), instant.pressure_peak_pa, 0.03 * instant.pressure_peak_pa);
   EXPECT_GT(deepest.stress_uncertainty_pa.minCoeff(), 0.0);
-  EXPECT_GE(deepest.stress_uncertainty_pa[1], std::abs(deepest.pressure_uncertainty_pa[1]));
 }
 
 TEST_F(InsideTest, TheUncertaintyHoldsTheSensitivities) {
@@ -76,7 +75,7 @@ TEST_F(InsideTest, TheUncertaintyIsUnknownBelowThreeMeshes) {
   const auto probes = inside(scene_, solved(), root_)->probes();
   EXPECT_TRUE(std::isnan(probes.back().displacement_uncertainty_m[0]));
   EXPECT_TRUE(std::isnan(probes.back().stress_uncertainty_pa[0]));
-  EXPECT_TRUE(std::isnan(probes.back().pressure_uncertainty_pa[0]));
+  EXPECT_TRUE(std::isnan(probes.back().pressure_uncertainty_pa()[0]));
 }
 
 TEST_F(InsideTest, ALostSolutionIsNamed) {
