@@ -142,9 +142,10 @@ void cut_batch(CellBatch& batch) noexcept {
   const std::size_t lanes = batch.lanes();
   for (std::size_t i = 0; i < lanes; ++i) {
     const auto& c = batch.corner_m;
+    const double nx = batch.nx_T[i], ny = batch.ny_T[i], nz = batch.nz_T[i], level = batch.distance_m[i];
     double at[4];
 #pragma GCC unroll 4
-    for (std::size_t k = 0; k < 4; ++k) at[k] = batch.level_m[k][i];
+    for (std::size_t k = 0; k < 4; ++k) at[k] = nx * c[k][0][i] + ny * c[k][1][i] + nz * c[k][2][i] + level;
     // Each corner, and where the plane crosses the side behind it.
     Corner corner[8];
 #pragma GCC unroll 4

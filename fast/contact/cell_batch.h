@@ -24,8 +24,7 @@ struct CellBatch {
   alignas(64) Column nx_T{}, ny_T{}, nz_T{};          ///< (nx, ny, nz) in frame T
   alignas(64) Column lowest_m{}, highest_m{};         ///< corners, over the tangent plane of the rest surface
 
-  std::array<Column, 4> level_m{};  ///< of the corners, for cut_batch()
-  alignas(64) Column area_m2{};     ///< of what cut_batch() leaves
+  alignas(64) Column area_m2{};  ///< of what cut_batch() leaves
 
   /// Lanes that loops work off: those behind `count` hold what the last one does.
   [[nodiscard]] std::size_t lanes() const noexcept { return (count + 3) / 4 * 4; }
@@ -87,8 +86,8 @@ void rest_batch(const scene::Sphere&, CellBatch&) noexcept;
 void rest_batch(const scene::Ellipsoid&, CellBatch&) noexcept;
 /// Normals in frame T, and the levels of the corners.
 void level_batch(const scene::Mat3& R_WT, CellBatch&) noexcept;
-/// Area and middle (x_m, y_m, z_m), from the cell's, of the part of the polygon of the corners where level_m, linear
-/// along its sides, is below 0: what CutPolygon gives.
+/// Area and middle (x_m, y_m, z_m), from the cell's, of the part of the polygon of the corners that is below the plane
+/// of (nx_T, ny_T, nz_T) and distance_m: what CutPolygon gives.
 void cut_batch(CellBatch&) noexcept;
 
 }  // namespace touchstone::fast

@@ -87,10 +87,7 @@ RegionExtent measure_depths(const scene::Shape& shape, const Mat3& R_WT, const V
   const auto way_out_m = exit_along(body, -d);
   keep_facing(R_WT.transpose() * d, points);
   set_depths(way_out_m, points);
-  if (points.spread) {
-    set_rises(body, way_out_m, R_WT, d, points);
-    bend_depths(body, R_WT, d, points);
-  }
+  if (points.spread) set_rises(body, way_out_m, R_WT, d, points);
   RegionExtent extent;
   Vec3 center_sum = Vec3::Zero(), plain_sum = Vec3::Zero(), deepest_W_m = Vec3::Zero();
   const int kept = points.count;

@@ -1,7 +1,6 @@
 #include "fast/contact/find_cells.h"
 
 #include "fast/contact/cell_batch.h"
-#include "fast/contact/rest_bend.h"
 #include "fast/contact/rest_distance.h"
 #include "fast/contact/tool_samples.h"
 #include "scene/base/index.h"
@@ -19,57 +18,6 @@ namespace {
 
 using scene::Mat3;
 using scene::Vec3;
-
-/// A cell's spread in two vectors, of which one is level with a plane and the other shows how the surface rises over
-/// it.
-struct Slope {
-  double rise_m;  ///< over the plane, along `up_m`
-  Vec3 up_m, level_m;
-};
-Slope slope_over(const Vec3& normal_T, const Spread& spread_m) noexcept {
-  const double rise1_m = normal_T.dot(spread_m[0]), rise2_m = normal_T.dot(spread_m[1]);
-  const double rise_m = std::sqrt(rise1_m * rise1_m + rise2_m * rise2_m);
-  if (!(rise_m > 0.0)) return {0.0, spread_m[0], spread_m[1]};
-  return {rise_m, (rise1_m * spread_m[0] + rise2_m * spread_m[1]) / rise_m,
-          (rise1_m * spread_m[1] - rise2_m * spread_m[0]) / rise_m};
-}
-
-using Levels = std::array<double, 4>;
-
-/// What the polygon of the corners is higher than the cell over the rest surface, in the mean along their intersection,
-/// where both bend. @param level_m  of the corners; @param bend_m  of the rest surface
-template <class Bend>
-double bulge_m(const SurfaceCell& cell, const Vec3& normal_T, const Levels& level_m, const Bend& bend_m) noexcept {
-  std::array<Vec3, 4> crossing_m;
-  int crossings = 0;
-  double corners_m = 0.0;
-  const auto both_m = [&](const Vec3& e_m) { return bend_m(e_m) - normal_T.dot(cell.bend_m(e_m)); };
-  for (int k = 0; k < cell.corners; ++k) {
-    const int next = k + 1 == cell.corners ? 0 : k + 1;
-    const Vec3 &from_m = nth(cell.corner_m, k), &to_m = nth(cell.corner_m, next);
-    const double from = nth(level_m, k), to = nth(level_m, next);
-    corners_m += both_m(from_m) / cell.corners;
-    if ((from < 0.0) != (to < 0.0)) nth(crossing_m, crossings++) = from_m + from / (from - to) * (to_m - from_m);
-  }
-  if (crossings < 2) return 0.0;
-  const Vec3 middle_m = 0.5 * (crossing_m[0] + crossing_m[1]), along_m = crossing_m[1] - crossing_m[0];
-  return 0.5 * (both_m(middle_m) + both_m(along_m) / 12.0 - corners_m);
-}
-
-/// Levels of a cell's corners over the rest surface, less what it bulges.
-template <class Body>
-Levels corner_levels_m(const Body& body, const Mat3& R_WT, const PlacedCell& at) noexcept {
-  const auto bend_m = [&](const Vec3& e_T_m) { return fast::bend_m(body, at.p_W, at.rest, R_WT * e_T_m); };
-  Levels level_m{};
-  for (int k = 0; k < at.cell->corners; ++k) {
-    const Vec3& corner_m = nth(at.cell->corner_m, k);
-    nth(level_m, k) = at.normal_T.dot(corner_m) + at.rest.signed_distance_m + 0.5 * bend_m(corner_m);
-  }
-  const double bulge_m = fast::bulge_m(*at.cell, at.normal_T, level_m, bend_m);
-  for (double& level : level_m) level += bulge_m;
-  if (at.cell->corners == 3) level_m[3] = level_m[0];
-  return level_m;
-}
 
 /// Cuts a polygon, tool frame about the cell's centre, with the rest surface: with its tangent plane at the closest
 /// point, which has all of a convex body on one side.
@@ -90,11 +38,7 @@ void cut(const scene::Box& box, const Mat3& R_WT, const PlacedCell& at, CutPolyg
     // Of the two faces across this axis.
     for (const double side : {1.0, -1.0}) {
       const double above_m = side * local[axis] - half_m;
-      if (!(above_m > -at.cell->radius_m)) continue;
-      const Vec3 normal_T = side * R_WT.row(axis).transpose();
-      Levels level_m{};
-      for (int k = 0; k < at.cell->corners; ++k) nth(level_m, k) = normal_T.dot(nth(at.cell->corner_m, k)) + above_m;
-      polygon.keep_below(normal_T, above_m + bulge_m(*at.cell, normal_T, level_m, [](const Vec3&) { return 0.0; }));
+      if (above_m > -at.cell->radius_m) polygon.keep_below(side * R_WT.row(axis).transpose(), above_m);
     }
   }
 }
@@ -113,9 +57,7 @@ bool by_one_plane(const scene::Box& box, const PlacedCell& at) noexcept {
 /// Straight pieces of the profile, of which several may cut a cell, and the tangent plane for an arc.
 bool by_one_plane(const scene::Revolution&, const PlacedCell&) noexcept { return false; }
 void cut(const scene::Revolution& body, const Mat3& R_WT, const PlacedCell& at, CutPolygon& polygon) noexcept {
-  const Levels closest_m = corner_levels_m(body, R_WT, at);
-  if (std::any_of(closest_m.begin(), closest_m.end(), [](double level_m) { return level_m >= 0.0; }))
-    polygon.keep_below({closest_m.data(), polygon.corners().size()});
+  polygon.keep_below(at.normal_T, at.rest.signed_distance_m);
   for (int index = 0; index < body.piece_count(); ++index) {
     const scene::RevolutionPiece& piece = body.piece(index);
     if (!piece.straight()) continue;
@@ -126,25 +68,12 @@ void cut(const scene::Revolution& body, const Mat3& R_WT, const PlacedCell& at, 
       return normal.dot(Eigen::Vector2d(std::sqrt(local.x() * local.x() + local.y() * local.y()), local.z()) -
                         piece.start_m);
     };
-    const double level_m = level_of(at.p_W);
-    if (level_m <= -at.cell->radius_m) continue;
+    if (level_of(at.p_W) <= -at.cell->radius_m) continue;
     const auto corners = polygon.corners();
-    const Vec3 local = at.p_W - body.offset_m();
-    const double r_m = std::max(std::sqrt(local.x() * local.x() + local.y() * local.y()), piece.length_m * 1e-9);
-    const Vec3 out(local.x() / r_m, local.y() / r_m, 0.0), around_W(-out.y(), out.x(), 0.0);
-    const Vec3 normal_T = R_WT.transpose() * (normal.x() * out + normal.y() * Vec3::UnitZ());
-    const auto around_m = [&](const Vec3& e_T_m) {
-      const double part_m = around_W.dot(R_WT * e_T_m);
-      return normal.x() / r_m * part_m * part_m;
-    };
-    Levels corner_level_m{};
-    for (int k = 0; k < at.cell->corners; ++k)
-      nth(corner_level_m, k) = level_of(at.p_W + R_WT * nth(at.cell->corner_m, k));
-    const double shift_m = bulge_m(*at.cell, normal_T, corner_level_m, around_m);
     std::array<double, CutPolygon::max_corners> level{};
     bool cuts = false;
     for (std::size_t k = 0; k < corners.size(); ++k) {
-      level[k] = level_of(at.p_W + R_WT * corners[k]) + shift_m;
+      level[k] = level_of(at.p_W + R_WT * corners[k]);
       cuts = cuts || level[k] >= 0.0;
     }
     if (cuts) polygon.keep_below({level.data(), corners.size()});
@@ -235,9 +164,6 @@ class CellFinder {
   /// Whether the points that take() has made are enough for the lever of the mass centre.
   [[nodiscard]] bool enough_for_lever(const InsideSummary& inside) const noexcept {
     if (rule_.points_per_lever == 0.0 || points_.count == 0) return true;
-    // The tool's normals steady the direction where no cell is a group.
-    const auto is_group = [](const CellPart& part) { return part.at->cell->group >= 0; };
-    if (std::none_of(scratch_.parts.begin(), scratch_.parts.end(), is_group)) return true;
     const double mean = inside.normal_sum.norm() / inside.weight_sum;
     const double spread = std::sqrt(std::max(0.0, 1.0 - mean * mean));
     const double radius_m = std::sqrt(inside_m2_ / std::numbers::pi);
@@ -249,13 +175,11 @@ class CellFinder {
     points_.count = 0;
     points_.spread = true;
     summary_ = {};
-    by_tool_ = {};
-    std::vector<CellPart>& parts = scratch_.parts;
+    const std::vector<CellPart>& parts = scratch_.parts;
     for (std::size_t begin = 0, end; begin < parts.size(); begin = end) {
       batch_.count = 0;
       for (end = begin; end < parts.size() && batch_.count < CellBatch::size; ++end) {
         if (parts[end].kind != CellPart::Kind::rim) continue;
-        lift(parts[end]);
         const Vec3 p_W = parts[end].at->p_W + at_.R_WT * parts[end].off_m;
         batch_.set(batch_.count++, p_W, 0.0);
       }
@@ -279,67 +203,10 @@ class CellFinder {
         }
       }
     }
-    steady_direction();
     return summary_;
   }
 
  private:
-  /// The sum of InsideSummary from the tool's normals n_T. Over a surface with curvatures k1 and k2 that ends where the
-  /// depth is 0, the divergence theorem for grad(depth^2) gives
-  ///   integral of depth n = integral of (depth n . n_T - depth^2 (k1 + k2) / 2) n_T
-  ///                         - integral of depth^2 v / 2 along both sides of each kink,
-  /// n the rest surface's normal, v out of that side's surface at right angles to the kink.
-  struct ByTool {
-    Vec3 normal_sum_T = Vec3::Zero();
-    double weight_sum = 0.0;
-    void add(const SurfaceCell& cell, double cosine, double depth_m, double area_m2) noexcept {
-      const double weight =
-          area_m2 * depth_m * (cosine - 0.5 * depth_m * (cell.around_per_m.dot(cell.normal_T) + cell.along_per_m));
-      normal_sum_T += weight * cell.normal_T;
-      weight_sum += std::abs(weight);
-    }
-  };
-
-  /// What 1 - |mean|^2 of unit vectors is.
-  [[nodiscard]] static double spread2(const Vec3& sum, double weight_sum) noexcept {
-    return weight_sum > 0.0 ? std::max(0.0, 1.0 - sum.squaredNorm() / (weight_sum * weight_sum)) : 0.0;
-  }
-
-  /// A far mass centre multiplies the direction's error, which is that of a mean of normals that differ: takes the rest
-  /// surface's normals or the tool's, in proportion to how little they differ.
-  void steady_direction() noexcept {
-    if (rule_.points_per_lever == 0.0 || points_.count == 0) return;
-    const double rest2 = spread2(summary_.normal_sum, summary_.weight_sum);
-    const double radius_m = std::sqrt(inside_m2_ / std::numbers::pi);
-    const double lever = std::sqrt(rest2) * points_.p_T_m(0).norm() / radius_m;
-    const double x = std::clamp((lever - lever_from) / (lever_to - lever_from), 0.0, 1.0);
-    if (!(x > 0.0)) return;
-    const double tool2 = spread2(by_tool_.normal_sum_T, by_tool_.weight_sum);
-    for (const CellPart& part : scratch_.parts) {
-      if (part.at->cell->group >= 0) return;
-      if (part.kind != CellPart::Kind::outside && part.at->cell->kinks != 0) add_kinks(*part.at->cell);
-    }
-    const double by_tool = x * x * (3.0 - 2.0 * x) * rest2 * rest2 / (rest2 * rest2 + tool2 * tool2);
-    summary_.normal_sum += by_tool * (at_.R_WT * by_tool_.normal_sum_T - summary_.normal_sum);
-  }
-  static constexpr double lever_from = 0.1, lever_to = 0.3;
-
-  /// Gauss's rule of two points along each side.
-  void add_kinks(const SurfaceCell& cell) noexcept {
-    for (int k = 0; k < cell.corners; ++k) {
-      if ((cell.kinks >> k & 1) == 0) continue;
-      const Vec3 from_m = nth(cell.corner_m, k), to_m = nth(cell.corner_m, (k + 1) % cell.corners);
-      const Vec3 side_m = to_m - from_m;
-      const Vec3 away_m = side_m.cross(cell.normal_T);
-      for (const double at : {0.5 - 0.5 / std::numbers::sqrt3, 0.5 + 0.5 / std::numbers::sqrt3}) {
-        const RestDistance rest =
-            rest_distance(body_, at_.R_WT * (cell.center_T_m + from_m + at * side_m) + at_.origin_W_m);
-        const double depth_m = std::max(0.0, -rest.signed_distance_m);
-        by_tool_.normal_sum_T -= 0.25 * depth_m * depth_m * away_m;
-      }
-    }
-  }
-
   /// Places the cells asked for.
   void place() noexcept {
     const auto keep = [&](std::size_t from, std::size_t to) {
@@ -400,8 +267,18 @@ class CellFinder {
            (here.cell->group >= 0 && lowest_of_group_m(here, slope(here)) < 0.0);
   }
 
+  /// A cell's spread in two vectors, of which one is level and the other shows how the surface rises.
+  struct Slope {
+    double rise_m;  ///< over the tangent plane of the rest surface, along `up_m`
+    Vec3 up_m, level_m;
+  };
   [[nodiscard]] static Slope slope(const PlacedCell& here) noexcept {
-    return slope_over(here.normal_T, here.cell->spread_m);
+    const Spread& spread_m = here.cell->spread_m;
+    const double rise1_m = here.normal_T.dot(spread_m[0]), rise2_m = here.normal_T.dot(spread_m[1]);
+    const double rise_m = std::sqrt(rise1_m * rise1_m + rise2_m * rise2_m);
+    if (!(rise_m > 0.0)) return {0.0, spread_m[0], spread_m[1]};
+    return {rise_m, (rise1_m * spread_m[0] + rise2_m * spread_m[1]) / rise_m,
+            (rise1_m * spread_m[1] - rise2_m * spread_m[0]) / rise_m};
   }
 
   [[nodiscard]] static double lowest_of_group_m(const PlacedCell& here, const Slope& slope) noexcept {
@@ -431,13 +308,8 @@ class CellFinder {
   /// and spread.
   void measure_group(const PlacedCell& here) noexcept {
     const Slope slope = CellFinder::slope(here);
-    const double half_m = std::numbers::sqrt3 * slope.rise_m, distance_m = here.rest.signed_distance_m;
-    // The rest surface bends away along the cut.
-    const auto bend_m = [&](const Vec3& e_T_m) { return fast::bend_m(body_, here.p_W, here.rest, at_.R_WT * e_T_m); };
-    const double at2 =
-        slope.rise_m > 0.0 ? std::min(3.0, distance_m * distance_m / (slope.rise_m * slope.rise_m)) : 3.0;
-    const double middle_m = distance_m + 0.5 * (at2 * bend_m(slope.up_m) + bend_m(slope.level_m));
-    const double lowest_m = middle_m - half_m;
+    const double half_m = std::numbers::sqrt3 * slope.rise_m, middle_m = here.rest.signed_distance_m;
+    const double lowest_m = lowest_of_group_m(here, slope);
     if (lowest_m >= 0.0) return is_outside(here);
     if (middle_m + half_m <= 0.0) return is_inside(here);
     is_rim(here, -lowest_m / (2.0 * half_m), (0.5 * lowest_m - middle_m) / slope.rise_m * slope.up_m);
@@ -448,10 +320,7 @@ class CellFinder {
   [[nodiscard]] Cut cut_of(const PlacedCell& here) const noexcept {
     if (here.wholly_inside() || here.cell->group >= 0 || !(here.lowest_m < 0.0)) return Cut::no;
     if (!by_one_plane(body_, here)) return Cut::by_faces;
-    const double radius_m = here.cell->radius_m;
-    return here.highest_m + 0.5 * radius_m * radius_m * most_curved_per_m_ < 0.0 && here.rest.signed_distance_m < 0.0
-               ? Cut::no
-               : Cut::by_plane;
+    return here.highest_m < 0.0 && here.rest.signed_distance_m < 0.0 ? Cut::no : Cut::by_plane;
   }
 
   /// Says of up to a batch of cells how they are cut, and cuts those that one plane cuts.
@@ -463,8 +332,10 @@ class CellFinder {
       if (cut_[k] != Cut::by_plane) continue;
       const std::size_t lane = batch_.count++;
       batch_.set_corners(lane, *here.cell);
-      const Levels level_m = corner_levels_m(body_, at_.R_WT, here);
-      for (std::size_t corner = 0; corner < level_m.size(); ++corner) batch_.level_m[corner][lane] = level_m[corner];
+      batch_.distance_m[lane] = here.rest.signed_distance_m;
+      batch_.nx_T[lane] = here.normal_T.x();
+      batch_.ny_T[lane] = here.normal_T.y();
+      batch_.nz_T[lane] = here.normal_T.z();
     }
     if (batch_.count > 0) cut_batch(batch_);
   }
@@ -493,17 +364,8 @@ class CellFinder {
     const SurfaceCell& cell = *here.cell;
     const double share = cell.polygon_m2 > 0.0 ? std::min(1.0, area_m2 / cell.polygon_m2) : 0.0;
     if (!(share > 0.0)) return is_outside(here);
-    if (!(share < 1.0) && here.rest.signed_distance_m < 0.0) return is_inside(here);
     // The polygon's, moved to the surface that bulges from it.
     is_rim(here, share, center_m - cell.polygon_center_m);
-  }
-
-  /// Moves the middle of a part from the plane of the cell's mean to the mean of the part's surface.
-  static void lift(CellPart& part) noexcept {
-    const SurfaceCell& cell = *part.at->cell;
-    if (!cell.curved) return;
-    const Slope slope = CellFinder::slope(*part.at);
-    part.off_m += 0.5 * ((1.0 - part.share * part.share) * cell.bend_m(slope.up_m) - cell.bend_m(part.off_m));
   }
 
   /// @param lane  of the batch, which has the middle of the part
@@ -523,9 +385,7 @@ class CellFinder {
   /// @param whole  the cell, if all of it is the point
   void put(const Vec3& p_W, const Vec3& p_T, const SurfaceCell& cell, double area_m2, const RestDistance& rest,
            const Spread& spread_m, const SurfaceCell* whole) noexcept {
-    const Vec3 normal = mean_normal(body_, at_.R_WT, p_W, rest, spread_m);
-    summary_.add(normal, -rest.signed_distance_m, area_m2);
-    by_tool_.add(cell, normal.dot(at_.R_WT * cell.normal_T), -rest.signed_distance_m, area_m2);
+    summary_.add(mean_normal(body_, at_.R_WT, p_W, rest, spread_m), -rest.signed_distance_m, area_m2);
     if (points_.count == points_.capacity) return;
     points_.set(points_.count, p_W, p_T, cell.normal_T, area_m2, rest.signed_distance_m, cell.sample);
     points_.set_spread(points_.count++, rest.normal, spread_m, whole);
@@ -545,12 +405,10 @@ class CellFinder {
   const Placement& at_;
   const CellRule& rule_;
   double margin_m_;
-  double most_curved_per_m_ = most_curved_per_m(body_);
   RegionPoints& points_;
   CellScratch& scratch_;
   CellBatch& batch_;
   InsideSummary summary_;
-  ByTool by_tool_;
   int inside_ = 0;
   double inside_m2_ = 0.0, rim_m2_ = 0.0;
   std::array<const SurfaceCell*, CellBatch::size> cell_;  ///< asked for, not yet placed

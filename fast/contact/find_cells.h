@@ -18,9 +18,8 @@ struct CellRule {
   int points = 1;          ///< fewer than these are too few
   double rim_share = 1.0;  ///< of the area inside, in cut cells; more than that is too much
   /// Points that are asked for times the spread of the rest surface's normals over the contact, times the distance of
-  /// the mass centre over the contact's radius, where cells are groups of triangles. The direction d is the mean of
-  /// those normals, so its error grows with their spread, and that of the line through the mass centre with the
-  /// distance.
+  /// the mass centre over the contact's radius. The direction d is the mean of those normals, so its error grows with
+  /// their spread, and that of the line through the mass centre with the distance.
   double points_per_lever = 0.0;
 };
 

@@ -4,11 +4,9 @@
 
 #include "fast/contact/contact_law.h"
 #include "fast/contact/region_points.h"
-#include "fast/contact/rest_bend.h"
 #include "fast/contact/rest_distance.h"
 #include "scene/shape/solids.h"
 
-#include <algorithm>
 #include <cstddef>
 
 namespace touchstone::fast {
@@ -33,38 +31,12 @@ void set_depths(const scene::EllipsoidExit& way_out_m, RegionPoints& points) noe
   // A way that grazes the surface ends soon.
   return R_WT.transpose() * (exit_normal / std::min(exit_normal.dot(d), -0.3));
 }
-/// 1 where the way out along d meets the closest surface, 0 where that may be another side.
-/// @param against  d times the outward normal there, times -1
-[[nodiscard]] TOUCHSTONE_INLINE double straight_part(double against) noexcept {
-  const double part = 5.0 * (against - 0.5);
-  return part < 0.0 ? 0.0 : (part > 1.0 ? 1.0 : part);
-}
 /// Sets how the depths change along the two vectors of the points' spread, where d leads to the plane of the closest
 /// point.
 void set_rises(const scene::Mat3& R_WT, const scene::Vec3& d, RegionPoints& points) noexcept;
 /// The same where it leads to a face of the box.
 void set_rises(const scene::BoxExit& way_out, const scene::Mat3& R_WT, const scene::Vec3& d,
                RegionPoints& points) noexcept;
-
-/// Takes from the depths of pieces of surface, with their rises, what the rest surface bends away over them in the
-/// mean. A box bends at its edges.
-template <class Body>
-void bend_depths(const Body& body, const scene::Mat3& R_WT, const scene::Vec3& d, RegionPoints& points) noexcept {
-  const scene::Vec3 d_T = R_WT.transpose() * d;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
-    const RestDistance rest{-points.depth_m[i], points.rest_normal_W(i)};
-    const double against = -rest.normal.dot(d), part = straight_part(against);
-    if (!(part > 0.0)) continue;
-    const Spread e_T_m = points.spread_T_m(i);
-    // The way along d to the surface moves along it.
-    const double bend_m = fast::bend_m(body, points.p_W_m(i), rest, R_WT * (e_T_m[0] - points.rise1_m[i] * d_T)) +
-                          fast::bend_m(body, points.p_W_m(i), rest, R_WT * (e_T_m[1] - points.rise2_m[i] * d_T));
-    points.depth_m[i] = std::max(0.0, points.depth_m[i] - 0.5 * part * bend_m / against);
-  }
-}
-void bend_depths(const scene::Box&, const scene::Mat3& R_WT, const scene::Vec3& d, RegionPoints& points) noexcept;
-void bend_depths(const scene::Sphere&, const scene::Mat3& R_WT, const scene::Vec3& d, RegionPoints& points) noexcept;
-void bend_depths(const scene::Ellipsoid&, const scene::Mat3& R_WT, const scene::Vec3& d, RegionPoints& points) noexcept;
 
 /// Whether some of the depths, with their spread, goes beyond a limit.
 [[nodiscard]] bool reaches_limit(double limit_m, const RegionPoints& points) noexcept;

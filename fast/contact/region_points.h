@@ -49,9 +49,6 @@ struct RegionPoints {
   [[nodiscard]] double depth_spread_m(std::size_t i) const noexcept {
     return std::sqrt(rise1_m[i] * rise1_m[i] + rise2_m[i] * rise2_m[i]);
   }
-  [[nodiscard]] scene::Vec3 rest_normal_W(std::size_t i) const noexcept {
-    return {rest_nx_W[i], rest_ny_W[i], rest_nz_W[i]};
-  }
   void set_rest_normal(int k, const scene::Vec3& rest_normal_W) noexcept {
     rest_nx_W[k] = rest_normal_W.x();
     rest_ny_W[k] = rest_normal_W.y();

@@ -94,7 +94,6 @@ std::array<SurfaceCell, 2> band_halves(const SurfaceCell& cell) noexcept {
     }
     half[0].end_m = half[1].start_m = middle_m;
     half[0].end_normal = half[1].start_normal = normal;
-    half[0].end_kink = half[1].start_kink = false;
     half[0].arc_angle = half[1].arc_angle = 0.5 * whole.arc_angle;
   } else {
     half[0].end_azimuth = half[1].start_azimuth = (whole.start_azimuth + whole.end_azimuth).normalized();
@@ -116,20 +115,10 @@ std::array<SurfaceCell, 2> flat_halves(const SurfaceCell& cell) noexcept {
   }
   const Vec3 a = corner(longest), b = corner(longest + 1), c = corner(longest + 2);
   const Vec3 middle = 0.5 * (a + b);
-  const auto kink = [&](int side, int as) { return (cell.kinks >> ((longest + side) % cell.corners) & 1) << as; };
-  std::array<SurfaceCell, 2> parts;
-  if (cell.corners == 3) {
-    parts = {flat_cell(std::array{a, middle, c}), flat_cell(std::array{middle, b, c})};
-    parts[0].kinks = static_cast<std::int8_t>(kink(0, 0) | kink(2, 2));
-    parts[1].kinks = static_cast<std::int8_t>(kink(0, 0) | kink(1, 1));
-    return parts;
-  }
+  if (cell.corners == 3) return {flat_cell(std::array{a, middle, c}), flat_cell(std::array{middle, b, c})};
   const Vec3 d = corner(longest + 3);
   const Vec3 opposite = 0.5 * (c + d);
-  parts = {flat_cell(std::array{a, middle, opposite, d}), flat_cell(std::array{middle, b, c, opposite})};
-  parts[0].kinks = static_cast<std::int8_t>(kink(0, 0) | kink(2, 2) | kink(3, 3));
-  parts[1].kinks = static_cast<std::int8_t>(kink(0, 0) | kink(1, 1) | kink(2, 2));
-  return parts;
+  return {flat_cell(std::array{a, middle, opposite, d}), flat_cell(std::array{middle, b, c, opposite})};
 }
 
 }  // namespace
@@ -146,7 +135,6 @@ SurfaceCell flat_cell(std::span<const Vec3> corners_T_m) noexcept {
   cell.area_m2 = cell.corners == 3 ? 0.5 * length_m2 : length_m2;
   cell.normal_T = length_m2 > 0.0 ? Vec3(across / length_m2) : Vec3(Vec3::UnitZ());
   cell.radius_m = farthest_m(cell);
-  cell.kinks = static_cast<std::int8_t>((1 << cell.corners) - 1);
   cell.polygon_m2 = cell.area_m2;
   cell.polygon_center_m.setZero();
   if (cell.corners == 3) {
@@ -187,10 +175,6 @@ SurfaceCell band_cell(const Band& band) noexcept {
   cell.polygon_m2 = polygon.area_m2;
   cell.polygon_center_m = polygon.center_m;
   cell.spread_m = quadrilateral_spread(cell.corner_m);
-  cell.kinks = static_cast<std::int8_t>((band.start_kink ? 1 : 0) | (band.end_kink ? 4 : 0));
-  cell.around = {-azimuth.y(), azimuth.x(), 0.0};
-  cell.along_per_m = band.arc_radius_m > 0.0 ? 1.0 / band.arc_radius_m : 0.0;
-  cell.around_per_m = Vec3(azimuth.x(), azimuth.y(), 0.0) * (moments.r_m2 / moments.r2_m3);
   return cell;
 }
 

@@ -23,7 +23,6 @@ struct Band {
   double arc_angle = 0.0;                                           ///< an arc's turn [rad]
   Vec2 start_azimuth = Vec2::UnitX(), end_azimuth = Vec2::UnitX();  ///< unit vectors
   double turn = 0.0;                                                ///< angle between the two, below pi [rad]
-  bool start_kink = false, end_kink = false;                        ///< the surface turns there
   scene::Vec3 axis_T_m = scene::Vec3::Zero();                       ///< where (0, 0) is
 };
 
@@ -38,26 +37,15 @@ struct alignas(64) SurfaceCell {
   double area_m2 = 0.0;    ///< of triangles that look different ways: projected along their normal_T
   double radius_m = 0.0;   ///< about the centre, of a ball with all of it
   Spread spread_m;
-  std::int32_t sample = 0;   ///< of ToolSamples, whose cell this is or was cut from
-  std::int32_t group = -1;   ///< of CellGroups: neighbouring triangles of a fine mesh
-  std::int8_t corners = 4;   ///< 3 or 4
-  bool curved = false;       ///< `band` says how; without group: flat
-  std::int8_t kinks = 0;     ///< bit k: the surface turns at the side from corner k to the next
-  double along_per_m = 0.0;  ///< curvature of the band's meridian
-  scene::Vec3 around = scene::Vec3::Zero(), around_per_m = scene::Vec3::Zero();  ///< the way round the band, and how
-                                                                                 ///< it bends, outward
+  std::int32_t sample = 0;              ///< of ToolSamples, whose cell this is or was cut from
+  std::int32_t group = -1;              ///< of CellGroups: neighbouring triangles of a fine mesh
+  std::int8_t corners = 4;              ///< 3 or 4
+  bool curved = false;                  ///< `band` says how; without group: flat
   std::array<scene::Vec3, 4> corner_m;  ///< from the centre, in order; of a group: of a rectangle around it
   double polygon_m2 = 0.0;              ///< area of the polygon of its corners
   scene::Vec3 polygon_center_m;         ///< from the centre
   double bulge_m = 0.0;                 ///< no point of it is further from the polygon of its corners
   Band band;
-
-  /// How a curve through the cell bends, outward: of a band's meridian or of the way round it, times the square of the
-  /// vector's part along each [m].
-  [[nodiscard]] scene::Vec3 bend_m(const scene::Vec3& e_T_m) const noexcept {
-    const double part_m = e_T_m.dot(around), part2_m2 = part_m * part_m;
-    return part2_m2 * around_per_m + (e_T_m.squaredNorm() - part2_m2) * along_per_m * normal_T;
-  }
 };
 
 /// Flat cell. @param corners_T_m three or four, counterclockwise from outside

@@ -188,8 +188,6 @@ ToolSamples sample_revolution(const scene::Revolution& tool, int count) {
       part.arc_center_m = piece.center_m;
       part.arc_radius_m = piece.radius_m;
       part.arc_angle = (piece.end_angle - piece.start_angle) / bands;
-      part.start_kink = band == 0 && !rings.empty() && (rings.back().band.end_normal - start.normal).norm() > 1e-9;
-      if (part.start_kink) rings.back().band.end_kink = true;
       rings.push_back({middle.rz_m, middle.normal, part});
     }
   }
