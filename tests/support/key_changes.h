@@ -136,7 +136,7 @@ inline const std::vector<TextChange>& text_changes() {
       {"tool.file", "compass.obj", "mallet.stl"},
       {"contact.law", "k1_n_per_m = 4000.0\n", "law = \"area_aware\"\nk1_per_radius_n_per_m2 = 8.0e6\n"},
       {"body.profile_rz_m", "[0.0, 0.06]]", "[0.0, 0.061]]"},
-      {"fast.formulation", "[fast]\n", "[fast]\nformulation = \"published\"\n"},
+      {"fast.formulation", "[fast]\ntriangles", "[fast]\nformulation = \"published\"\ntriangles"},
       {"track[].position_m", "[0.004, 0.0, 0.067]", "[0.004, 0.0, 0.0671]"},
       {"track[].time_s", "time_s = 0.05", "time_s = 0.06"},
       {"track[].depth_m", "depth_m = 0.002", "depth_m = 0.0021"},
