@@ -141,9 +141,6 @@ TEST_F(ResponseStep, SaysWhenItDoesNotHold) {
 TEST_F(ResponseStep, SaysWhatItNeeds) {
   EXPECT_EQ(scene::response_needs(scene_), "");
   scene::Scene other = scene_;
-  other.contact.friction = scene::Friction{.K = 1.0, .beta = 1.0, .mu_D = 0.5};
-  EXPECT_THAT(scene::response_needs(other), HasSubstr("without friction"));
-  other = scene_;
   other.tool.shape = scene::ToolShape::mesh;
   EXPECT_THAT(scene::response_needs(other), HasSubstr("one contact region"));
   other = scene_;
