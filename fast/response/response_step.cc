@@ -195,6 +195,9 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
   const double curvature_per_m =
       weights.sum<double>([&](int k) { return model.local[static_cast<std::size_t>(k)].curvature_per_m(); });
 
+  // Friction sways the surface down or up, as the load sways it sideways: that of the last tick.
+  const double pulled_m = state.slip ? sway.dot(state.slip->force_n()) : 0.0;
+
   // Newton's method on the indentation; the law is convex or nearly so, and D itself is never too small a start.
   double indentation_m = contact.depth_m;
   LocalContact law;
@@ -208,7 +211,7 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
     path.per_n = {shift_m_per_n.dot(grid.axes.col(0)) / grid.spacing_m[0],
                   shift_m_per_n.dot(grid.axes.col(1)) / grid.spacing_m[1]};
     const double C = compliance_m_per_n(model, path.start + law.force_n * path.per_n);
-    const double open_m = indentation_m + C * law.force_n - contact.depth_m;
+    const double open_m = indentation_m + C * law.force_n + pulled_m - contact.depth_m;
     const double step_m = open_m / (1.0 + C * law.stiffness_n_per_m);
     indentation_m = std::max(indentation_m - step_m, 1e-3 * indentation_m);
     if (std::abs(step_m) < 1e-13 * contact.depth_m) break;

@@ -152,7 +152,7 @@ Slip slip(const SlipSprings& springs, const LocalContact& law, double indentatio
                       local_step_m, forces);
   }
   Slip out;
-  out.force_n = trial.force_n;
+  out.force_n = state.last_n = trial.force_n;
   for (int i = 0; i < touching; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double a0 = ends[k].radius_m, a1 = std::min(ends[k + 1].radius_m, top.radius_m);

@@ -55,10 +55,13 @@ struct SlipState {
   std::array<double, SlipSprings::count> stiffness_n_per_m{};  ///< of shear; 0 for springs that do not touch
   int touching = 0;                                            ///< the first ones
   Eigen::Matrix<double, 3, 2> frame = Eigen::Matrix<double, 3, 2>::Zero();  ///< world; zero before the first tick
+  Eigen::Vector2d last_n = Eigen::Vector2d::Zero();                         ///< their sum
   Eigen::Vector2d body_m = Eigen::Vector2d::Zero();                         ///< by which the body gives way sideways
   scene::Pose before;                                                       ///< of the last tick
   bool sliding = false;                                                     ///< all springs slip
 
+  /// On the body, world; of the last tick.
+  [[nodiscard]] scene::Vec3 force_n() const noexcept { return frame * last_n; }
   /// Turns the frame to this tick's normal. @returns whether there is a last tick
   bool carry(const scene::Vec3& normal) noexcept;
 };
