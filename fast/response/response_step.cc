@@ -271,13 +271,15 @@ void response_shape(const ResponseModel& model, ResponseState& state) noexcept {
     set(state.field.displacement_m, i, spread_displacement_m(contact.load, model.half_space, at(model.rest_m, i)));
   }
   const scene::LoadGrid& grid = model.response.grid;
-  const GridWeights weights(grid, grid.place(contact.load.center_m));
+  // The body carries the load where the tool is.
+  const GridWeights weights(grid, grid.place(contact.load.center_m + contact.stretch_m));
+  const Vec3 lateral_n = state.wrench.force_n - state.wrench.force_n.dot(contact.at.normal) * contact.at.normal;
   for (int k = 0; k < weights.count; ++k) {
     const auto [point, weight] = weights.terms[static_cast<std::size_t>(k)];
     add_column(model.response.smooth_m_per_n.col(point).data(), static_cast<float>(weight * contact.load.force_n),
                state.field.displacement_m);
     if (!state.slip) continue;
-    const Eigen::Vector2d along_n = weight * grid.along(point).transpose() * contact.load.shear_n();
+    const Eigen::Vector2d along_n = weight * grid.along(point).transpose() * -lateral_n;
     for (int axis = 0; axis < 2; ++axis) {
       add_column(model.response.smooth_m_per_n.col(grid.count() + 2 * point + axis).data(),
                  static_cast<float>(along_n[axis]), state.field.displacement_m);

@@ -182,7 +182,8 @@ TEST_F(ResponseEngineTest, FrictionIsInTheRecordsAndThePlan) {
   const scene::RegionRecord& last = run.instants.back().regions.front();
   EXPECT_TRUE(last.sliding);
   const double normal_n = last.force_n.z();
-  EXPECT_NEAR(last.friction_n.norm(), 0.4 * normal_n, 1e-9 * normal_n);
+  // The springs that were pulled aside while the tool was pressed in have nearly turned to its way.
+  EXPECT_NEAR(last.friction_n.norm(), 0.4 * normal_n, 1e-4 * normal_n);
   EXPECT_LT(last.friction_n.x(), -0.39 * normal_n);
   EXPECT_EQ(run.instants.back().support_force_n, last.force_n);
   // Shear is part of the traction, against the tool's motion on the tool and with it on the body.
