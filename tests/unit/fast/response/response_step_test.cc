@@ -173,7 +173,10 @@ TEST_F(ResponseFriction, WithoutACoefficientItIsTheFrictionlessContact) {
     (void)response_step(model, pose, state);
     (void)response_step(frictionless, pose, other);
     EXPECT_EQ(state.wrench.force_n, other.wrench.force_n);
-    EXPECT_EQ(state.field.displacement_m, other.field.displacement_m);
+    EXPECT_EQ(state.contact.load.center_m, other.contact.load.center_m);
+    // The shape has the columns for the pressure's part along the surface, too.
+    const Eigen::Matrix3Xd shape_m = matrix_of(state.field.displacement_m);
+    EXPECT_LT((shape_m - matrix_of(other.field.displacement_m)).norm(), 0.05 * shape_m.norm());
   }
 }
 
