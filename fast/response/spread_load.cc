@@ -54,7 +54,7 @@ Vec3 spread_displacement_m(const SpreadLoad& load, const HalfSpace& half_space, 
   const double chi_r_per_r = r2 > 1e-9 * sum ? flux / r2 : on_axis;
   const double u_r_per_r = -scale_m2 * ((1.0 - 2.0 * half_space.nu) * chi_r_per_r + z * Vr_per_r);
   const double u_z = scale_m2 * (2.0 * (1.0 - half_space.nu) * V - z * Vz);
-  const Vec3 u_m = u_r_per_r * across_m - u_z * load.normal;
+  Vec3 u_m = u_r_per_r * across_m - u_z * load.normal;
   const Vec3 Q_n = load.shear_n();
   if (Q_n.isZero(0.0)) return u_m;
 

@@ -28,7 +28,7 @@ Vec3 half_space_displacement_m(const PointLoad& load, const Material& material, 
   const double scale_m2 = load.force_n / (4.0 * std::numbers::pi * material.shear_modulus_pa());
   const double u_r = scale_m2 * (r * z / (rho * rho * rho) - (1.0 - 2.0 * nu) * r / (rho * (rho + z)));
   const double u_z = scale_m2 * (z * z / (rho * rho * rho) + 2.0 * (1.0 - nu) / rho);
-  const Vec3 u_m = u_r * radial - u_z * load.normal;
+  Vec3 u_m = u_r * radial - u_z * load.normal;
   if (load.along_n.isZero(0.0)) return u_m;
   const double flat = (1.0 - 2.0 * nu) / (rho + z), x_n = r * load.along_n.dot(radial);
   const Vec3 d_m = r * radial - z * load.normal;
@@ -48,8 +48,8 @@ Mat3 half_space_stress_pa(const PointLoad& load, const Material& material, const
   const Vec3 down = -load.normal;
   const Vec3 side = r > 0.0 ? Vec3(down.cross(radial)) : down.unitOrthogonal();
   const Vec3 out = r > 0.0 ? radial : Vec3(side.cross(down));
-  const Mat3 stress_pa = rr * out * out.transpose() + around * side * side.transpose() + zz * down * down.transpose() +
-                         rz * (out * down.transpose() + down * out.transpose());
+  Mat3 stress_pa = rr * out * out.transpose() + around * side * side.transpose() + zz * down * down.transpose() +
+                   rz * (out * down.transpose() + down * out.transpose());
   if (load.along_n.isZero(0.0)) return stress_pa;
   const double x_n = r * load.along_n.dot(radial), sum = rho + z;
   const Vec3 d_m = r * radial - z * load.normal, r_m = r * radial;
