@@ -19,11 +19,11 @@ int run(const fast::VerbOptions& options, const ReferenceOptions& reference) {
       scene, surface, reference.store, {},
       [&](double share) { line.show(fmt::format("columns of the body's response: {:.0f} %", 100.0 * share)); });
   line.finish();
-  std::cout << fmt::format("{} columns, {} rest points, {} unknowns, {}\nResponse: {} ({:.3g} MB)\n",
-                           prepared.response.grid.count(), prepared.response.rest_points(), prepared.response.unknowns,
-                           prepared.computed ? fmt::format("computed in {:.3g} s", prepared.seconds) : "from the store",
-                           prepared.file.string(),
-                           1e-6 * static_cast<double>(std::filesystem::file_size(prepared.file)));
+  std::cout << fmt::format(
+      "{} columns, {} rest points, {} unknowns, {}\nResponse: {} ({:.3g} MB)\n", prepared.response.own_m_per_n.cols(),
+      prepared.response.rest_points(), prepared.response.unknowns,
+      prepared.computed ? fmt::format("computed in {:.3g} s", prepared.seconds) : "from the store",
+      prepared.file.string(), 1e-6 * static_cast<double>(std::filesystem::file_size(prepared.file)));
   return fast::done;
 }
 

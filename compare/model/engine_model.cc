@@ -60,7 +60,7 @@ void prepare_missing(const scene::Scene& scene, const std::function<void(const s
     if (say) say("preparing the body's response, once, for the response model");
   });
   if (prepared.computed && say) {
-    say(fmt::format("prepared {} columns in {:.3g} s: {}", prepared.response.grid.count(), prepared.seconds,
+    say(fmt::format("prepared {} columns in {:.3g} s: {}", prepared.response.own_m_per_n.cols(), prepared.seconds,
                     prepared.file.string()));
   }
 }

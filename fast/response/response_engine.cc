@@ -13,22 +13,24 @@ namespace {
 
 using scene::Vec3;
 
-/// Traction on the body at a point under the tool, along the tool's normal. Pressure is force along the load per area
-/// across it, and so is the normal traction on a surface of any slope.
+/// Traction on the body at a point under the tool. Pressure along the tool's normal is force along the load per area
+/// across it, and so is the normal traction on a surface of any slope. Shear is along the tool's surface.
 Vec3 traction_pa(const ResponseModel& model, const ResponseContact& contact, const Vec3& x_m, const Vec3& axis) {
-  const double pressure_pa = spread_pressure_pa(contact.load, x_m);
+  const double pressure_pa = spread_pressure_pa(contact.load, x_m - contact.stretch_m);
   if (pressure_pa == 0.0) return Vec3::Zero();
   const Vec3 from_axis_m = x_m - contact.at.point_m, across_m = from_axis_m - from_axis_m.dot(axis) * axis;
   const double r_m = across_m.norm();
   const double slope = model.tip.slope(std::min(r_m, 0.99 * model.tip.reach_m()));
   const Vec3 out = (r_m > 0.0 ? Vec3(axis + slope / r_m * across_m) : axis).normalized();
-  return pressure_pa * out;
+  const Vec3 shear_pa = spread_shear_pa(contact.load, x_m - contact.stretch_m);
+  return pressure_pa * out + shear_pa - shear_pa.dot(out) * out;
 }
 
 }  // namespace
 
 scene::Response stored_response(const scene::Scene& scene, const scene::Surface& surface) {
-  const std::string identity = scene::response_identity(scene.body, scene::load_grid(scene).grid.value(), surface);
+  const std::string identity = scene::response_identity(scene.body, scene::load_grid(scene).grid.value(), surface,
+                                                        scene.contact.friction.has_value());
   const std::filesystem::path file = scene::response_path(scene.fast.store, identity);
   if (!std::filesystem::exists(file)) {
     throw scene::InputError("fast.formulation: the response of this body is not there; expected the file " +
@@ -74,7 +76,9 @@ scene::InstantRecord ResponseEngine::record(double time_s, const scene::Pose& to
   record.regions.push_back({.depth_m = depth_m,
                             .force_n = state_.wrench.force_n,
                             .torque_nm = state_.wrench.torque_nm,
-                            .area_m2 = std::numbers::pi * radius_m * radius_m});
+                            .area_m2 = std::numbers::pi * radius_m * radius_m,
+                            .friction_n = contact.friction_n,
+                            .sliding = state_.slip && state_.slip->sliding});
   return record;
 }
 

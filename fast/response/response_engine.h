@@ -29,6 +29,7 @@ class ResponseEngine final : public Engine {
   }
 
   [[nodiscard]] const ResponseModel& model() const noexcept { return model_; }
+  [[nodiscard]] const ResponseContact& contact() const noexcept { return state_.contact; }
 
  private:
   StepStatus force(const scene::Pose& pose) noexcept override;

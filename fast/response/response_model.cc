@@ -45,6 +45,14 @@ ResponseModel::ResponseModel(const scene::Scene& scene, scene::Surface at_rest, 
   for (int k = 0; k < (same ? 1 : n); ++k) {
     tables.emplace_back(tip, local[static_cast<std::size_t>(k)], scene.body.material.contact_modulus_pa(), strain);
   }
+  if (scene.contact.friction) {
+    springs.emplace(*scene.contact.friction, scene.body.material.poissons_ratio, tables.front());
+    for (int k = 0; k < n; ++k) {
+      const Eigen::Matrix<double, 3, 2> along = grid.along(k);
+      const Eigen::Matrix2d own = along.transpose() * response.own_m_per_n.middleCols<2>(n + 2 * k);
+      shear_compliance.emplace_back(along * (0.5 * (own + own.transpose())) * along.transpose());
+    }
+  }
   const double held_below_m = scene.body.flat_bottom() ? 0.0 : scene.body.support_height_m;
   const double touching_m = 1e-9 * scene::body_size_m(scene.body);
   for (Eigen::Index i = 0; i < surface.points_m.cols(); ++i) {
@@ -57,13 +65,17 @@ std::size_t ResponseModel::memory_bytes() const noexcept {
                       static_cast<std::size_t>(response.smooth_m_per_n.size()) * sizeof(float) +
                       static_cast<std::size_t>(own_compliance.size()) * (1 + 6 + 11) * sizeof(double);
   for (const ContactTable& table : tables) bytes += table.memory_bytes();
+  if (springs) bytes += springs->memory_bytes() + shear_compliance.size() * sizeof(Eigen::Matrix3d);
   return bytes;
 }
 
-ResponseState::ResponseState(const ResponseModel& model) : field(model.rest_normal), near(model.rest_m[0].size()) {}
+ResponseState::ResponseState(const ResponseModel& model)
+    : field(model.rest_normal),
+      near(model.rest_m[0].size()),
+      slip(model.springs ? std::make_unique<SlipState>() : nullptr) {}
 
 std::size_t ResponseState::memory_bytes() const noexcept {
-  return field.memory_bytes() + near.size() * sizeof(std::int32_t);
+  return field.memory_bytes() + near.size() * sizeof(std::int32_t) + (slip ? sizeof(SlipState) : 0);
 }
 
 }  // namespace touchstone::fast

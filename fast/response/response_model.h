@@ -5,10 +5,14 @@
 // D_hs is the local law (contact_table.h), C(p) the normal part of the smooth response at a load's own place. m is how
 // far the load moves over the body's surface per newton: the surface slopes by b and sways by s under it, so a ball of
 // radius R touches F (R b - s) away from below its centre. Force and lateral force have one potential.
+//
+// With friction the tool's way along the surface is that of the contact on the half space (slip_springs.h) and of the
+// body, F s + C_t Q, together. The load is by its displacement C_t Q and the contact's behind.
 #pragma once
 
 #include "fast/realtime/stage_clock.h"
 #include "fast/response/contact_table.h"
+#include "fast/response/slip_springs.h"
 #include "fast/response/spread_load.h"
 #include "fast/surface/normals.h"
 #include "fast/surface/surface_patches.h"
@@ -21,6 +25,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace touchstone::fast {
@@ -42,6 +47,9 @@ struct ResponseModel {
   Eigen::Matrix3Xd sway, tilt;       ///< s [m/N] and the slope's direction b [1/N] there, world
   std::vector<LocalShape> local;     ///< of the body there
   std::vector<ContactTable> tables;  ///< one per grid point; one alone where the body is the same everywhere
+  // Only with friction:
+  std::optional<SlipSprings> springs;
+  std::vector<Eigen::Matrix3d> shear_compliance;  ///< C_t at the grid's points, world [m/N]
 
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };
@@ -53,6 +61,9 @@ struct ResponseContact {
   double energy_j = 0.0;       ///< the potential: work of a quasi-static press to here
   scene::Touch at{};           ///< p0
   SpreadLoad load;             ///< F, its place on the rest surface and its patch
+  // Only with friction:
+  scene::Vec3 friction_n = scene::Vec3::Zero();  ///< on the tool
+  scene::Vec3 stretch_m = scene::Vec3::Zero();   ///< by which friction moves the surface at the load
 };
 
 /// Everything that a step writes; all storage is taken at construction.
@@ -63,8 +74,9 @@ struct ResponseState {
   scene::Wrench wrench;  ///< on the tool
   SurfaceField field;
   bool deformed = false;
-  std::vector<std::int32_t> near;  ///< vertices near the load
-  StageClock* clock = nullptr;     ///< times of the stages, if wanted
+  std::vector<std::int32_t> near;   ///< vertices near the load
+  std::unique_ptr<SlipState> slip;  ///< from tick to tick; null without friction
+  StageClock* clock = nullptr;      ///< times of the stages, if wanted
 
   void lap(Stage stage) noexcept {
     if (clock != nullptr) clock->lap(stage);

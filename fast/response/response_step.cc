@@ -93,6 +93,39 @@ void set(Columns3& columns, std::int32_t i, const Vec3& value) noexcept {
   }
 }
 
+/// Friction of the tick: its part of the load and of the wrench.
+void add_friction(const ResponseModel& model, const scene::Pose& pose, const GridWeights& weights,
+                  const LocalContact& law, const Vec3& sway_m_per_n, ResponseState& state) noexcept {
+  ResponseContact& contact = state.contact;
+  SlipState& slips = *state.slip;
+  const Vec3 n = contact.at.normal;
+  // It acts as high over the tip's lowest point as the pressure in the mean.
+  const double r2_over_a2 = 0.4 + law.flat * (2.0 / 3.0 - 0.4);
+  const double height_m = model.tip.height_m(law.radius_m * std::sqrt(r2_over_a2));
+  const Vec3 arm_m =
+      pose.orientation * model.tip.center_T_m + (height_m - (model.tip.ball() ? model.tip.radius_m : 0.0)) * n;
+  const scene::Pose before = slips.before;
+  slips.before = pose;
+  Eigen::Vector2d step_m = Eigen::Vector2d::Zero();
+  if (slips.carry(n)) {
+    const Vec3 arm_before_m = before.orientation * (pose.orientation.conjugate() * arm_m);
+    step_m = slips.frame.transpose() * (pose.position_m + arm_m - before.position_m - arm_before_m);
+  }
+  const Eigen::Matrix3d C = weights.sum<Eigen::Matrix3d>(
+      [&](int k) -> const Eigen::Matrix3d& { return model.shear_compliance[static_cast<std::size_t>(k)]; });
+  const Eigen::Matrix2d compliance_m_per_n = slips.frame.transpose() * C * slips.frame;
+  const Slip slipped = slip(*model.springs, law, contact.indentation_m, compliance_m_per_n,
+                            law.force_n * (slips.frame.transpose() * sway_m_per_n), step_m, slips);
+  contact.stretch_m = slips.frame * (slipped.displacement_m + compliance_m_per_n * slipped.force_n);
+  contact.friction_n = -(slips.frame * slipped.force_n);
+  // Of the two distributions with this moment.
+  const Vec3 moment_n = slips.frame * slipped.moment_n_m2 / (law.radius_m * law.radius_m);
+  contact.load.punch_shear_n = (moment_n + contact.friction_n / 5.0) / (1.0 / 3.0 - 1.0 / 5.0);
+  contact.load.ball_shear_n = -contact.friction_n - contact.load.punch_shear_n;
+  state.wrench.force_n += contact.friction_n;
+  state.wrench.torque_nm += arm_m.cross(contact.friction_n);
+}
+
 /// Points under the tool lie on it. A point belongs to the contact where it is within the contact's radius, with a
 /// little to spare, and the tool is below the free surface there.
 void follow_tool(const ResponseModel& model, const ResponseContact& contact, std::int32_t near_count,
@@ -146,6 +179,7 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
   contact.load.normal = n;
   if (!(contact.depth_m > 0.0)) {
     contact.depth_m = 0.0;
+    if (state.slip) *state.slip = {};
     return status;
   }
   if (contact.at.tilt > scene::tilt_max) status |= StepStatus::tilted;
@@ -161,6 +195,9 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
   const double curvature_per_m =
       weights.sum<double>([&](int k) { return model.local[static_cast<std::size_t>(k)].curvature_per_m(); });
 
+  // Friction sways the surface down or up, as the load sways it sideways: that of the last tick.
+  const double pulled_m = state.slip ? sway.dot(state.slip->force_n()) : 0.0;
+
   // Newton's method on the indentation; the law is convex or nearly so, and D itself is never too small a start.
   double indentation_m = contact.depth_m;
   LocalContact law;
@@ -174,7 +211,7 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
     path.per_n = {shift_m_per_n.dot(grid.axes.col(0)) / grid.spacing_m[0],
                   shift_m_per_n.dot(grid.axes.col(1)) / grid.spacing_m[1]};
     const double C = compliance_m_per_n(model, path.start + law.force_n * path.per_n);
-    const double open_m = indentation_m + C * law.force_n - contact.depth_m;
+    const double open_m = indentation_m + C * law.force_n + pulled_m - contact.depth_m;
     const double step_m = open_m / (1.0 + C * law.stiffness_n_per_m);
     indentation_m = std::max(indentation_m - step_m, 1e-3 * indentation_m);
     if (std::abs(step_m) < 1e-13 * contact.depth_m) break;
@@ -197,11 +234,7 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
   // The foot of a ball moves less than its centre over a round body.
   if (model.tip.ball()) lateral_n /= 1.0 + curvature_per_m * (model.tip.radius_m - contact.depth_m);
 
-  const Eigen::Vector2d moved = law.force_n * path.per_n;
-  const scene::SurfaceQuery loaded =
-      model.body->query(contact.at.point_m + moved[0] * grid.spacing_m[0] * grid.axes.col(0) +
-                        moved[1] * grid.spacing_m[1] * grid.axes.col(1));
-  contact.load = {loaded.point_m, loaded.normal, law.force_n, law.radius_m, law.flat, law.widening, law.peaked};
+  contact.load = {contact.at.point_m, n, law.force_n, law.radius_m, law.flat, law.widening, law.peaked};
   contact.energy_j = local_energy_j(model, weights, indentation_m) + contact.depth_m * law.force_n -
                      indentation_m * law.force_n - body_energy_j(model, path, law.force_n);
   state.wrench.force_n = law.force_n * n + lateral_n;
@@ -209,6 +242,16 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
   const Vec3 arm_m = model.tip.ball() ? center_m : Vec3(center_m + law.force_n * shift_m_per_n);
   state.wrench.torque_nm = arm_m.cross(state.wrench.force_n);
   state.lap(Stage::force);
+  if (state.slip) {
+    add_friction(model, pose, weights, law, sway, state);
+    state.lap(Stage::friction);
+  }
+  const Eigen::Vector2d moved = law.force_n * path.per_n;
+  const scene::SurfaceQuery loaded =
+      model.body->query(contact.at.point_m - contact.stretch_m + moved[0] * grid.spacing_m[0] * grid.axes.col(0) +
+                        moved[1] * grid.spacing_m[1] * grid.axes.col(1));
+  contact.load.center_m = loaded.point_m;
+  contact.load.normal = loaded.normal;
   return status;
 }
 
@@ -228,11 +271,19 @@ void response_shape(const ResponseModel& model, ResponseState& state) noexcept {
     set(state.field.displacement_m, i, spread_displacement_m(contact.load, model.half_space, at(model.rest_m, i)));
   }
   const scene::LoadGrid& grid = model.response.grid;
-  const GridWeights weights(grid, grid.place(contact.load.center_m));
+  // The body carries the load where the tool is.
+  const GridWeights weights(grid, grid.place(contact.load.center_m + contact.stretch_m));
+  const Vec3 lateral_n = state.wrench.force_n - state.wrench.force_n.dot(contact.at.normal) * contact.at.normal;
   for (int k = 0; k < weights.count; ++k) {
     const auto [point, weight] = weights.terms[static_cast<std::size_t>(k)];
     add_column(model.response.smooth_m_per_n.col(point).data(), static_cast<float>(weight * contact.load.force_n),
                state.field.displacement_m);
+    if (!state.slip) continue;
+    const Eigen::Vector2d along_n = weight * grid.along(point).transpose() * -lateral_n;
+    for (int axis = 0; axis < 2; ++axis) {
+      add_column(model.response.smooth_m_per_n.col(grid.count() + 2 * point + axis).data(),
+                 static_cast<float>(along_n[axis]), state.field.displacement_m);
+    }
   }
   hold(model.free, state.field.displacement_m);
   state.lap(Stage::interpolation);

@@ -6,7 +6,8 @@
 
 namespace touchstone::fast {
 
-/// No heap, lock, throw, log or file access happens below; equal poses give equal bits, whatever went before.
+/// No heap, lock, throw, log or file access happens below. Equal poses give equal bits; with friction, equal ways do,
+/// from the tick in which the tool touches on.
 StepStatus response_step(const ResponseModel& model, const scene::Pose& pose, ResponseState& state) noexcept;
 
 /// Its parts: the force, which a device waits for, then the shape.

@@ -1,4 +1,4 @@
-// Displacement of a half space under a round patch of pressure, at every vertex of a surface.
+// Displacement of a half space under a round patch of pressure and shear, at every vertex of a surface.
 //
 // With G the shear modulus, z into the half space and V the potential of the pressure, total force 1,
 //   u_r = -((1 - 2 nu) r dchi/dr + z r dV/dr) / (4 pi G r),   u_z = (2 (1 - nu) V - z dV/dz) / (4 pi G),
@@ -6,6 +6,10 @@
 // sources on the axis from z = -ia to ia of density (3/4) (a^2 - s^2) / a^3 and 1 / (2 a). Both have closed forms in
 // the oblate coordinates r^2 = (a^2 + l^2) (1 - c^2), z = l c (A. E. H. Love, Q. J. Math. 10 (1939) 161-175; I. N.
 // Sneddon 1965). Some radii away the second moment of the sources is enough.
+//
+// Shear along x with the same distributions, dpsi/dz = chi (K. L. Johnson, Contact Mechanics (1985), 3.6):
+//   u_x = (2 V + 2 nu psi_xx - z chi_xx) / (4 pi G),   u_y = (2 nu psi_xy - z chi_xy) / (4 pi G),
+//   u_z = ((1 - 2 nu) chi_x - z V_x) / (4 pi G).
 #pragma once
 
 #include "fast/surface/surface_patches.h"
@@ -25,6 +29,9 @@ struct SpreadLoad {
   // Of the pressure alone, by finite strain:
   double widening = 1.0;  ///< radius of the contact over a
   double peaked = 0.0;    ///< share of a pressure as (1 - r^2)^(3/2)
+  // Friction on the body, along the surface: the parts with the ball's and the flat punch's distribution.
+  scene::Vec3 ball_shear_n = scene::Vec3::Zero(), punch_shear_n = scene::Vec3::Zero();
+  [[nodiscard]] scene::Vec3 shear_n() const noexcept { return ball_shear_n + punch_shear_n; }
 };
 
 /// Elastic numbers of the formulas.
@@ -37,6 +44,9 @@ struct HalfSpace {
 /// At one point, by the closed forms [m].
 [[nodiscard]] scene::Vec3 spread_displacement_m(const SpreadLoad& load, const HalfSpace& half_space,
                                                 const scene::Vec3& x_m) noexcept;
+
+/// Shear of the patch there [Pa].
+[[nodiscard]] scene::Vec3 spread_shear_pa(const SpreadLoad& load, const scene::Vec3& x_m) noexcept;
 
 /// Pressure of the patch, along its normal, at a point as far from its axis [Pa]; 0 outside. On a flat punch's rim,
 /// where it is infinite, that very near it.

@@ -135,11 +135,20 @@ scene::Plan response_plan(const scene::Scene& scene) {
       "of a linear half space under the tool's true surface, tabulated over the depth, times a factor of finite "
       "strain that depends on Poisson's ratio; in series with the body's compliance",
       cost({Stage::force}));
-  lines.leaves_out("friction", "the scene has no [contact.friction]");
+  if (const auto& friction = scene.contact.friction) {
+    lines.models("friction",
+                 fmt::format("sticking up to {:.3g} F_n^{:.3g}, slipping at {:.3g} F_n, from the contact's edge to its "
+                             "middle; in series with the body's compliance sideways",
+                             friction->K, friction->beta, friction->mu_D),
+                 cost({Stage::friction}));
+  } else {
+    lines.leaves_out("friction", "the scene has no [contact.friction]");
+  }
   lines.models(
       "body",
-      fmt::format("{} columns of its linear response, {:.3g} mm apart{}", grid.count(),
-                  1e3 * std::max(grid.spacing_m[0], grid.spacing_m[1]), not_there.empty() ? "" : "; " + not_there),
+      fmt::format("{} columns of its linear response, {:.3g} mm apart{}",
+                  grid.count() * (scene.contact.friction ? 3 : 1), 1e3 * std::max(grid.spacing_m[0], grid.spacing_m[1]),
+                  not_there.empty() ? "" : "; " + not_there),
       "computed once by `touchstone prepare`");
   lines.models("surface",
                fmt::format("{} triangles: the half space in closed form and the columns", scene.fast.triangles),

@@ -12,7 +12,8 @@ Prepared prepare_response(const scene::Scene& scene, const scene::Surface& surfa
                           const std::function<void()>& begin, const std::function<void(double)>& progress) {
   const scene::FoundGrid found = scene::load_grid(scene);
   if (!found.grid) throw scene::InputError("the response model needs that " + found.why);
-  const std::string identity = scene::response_identity(scene.body, *found.grid, surface);
+  const std::string identity =
+      scene::response_identity(scene.body, *found.grid, surface, scene.contact.friction.has_value());
   Prepared out;
   out.file = scene::response_path(store, identity);
   if (std::filesystem::exists(out.file)) {
@@ -25,7 +26,8 @@ Prepared prepare_response(const scene::Scene& scene, const scene::Surface& surfa
   }
   if (begin) begin();
   const scene::Stopwatch watch;
-  out.response = smooth_response(scene.body, *found.grid, surface.points_m, {}, progress);
+  const SmoothResponseOptions options{.friction = scene.contact.friction.has_value()};
+  out.response = smooth_response(scene.body, *found.grid, surface.points_m, options, progress);
   out.computed = true;
   out.seconds = watch.wall_s();
   scene::require_writable(out.file.parent_path(), "--store");

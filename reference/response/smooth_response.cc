@@ -141,11 +141,18 @@ scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& 
   scene::Response out;
   out.grid = grid;
   out.unknowns = problem.unknowns();
-  out.smooth_m_per_n.resize(3 * m, n);
-  out.own_m_per_n.resize(3, n);
+  const Eigen::Index columns = options.friction ? 3 * n : n;
+  out.smooth_m_per_n.resize(3 * m, columns);
+  out.own_m_per_n.resize(3, columns);
   out.tilt_per_n.resize(2, n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const PointLoad load{grid.points_m.col(k), grid.normals.col(k), 1.0};
+  for (Eigen::Index column = 0; column < columns; ++column) {
+    const bool along = column >= n;
+    const Eigen::Index k = along ? (column - n) / 2 : column;
+    PointLoad load{grid.points_m.col(k), grid.normals.col(k)};
+    if (along) {
+      load.force_n = 0.0;
+      load.along_n = grid.along(static_cast<int>(k)).col((column - n) % 2);
+    }
     Nodal force_n = Nodal::Zero(3, mesh.node_count());
     for (const auto& face : mesh.faces) {
       if (face.boundary == Boundary::free) add_traction(mesh, face, inside_m, load, material, force_n);
@@ -160,15 +167,15 @@ scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& 
     const NewtonReport report = problem.solve(state);
     if (!report.converged) throw std::runtime_error("a load on the body was not solved for: " + report.trouble);
     const Eigen::Matrix3Xd w_m = sampler.at_points(state.u_m);
-    out.smooth_m_per_n.col(k) = w_m.leftCols(m).transpose().reshaped().cast<float>();
-    out.own_m_per_n.col(k) = w_m.col(m + 5 * k);
-    for (int axis = 0; axis < 2; ++axis) {
+    out.smooth_m_per_n.col(column) = w_m.leftCols(m).transpose().reshaped().cast<float>();
+    out.own_m_per_n.col(column) = w_m.col(m + 5 * k);
+    for (int axis = 0; axis < 2 && !along; ++axis) {
       const Eigen::Index low = m + 5 * k + 1 + 2 * axis;
       const double rise_m = (w_m.col(low + 1) - w_m.col(low)).dot(load.normal);
       const double run_m = (wanted_m.col(low + 1) - wanted_m.col(low)).dot(grid.axes.col(axis));
       out.tilt_per_n(axis, k) = rise_m / run_m;
     }
-    if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(n));
+    if (progress) progress(static_cast<double>(column + 1) / static_cast<double>(columns));
   }
   return out;
 }

@@ -15,7 +15,8 @@
 namespace touchstone::reference {
 
 struct SmoothResponseOptions {
-  double cells = 10.0;  ///< to the body's size; as many again to the spread of the loads
+  double cells = 10.0;    ///< to the body's size; as many again to the spread of the loads
+  bool friction = false;  ///< with loads along the surface
 };
 
 /// One factorisation and one solve per load.

@@ -28,7 +28,8 @@ void expect_sound(const ResponseEngine& engine) {
   EXPECT_TRUE(engine.wrench().force_n.allFinite() && engine.wrench().torque_nm.allFinite());
   EXPECT_TRUE(matrix_of(engine.field().displacement_m).allFinite());
   EXPECT_LT((matrix_of(engine.field().normal).colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-4);
-  EXPECT_GE(engine.wrench().force_n.z(), 0.0);
+  const ResponseContact& contact = engine.contact();
+  EXPECT_GE((engine.wrench().force_n - contact.friction_n).dot(contact.at.normal), 0.0);
 }
 
 // Depths from a picometre to three times the ball's radius: force and shape are finite, the force rises with the depth,
@@ -111,6 +112,35 @@ TEST(ResponseExtremes, NoHistory) {
   EXPECT_EQ(slow.wrench().force_n, jumping.wrench().force_n);
   EXPECT_EQ(slow.field().displacement_m, jumping.field().displacement_m);
   EXPECT_EQ(slow.field().normal, jumping.field().normal);
+}
+
+// Coefficients of friction from 0 to 1e6 under a tool that jumps over a cube and a ball: force and shape are finite,
+// and the friction is at most its limit. As printed: There is no such model.
+TEST(ResponseExtremes, FrictionOverAllCoefficients) {
+  for (const bool round : {false, true}) {
+    scene::Scene scene = round ? test::ball_on_sphere() : press();
+    scene.fast.triangles = 600;
+    for (const double mu : {0.0, 1e-9, 0.3, 10.0, 1e6}) {
+      scene.contact.friction = scene::Friction{.K = mu, .beta = 1.0, .mu_D = mu};
+      ResponseEngine engine = engine_of(scene);
+      double largest_n = 0.0;
+      for (int i = 0; i < 300; ++i) {
+        const double depth_m = 0.012 * std::abs(std::sin(0.7 * i)), slope = 0.3 * std::sin(i * i);
+        scene::Pose pose = test::pressed(depth_m, 0.03 * slope, 0.001 * i * std::sin(0.1 * i));
+        if (round)
+          pose.position_m = Vec3(0.0, 0.0, 0.03) + (0.04 - depth_m) * Vec3(slope, 0.2 * slope, 1.0).normalized();
+        pose.orientation = Eigen::AngleAxisd(0.3 * i, Vec3::UnitX());
+        engine.step(pose);
+        expect_sound(engine);
+        if (!engine.in_contact()) continue;
+        const scene::RegionRecord region = engine.record(0.0, pose, depth_m).regions.front();
+        const double normal_n = engine.contact().load.force_n;
+        EXPECT_LE(region.friction_n.norm(), mu * normal_n * (1.0 + 1e-9)) << mu << ' ' << i;
+        largest_n = std::max(largest_n, region.friction_n.norm());
+      }
+      EXPECT_EQ(largest_n > 0.0, mu > 0.0);
+    }
+  }
 }
 
 // A tool that leaves the grid of the response, and the body: the force stays bounded, and the status reports it. As

@@ -42,8 +42,7 @@ void run_without_heap(const scene::Scene& scene) {
   EXPECT_GT(in_contact, 190);
 }
 
-TEST(NoHeap, BelowAStepOfTheResponseModel) {
-  const scene::Scene scene = test::ball_on_cube();
+void run_response_without_heap(const scene::Scene& scene) {
   const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
   const ResponseModel model(scene, surface, test::synthetic_response(scene, surface));
   ResponseState state(model);
@@ -57,6 +56,14 @@ TEST(NoHeap, BelowAStepOfTheResponseModel) {
     largest_n = std::max(largest_n, state.wrench.force_n.norm());
   }
   EXPECT_GT(largest_n, 100.0);
+  EXPECT_EQ(state.contact.friction_n.norm() > 10.0, scene.contact.friction.has_value());
+}
+
+TEST(NoHeap, BelowAStepOfTheResponseModel) {
+  scene::Scene scene = test::ball_on_cube();
+  run_response_without_heap(scene);
+  scene.contact.friction = scene::Friction{.K = 1.0, .beta = 0.75, .mu_D = 0.3};
+  run_response_without_heap(scene);
 }
 
 TEST(NoHeap, BelowAStepOnABox) {

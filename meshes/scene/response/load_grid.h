@@ -19,6 +19,13 @@ struct LoadGrid {
   Eigen::Matrix3Xd normals;   ///< outward there
 
   [[nodiscard]] int count() const noexcept { return counts[0] * counts[1]; }
+  /// Directions of the loads along the surface at a point, unit and perpendicular: the first is nearest to axes' first.
+  [[nodiscard]] Eigen::Matrix<double, 3, 2> along(int point) const noexcept {
+    const Vec3 normal = normals.col(point), first = axes.col(0) - axes.col(0).dot(normal) * normal;
+    Eigen::Matrix<double, 3, 2> out;
+    out << first.normalized(), normal.cross(first).normalized();
+    return out;
+  }
   /// A surface point in steps of the grid: 0 to counts - 1 in each direction where it is inside.
   [[nodiscard]] Eigen::Vector2d place(const Vec3& p_m) const noexcept {
     const Vec3 d_m = p_m - middle_m;

@@ -28,7 +28,13 @@ Vec3 half_space_displacement_m(const PointLoad& load, const Material& material, 
   const double scale_m2 = load.force_n / (4.0 * std::numbers::pi * material.shear_modulus_pa());
   const double u_r = scale_m2 * (r * z / (rho * rho * rho) - (1.0 - 2.0 * nu) * r / (rho * (rho + z)));
   const double u_z = scale_m2 * (z * z / (rho * rho * rho) + 2.0 * (1.0 - nu) / rho);
-  return u_r * radial - u_z * load.normal;
+  Vec3 u_m = u_r * radial - u_z * load.normal;
+  if (load.along_n.isZero(0.0)) return u_m;
+  const double flat = (1.0 - 2.0 * nu) / (rho + z), x_n = r * load.along_n.dot(radial);
+  const Vec3 d_m = r * radial - z * load.normal;
+  const Vec3 along = (1.0 / rho + flat) * load.along_n +
+                     x_n * (d_m / (rho * rho * rho) - flat / rho * (r / (rho + z) * radial + load.normal));
+  return u_m + along / (4.0 * std::numbers::pi * material.shear_modulus_pa());
 }
 
 Mat3 half_space_stress_pa(const PointLoad& load, const Material& material, const Vec3& x_m) {
@@ -42,8 +48,18 @@ Mat3 half_space_stress_pa(const PointLoad& load, const Material& material, const
   const Vec3 down = -load.normal;
   const Vec3 side = r > 0.0 ? Vec3(down.cross(radial)) : down.unitOrthogonal();
   const Vec3 out = r > 0.0 ? radial : Vec3(side.cross(down));
-  return rr * out * out.transpose() + around * side * side.transpose() + zz * down * down.transpose() +
-         rz * (out * down.transpose() + down * out.transpose());
+  Mat3 stress_pa = rr * out * out.transpose() + around * side * side.transpose() + zz * down * down.transpose() +
+                   rz * (out * down.transpose() + down * out.transpose());
+  if (load.along_n.isZero(0.0)) return stress_pa;
+  const double x_n = r * load.along_n.dot(radial), sum = rho + z;
+  const Vec3 d_m = r * radial - z * load.normal, r_m = r * radial;
+  const Mat3 across = Mat3::Identity() - load.normal * load.normal.transpose();
+  Mat3 along = -3.0 * x_n / rho5 * d_m * d_m.transpose();
+  along += (1.0 - 2.0 * nu) *
+           (x_n / (rho * rho * rho) * across -
+            (x_n * across + load.along_n * r_m.transpose() + r_m * load.along_n.transpose()) / (rho * sum * sum) +
+            x_n * (1.0 / rho + 2.0 / sum) / (rho * rho * sum * sum) * r_m * r_m.transpose());
+  return stress_pa + along / (2.0 * std::numbers::pi);
 }
 
 }  // namespace touchstone::scene

@@ -1,4 +1,5 @@
-// A point force on a half space in closed form (J. Boussinesq 1885): K. L. Johnson, Contact Mechanics (1985), 3.2.
+// A point force on a half space in closed form, against its normal (J. Boussinesq 1885) and along it (V. Cerruti 1882):
+// K. L. Johnson, Contact Mechanics (1985), 3.2 and 3.6.
 #pragma once
 
 #include "scene/base/frames.h"
@@ -6,11 +7,12 @@
 
 namespace touchstone::scene {
 
-/// A force on a half space, against the outward normal of its plane.
+/// A force on a half space, against the outward normal of its plane and along it.
 struct PointLoad {
   Vec3 point_m;  ///< where it acts
   Vec3 normal;   ///< outward, unit length
   double force_n = 1.0;
+  Vec3 along_n = Vec3::Zero();  ///< perpendicular to the normal
 };
 
 /// Displacement [m] at another point of the half space, world frame.

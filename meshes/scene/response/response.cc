@@ -22,16 +22,16 @@ std::string hash_of(const Matrix& matrix) {
 }  // namespace
 
 std::string response_needs(const Scene& scene) {
-  if (scene.contact.friction) return "the contact is without friction";
   if (!scene.tool.convex()) return "the tool is convex: it has one contact region";
   if (const FoundTip tip = tool_tip(scene); !tip.tip) return tip.why;
   return load_grid(scene).why;
 }
 
-std::string response_identity(const Body& body, const LoadGrid& grid, const Surface& surface) {
+std::string response_identity(const Body& body, const LoadGrid& grid, const Surface& surface, bool friction) {
   std::ostringstream text;
   text << std::setprecision(17) << method_version << '\n' << body_text(body);
-  text << "loads " << grid.counts[0] << " x " << grid.counts[1] << " places " << hash_of(grid.points_m) << '\n'
+  text << (friction ? "loads in 3 directions " : "loads ") << grid.counts[0] << " x " << grid.counts[1] << " places "
+       << hash_of(grid.points_m) << '\n'
        << "rest points " << surface.vertex_count() << " places " << hash_of(surface.points_m) << '\n';
   return text.str();
 }

@@ -111,9 +111,9 @@ TEST_F(JudgeModels, TheResponseModelIsOneOfThem) {
   EXPECT_TRUE(model.force_nrmse.value && model.shape_rel_l2.value);
   EXPECT_GT(model.step_p50_us, 0.0);
   // A scene that it cannot answer.
-  sides_.scene.contact.friction = scene::Friction{.K = 1.0, .beta = 1.0, .mu_D = 0.5};
+  sides_.scene.tool.shape = scene::ToolShape::box;
   all.scene = sides_.scene;
-  EXPECT_THAT(judge(all).front().absent, HasSubstr("without friction"));
+  EXPECT_THAT(judge(all).front().absent, HasSubstr("its tool is a ball"));
 }
 
 TEST_F(JudgeModels, AModelThatNobodyHereKnows) {

@@ -36,7 +36,8 @@ class ResponseEngineTest : public ::testing::Test {
     return {scene_, surface(), test::synthetic_response(scene_, surface())};
   }
   [[nodiscard]] std::string identity() const {
-    return scene::response_identity(scene_.body, scene::load_grid(scene_).grid.value(), surface());
+    return scene::response_identity(scene_.body, scene::load_grid(scene_).grid.value(), surface(),
+                                    scene_.contact.friction.has_value());
   }
   void store_response() const {
     const auto file = scene::response_path(folder_.path(), identity());
@@ -165,6 +166,42 @@ TEST_F(ResponseEngineTest, RunsOverATrackFromItsFile) {
       EXPECT_FALSE(line.modelled);
     }
   }
+}
+
+TEST_F(ResponseEngineTest, FrictionIsInTheRecordsAndThePlan) {
+  scene_.contact.friction = scene::Friction{.K = 0.4, .beta = 1.0, .mu_D = 0.4};
+  scene_.track = {
+      {0.0, test::pressed(-0.0005, -0.003)}, {0.2, test::pressed(0.003, -0.003)}, {0.5, test::pressed(0.003, 0.003)}};
+  store_response();
+  const fast::Run run = fast::run(scene_), again = fast::run(scene_);
+  EXPECT_EQ(status_text(run.status), "ok");
+  for (std::size_t i = 0; i < run.instants.size(); ++i) {
+    EXPECT_EQ(run.instants[i].force_n(), again.instants[i].force_n());
+    EXPECT_EQ(run.instants[i].displacement_m, again.instants[i].displacement_m);
+  }
+  const scene::RegionRecord& last = run.instants.back().regions.front();
+  EXPECT_TRUE(last.sliding);
+  const double normal_n = last.force_n.z();
+  // The springs that were pulled aside while the tool was pressed in have nearly turned to its way.
+  EXPECT_NEAR(last.friction_n.norm(), 0.4 * normal_n, 1e-4 * normal_n);
+  EXPECT_LT(last.friction_n.x(), -0.39 * normal_n);
+  EXPECT_EQ(run.instants.back().support_force_n, last.force_n);
+  // Shear is part of the traction, against the tool's motion on the tool and with it on the body.
+  scene::Vec3 sum_n = scene::Vec3::Zero();
+  for (Eigen::Index i = 0; i < run.instants.back().traction_pa.cols(); ++i) {
+    sum_n += run.surface.vertex_area_m2[static_cast<std::size_t>(i)] * run.instants.back().traction_pa.col(i);
+  }
+  EXPECT_NEAR(sum_n.x(), 0.4 * normal_n, 0.15 * normal_n);
+  EXPECT_TRUE(std::ranges::any_of(run.instants, [](const scene::InstantRecord& record) {
+    return !record.regions.empty() && !record.regions.front().sliding;
+  }));
+  bool planned = false;
+  for (const scene::PlanLine& line : fast::plan(scene_)) {
+    if (line.part != "friction") continue;
+    planned = line.modelled;
+    EXPECT_THAT(line.cost, HasSubstr("measured"));
+  }
+  EXPECT_TRUE(planned);
 }
 
 TEST_F(ResponseEngineTest, ReachesAsFarAsTheTool) { EXPECT_NEAR(engine().tool_reach_m(), scene_.tool.radius_m, 1e-9); }

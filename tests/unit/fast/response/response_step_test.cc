@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace touchstone::fast {
 namespace {
@@ -119,6 +120,132 @@ TEST_F(ResponseStep, EqualPosesGiveEqualBits) {
   EXPECT_EQ(once.field.displacement_m, again.field.displacement_m);
 }
 
+class ResponseFriction : public ResponseStep {
+ protected:
+  ResponseFriction() { scene_.contact.friction = scene::Friction{.K = mu, .beta = 1.0, .mu_D = mu}; }
+  static constexpr double mu = 0.4;
+};
+
+TEST_F(ResponseFriction, DragsTheSurfaceAlongUpToTheLimit) {
+  const ResponseModel model = this->model();
+  ResponseState state(model);
+  (void)response_step(model, test::pressed(0.003, -0.004), state);
+  scene::Vec3 last_n = state.contact.friction_n;
+  const double step_m = 2e-5;
+  int stuck = 0;
+  for (int i = 1; i <= 400; ++i) {
+    (void)response_step(model, test::pressed(0.003, -0.004 + i * step_m), state);
+    // It grows smoothly, at most as the stuck contact's stiffness allows.
+    const double stiffness = model.springs->shear_ratio() * model.tables.front().at(0.003).stiffness_n_per_m;
+    EXPECT_LT((state.contact.friction_n - last_n).norm(), stiffness * step_m) << i;
+    last_n = state.contact.friction_n;
+    stuck += state.slip->sliding ? 0 : 1;
+  }
+  EXPECT_GT(stuck, 20);
+  EXPECT_LT(stuck, 300);
+  const double F = state.contact.load.force_n;
+  EXPECT_NEAR(state.contact.friction_n.x(), -mu * F, 1e-6 * F);
+  EXPECT_NEAR(state.contact.load.shear_n().x(), mu * F, 1e-6 * F);
+  // The point of the surface that it loads is behind the tool by the body's and the contact's displacement.
+  const double x_m = 0.004, C_t = 1.5 * 2e-5 * (1.0 + 40.0 * x_m + 900.0 * x_m * x_m);
+  const double local_m = mu * state.contact.indentation_m / model.springs->shear_ratio();
+  EXPECT_NEAR(state.contact.stretch_m.x(), C_t * mu * F + local_m, 0.03 * (C_t * mu * F + local_m));
+  // At the height of the pressure's mean, below the ball's centre.
+  const double arm_m = -state.wrench.torque_nm.y() / (mu * F);
+  EXPECT_GT(arm_m, -0.0098);
+  EXPECT_LT(arm_m, -0.0090);
+  // The shape follows: the middle of the patch moved along by as much.
+  Eigen::Index nearest = 0;
+  (model.surface.points_m.colwise() - state.contact.load.center_m).colwise().norm().minCoeff(&nearest);
+  EXPECT_NEAR(state.field.displacement_m[0][static_cast<std::size_t>(nearest)], state.contact.stretch_m.x(),
+              0.3 * state.contact.stretch_m.x());
+}
+
+TEST_F(ResponseFriction, WithoutACoefficientItIsTheFrictionlessContact) {
+  const double bodies = C_m_per_n_;
+  scene_.contact.friction->K = 0.0;
+  const ResponseModel model = this->model();
+  scene_.contact.friction.reset();
+  const ResponseModel frictionless(scene_, surface_, test::synthetic_response(scene_, surface_, bodies));
+  ResponseState state(model), other(frictionless);
+  for (int i = 0; i < 20; ++i) {
+    const scene::Pose pose = test::pressed(0.001 + 1e-4 * i, 0.0002 * i);
+    (void)response_step(model, pose, state);
+    (void)response_step(frictionless, pose, other);
+    EXPECT_EQ(state.wrench.force_n, other.wrench.force_n);
+    EXPECT_EQ(state.contact.load.center_m, other.contact.load.center_m);
+    // The shape has the columns for the pressure's part along the surface, too.
+    const Eigen::Matrix3Xd shape_m = matrix_of(state.field.displacement_m);
+    EXPECT_LT((shape_m - matrix_of(other.field.displacement_m)).norm(), 0.05 * shape_m.norm());
+  }
+}
+
+TEST_F(ResponseFriction, ARollingBallDoesNotRub) {
+  C_m_per_n_ = 0.0;
+  const ResponseModel model = this->model();
+  ResponseState state(model);
+  for (const double rolls : {1.0, 0.0}) {
+    (void)response_step(model, test::pressed(-0.001), state);
+    double largest = 0.0;
+    for (int i = 0; i <= 100; ++i) {
+      scene::Pose pose = test::pressed(0.001, 1e-5 * i);
+      pose.orientation = Eigen::AngleAxisd(rolls * 1e-5 * i / 0.0098, scene::Vec3::UnitY());
+      (void)response_step(model, pose, state);
+      largest = std::max(largest, state.contact.friction_n.norm() / state.contact.load.force_n);
+    }
+    if (rolls == 1.0) {
+      EXPECT_LT(largest, 0.1 * mu);
+    } else {
+      EXPECT_GT(largest, 0.9 * mu);
+    }
+  }
+}
+
+TEST_F(ResponseFriction, ForgetsWhenItLeaves) {
+  const ResponseModel model = this->model();
+  ResponseState once(model), again(model);
+  for (int i = 0; i < 50; ++i) (void)response_step(model, test::pressed(0.002, 1e-4 * i), again);
+  EXPECT_GT(again.contact.friction_n.norm(), 1.0);
+  (void)response_step(model, test::pressed(-0.001), again);
+  EXPECT_EQ(again.wrench.force_n, scene::Vec3::Zero());
+  for (ResponseState* state : {&once, &again}) {
+    for (int i = 0; i < 10; ++i) (void)response_step(model, test::pressed(2e-4 * i, 0.002, 1e-4 * i), *state);
+  }
+  EXPECT_EQ(once.wrench.force_n, again.wrench.force_n);
+  EXPECT_EQ(once.wrench.torque_nm, again.wrench.torque_nm);
+  EXPECT_EQ(once.field.displacement_m, again.field.displacement_m);
+}
+
+TEST_F(ResponseFriction, AClosedPathGivesNoEnergy) {
+  // Along the surface and into it with a lag, so that the path is a loop in both.
+  const ResponseModel model = this->model();
+  for (const double lag : {0.0, 1.5707963, -1.5707963, 0.7}) {
+    for (const double size_m : {5e-5, 5e-4, 3e-3}) {
+      ResponseState state(model);
+      double work_j = 0.0, scale_j = 0.0;
+      scene::Vec3 last_m, last_n = scene::Vec3::Zero();
+      const int steps = 3000;
+      for (int i = 0; i <= 2 * steps; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / steps;
+        const scene::Pose pose = test::pressed(0.002 + 0.5e-3 * std::sin(angle + lag), size_m * std::sin(angle),
+                                               0.3 * size_m * std::sin(angle + 1.0));
+        (void)response_force(model, pose, state);
+        if (i > steps) {
+          const double part_j = -0.5 * (state.wrench.force_n + last_n).dot(pose.position_m - last_m);
+          work_j += part_j;
+          scale_j += std::abs(part_j);
+        }
+        last_m = pose.position_m;
+        last_n = state.wrench.force_n;
+      }
+      EXPECT_GT(work_j, -1e-4 * scale_j) << lag << ' ' << size_m;
+      if (size_m == 3e-3) {
+        EXPECT_GT(work_j, 0.1 * scale_j) << lag;
+      }
+    }
+  }
+}
+
 TEST_F(ResponseStep, SaysWhenItDoesNotHold) {
   const ResponseModel model = this->model();
   ResponseState state(model);
@@ -141,9 +268,6 @@ TEST_F(ResponseStep, SaysWhenItDoesNotHold) {
 TEST_F(ResponseStep, SaysWhatItNeeds) {
   EXPECT_EQ(scene::response_needs(scene_), "");
   scene::Scene other = scene_;
-  other.contact.friction = scene::Friction{.K = 1.0, .beta = 1.0, .mu_D = 0.5};
-  EXPECT_THAT(scene::response_needs(other), HasSubstr("without friction"));
-  other = scene_;
   other.tool.shape = scene::ToolShape::mesh;
   EXPECT_THAT(scene::response_needs(other), HasSubstr("one contact region"));
   other = scene_;

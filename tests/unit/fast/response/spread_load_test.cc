@@ -15,8 +15,10 @@ using scene::Vec3;
 
 const Vec3 normal = Vec3(0.2, -0.3, 0.9).normalized(), center_m(0.01, 0.02, 0.05);
 
-/// By point loads on rings of the patch, total force 1: of the ball's pressure, of the punch's.
-Vec3 summed_m(const scene::Material& material, double a, double flat, const Vec3& x_m) {
+/// By point loads on rings of the patch, total force 1 against the normal or else along the surface: of the ball's
+/// distribution, of the punch's.
+Vec3 summed_m(const scene::Material& material, double a, double flat, const Vec3& x_m,
+              const Vec3& along = Vec3::Zero()) {
   const Vec3 first = normal.unitOrthogonal(), second = normal.cross(first);
   const int rings = 400, around = 64;
   Vec3 sum_m = Vec3::Zero();
@@ -27,7 +29,8 @@ Vec3 summed_m(const scene::Material& material, double a, double flat, const Vec3
     for (int j = 0; j < around; ++j) {
       const double phi = 2.0 * std::numbers::pi * (j + 0.5 * (i % 2)) / around;
       const Vec3 at_m = center_m + r * (std::cos(phi) * first + std::sin(phi) * second);
-      sum_m += scene::half_space_displacement_m({at_m, normal, force_n}, material, x_m);
+      const double against_n = along.isZero(0.0) ? force_n : 0.0;
+      sum_m += scene::half_space_displacement_m({at_m, normal, against_n, force_n * along}, material, x_m);
     }
   }
   return sum_m;
@@ -51,6 +54,54 @@ TEST(SpreadLoad, IsASumOfPointLoads) {
         const Vec3 expected_m = summed_m(material, a, flat, x_m);
         const Vec3 found_m = spread_displacement_m(load, HalfSpace(material), x_m);
         EXPECT_LT((found_m - expected_m).norm(), 2e-3 * expected_m.norm()) << nu << ' ' << flat << ' ' << r << ' ' << z;
+      }
+    }
+  }
+}
+
+TEST(SpreadLoad, ShearIsASumOfPointLoads) {
+  const Vec3 side = normal.unitOrthogonal(), along = (side + 0.7 * normal.cross(side)).normalized();
+  const double a = 0.004;
+  for (const double nu : {0.0, 0.3, 0.5}) {
+    const scene::Material material{3.0e6, nu};
+    const HalfSpace half_space(material);
+    for (const double flat : {0.0, 1.0}) {
+      SpreadLoad load{center_m, normal, 0.0, a, 0.0};
+      (flat == 0.0 ? load.ball_shear_n : load.punch_shear_n) = along;
+      for (const auto& [r, z] : {std::pair(0.0, 0.002), {0.001, 0.003}, {0.003, 0.001}, {0.006, 0.0}, {0.005, 0.004}}) {
+        const Vec3 x_m = center_m + r * side - z * normal;
+        const Vec3 expected_m = summed_m(material, a, flat, x_m, along);
+        const Vec3 found_m = spread_displacement_m(load, half_space, x_m);
+        EXPECT_LT((found_m - expected_m).norm(), 2e-3 * expected_m.norm()) << nu << ' ' << flat << ' ' << r << ' ' << z;
+      }
+      // The punch's moves its face as a whole; a ball's middle moves by Mindlin's.
+      const double G = material.shear_modulus_pa(), stuck_m = (2.0 - nu) / (8.0 * G * a);
+      const double middle_m = flat == 1.0 ? stuck_m : 1.5 * stuck_m;
+      EXPECT_LT((spread_displacement_m(load, half_space, center_m) - middle_m * along).norm(), 1e-6 * middle_m);
+      const Vec3 inside_m = center_m + 0.6 * a * side;
+      if (flat == 1.0) {
+        EXPECT_LT((spread_displacement_m(load, half_space, inside_m) - middle_m * along).cross(normal).norm(),
+                  1e-6 * middle_m);
+      }
+      // The loop, from the near vertices on.
+      Columns3 rest_m, out_m;
+      for (std::size_t axis = 0; axis < 3; ++axis) rest_m[axis].clear();
+      std::vector<Vec3> places_m;
+      for (const double z : {0.0, 0.004, 0.02}) {
+        for (const double r : {0.013, 0.02, 0.05}) places_m.emplace_back(center_m + r * side - z * normal);
+      }
+      for (const Vec3& x_m : places_m) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          rest_m[axis].push_back(static_cast<float>(x_m[static_cast<Eigen::Index>(axis)]));
+        }
+      }
+      out_m = rest_m;
+      std::vector<std::int32_t> near(places_m.size());
+      EXPECT_EQ(spread_displacements_m(load, half_space, rest_m, out_m, near.data()), 0);
+      for (std::size_t i = 0; i < places_m.size(); ++i) {
+        const Vec3 expected_m = spread_displacement_m(load, half_space, places_m[i]);
+        const Vec3 found_m(out_m[0][i], out_m[1][i], out_m[2][i]);
+        EXPECT_LT((found_m - expected_m).norm(), 2e-3 * expected_m.norm()) << nu << ' ' << flat << ' ' << i;
       }
     }
   }

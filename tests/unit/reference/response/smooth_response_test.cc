@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 namespace touchstone::reference {
@@ -30,13 +31,13 @@ scene::Scene small_scene(double nu) {
   return scene;
 }
 
-/// Displacement at the rest points by a force on the node at a place of the top.
-Eigen::Matrix3Xd by_a_node(const scene::Body& body, const Vec3& p_m, const std::vector<int>& nodes,
-                           ContactProblem<3>& problem) {
+/// Displacement at the rest points by a force of 1 N on the node at a place of the top.
+Eigen::Matrix3Xd by_a_node(const scene::Body& body, const Vec3& p_m, const Vec3& direction,
+                           const std::vector<int>& nodes, ContactProblem<3>& problem) {
   const Discretisation<3>& mesh = problem.mesh();
   Eigen::Index node = 0;
   EXPECT_LT((mesh.points_m.colwise() - p_m).colwise().norm().minCoeff(&node), 1e-9 * body.size_m.x());
-  const auto u_m = problem.linear_displacements_m({{static_cast<int>(node), -Vec3::UnitZ()}}).front();
+  const auto u_m = problem.linear_displacements_m({{static_cast<int>(node), direction}}).front();
   return u_m(Eigen::all, nodes);
 }
 
@@ -63,13 +64,20 @@ void expect_the_same_far_away(const scene::Body& body, double tolerance) {
   grid.points_m = p_m;
   grid.normals = Vec3::UnitZ();
   const Eigen::Matrix3Xd points_m = mesh.points_m(Eigen::all, nodes);
-  const scene::Response response = smooth_response(body, grid, points_m, coarse);
-  Eigen::Matrix3Xd u_m = response.smooth_m_per_n.col(0).reshaped(points_m.cols(), 3).transpose().cast<double>();
-  for (Eigen::Index i = 0; i < points_m.cols(); ++i) {
-    u_m.col(i) += scene::half_space_displacement_m({p_m, Vec3::UnitZ(), 1.0}, body.material, points_m.col(i));
+  const scene::Response response = smooth_response(body, grid, points_m, {.cells = coarse.cells, .friction = true});
+  const Eigen::Matrix<double, 3, 2> along = grid.along(0);
+  const std::array loads{scene::PointLoad{p_m, Vec3::UnitZ(), 1.0},
+                         scene::PointLoad{p_m, Vec3::UnitZ(), 0.0, along.col(0)},
+                         scene::PointLoad{p_m, Vec3::UnitZ(), 0.0, along.col(1)}};
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const scene::PointLoad& load = loads[static_cast<std::size_t>(k)];
+    Eigen::Matrix3Xd u_m = response.smooth_m_per_n.col(k).reshaped(points_m.cols(), 3).transpose().cast<double>();
+    for (Eigen::Index i = 0; i < points_m.cols(); ++i) {
+      u_m.col(i) += scene::half_space_displacement_m(load, body.material, points_m.col(i));
+    }
+    const Eigen::Matrix3Xd expected_m = by_a_node(body, p_m, load.along_n - load.force_n * load.normal, nodes, problem);
+    EXPECT_LT((u_m - expected_m).norm(), tolerance * expected_m.norm()) << body.material.poissons_ratio << ' ' << k;
   }
-  const Eigen::Matrix3Xd expected_m = by_a_node(body, p_m, nodes, problem);
-  EXPECT_LT((u_m - expected_m).norm(), tolerance * expected_m.norm()) << body.material.poissons_ratio;
 }
 
 TEST(SmoothResponse, IsTheBodysOwnAwayFromTheLoad) {
@@ -98,9 +106,10 @@ TEST(SmoothResponse, IsReciprocalAndTiltsAsItsPlaceChangesIt) {
   const scene::Scene scene = small_scene(0.5);
   const scene::LoadGrid grid = scene::load_grid(scene).grid.value();
   const int n = grid.count();
-  const scene::Response response = smooth_response(scene.body, grid, grid.points_m, coarse);
+  const scene::Response response =
+      smooth_response(scene.body, grid, grid.points_m, {.cells = coarse.cells, .friction = true});
   // u_z of point i under load j.
-  const Eigen::MatrixXd down_m = response.smooth_m_per_n.bottomRows(n).cast<double>();
+  const Eigen::MatrixXd down_m = response.smooth_m_per_n.bottomLeftCorner(n, n).cast<double>();
   const double size_m = down_m.cwiseAbs().maxCoeff();
   EXPECT_LT((down_m - down_m.transpose()).cwiseAbs().maxCoeff(), 5e-3 * size_m);
   // Where load and point are one: C and its slope, half of which is the tilt under a load that stays.
@@ -108,6 +117,16 @@ TEST(SmoothResponse, IsReciprocalAndTiltsAsItsPlaceChangesIt) {
   const double slope = (response.own_m_per_n(2, 5) - response.own_m_per_n(2, 3)) / (2.0 * grid.spacing_m[0]);
   EXPECT_NEAR(response.tilt_per_n(0, 4), 0.5 * slope, 0.05 * std::abs(slope));
   EXPECT_NEAR(response.tilt_per_n(1, 4), 0.0, 1e-3 * std::abs(slope));
+  // What a load against the normal does sideways, one sideways does against the normal.
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Eigen::Matrix3d own = Eigen::Matrix3d(
+        {{-response.own_m_per_n(0, k), response.own_m_per_n(0, n + 2 * k), response.own_m_per_n(0, n + 2 * k + 1)},
+         {-response.own_m_per_n(1, k), response.own_m_per_n(1, n + 2 * k), response.own_m_per_n(1, n + 2 * k + 1)},
+         {-response.own_m_per_n(2, k), response.own_m_per_n(2, n + 2 * k), response.own_m_per_n(2, n + 2 * k + 1)}});
+    const Eigen::Matrix3d by_direction = own(Eigen::all, {1, 2, 0});
+    EXPECT_LT((by_direction - by_direction.transpose()).norm(), 2e-2 * by_direction.norm()) << k;
+    EXPECT_GT(by_direction.diagonal().minCoeff(), 0.0) << k;
+  }
 }
 
 TEST(PrepareResponse, KeepsAndReadsBack) {

@@ -181,9 +181,10 @@ TEST(SceneFile, RulesAcrossKeysAreReportedAtTheKey) {
 TEST(SceneFile, TheResponseModelIsRefusedWhereItCannotAnswer) {
   const std::string fast = "[fast]\nformulation = \"response\"\n";
   EXPECT_EQ(message_for("[tool]", fast + "[tool]"), "no error");
-  EXPECT_THAT(
-      message_for("[tool]", fast + "[contact.friction]\nK = 1.0\nbeta = 1.0\nmu_D = 0.5\n[tool]"),
-      HasSubstr("a.toml:8:15: fast.formulation: the response model needs that the contact is without friction"));
+  EXPECT_EQ(message_for("[tool]", fast + "[contact.friction]\nK = 1.0\nbeta = 1.0\nmu_D = 0.5\n[tool]"), "no error");
+  EXPECT_THAT(message_for("[tool]\nshape = \"sphere\"\nradius_m = 0.010",
+                          fast + "[tool]\nshape = \"box\"\nsize_m = [0.02, 0.02, 0.02]"),
+              HasSubstr("a.toml:8:15: fast.formulation: the response model needs that its tool is a ball"));
 }
 
 TEST(SceneFile, AllFaultsComeAtOnceInOrder) {
