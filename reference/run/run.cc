@@ -215,7 +215,7 @@ class Run {
     } catch (const std::bad_alloc&) {
       return end_before(level, {EndedBy::memory, "the memory did not suffice"});
     }
-    take(level, answer);
+    take(level, *mesh, answer);
     coarser_ = std::move(mesh);
     if (level == 0) coarsest_ = *coarser_;
     const bool enough = solved_levels() >= fewest_levels;
@@ -349,9 +349,15 @@ class Run {
         all_meshes_text(level, mesh_s, pace_.factor() * expected_after_s(level, mesh, store)));
   }
 
-  void take(int level, Level& answer) {
+  void take(int level, const Discretisation<dim>& mesh, Level& answer) {
     LevelRecord record;
     record.element_size_m = element_size_m(scene_, choice_, level);
+    if (scene_.reference.adaptive_share) {
+      record.element_size_m = std::numeric_limits<double>::infinity();
+      for (int cell = 0; cell < mesh.cell_count(); ++cell) {
+        record.element_size_m = std::min(record.element_size_m, mesh.pressure_frame(cell).second);
+      }
+    }
     for (const Step& step : answer.steps) {
       record.unknowns = std::max(record.unknowns, step.unknowns);
       record.newton_iterations += step.newton_iterations;
