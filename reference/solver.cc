@@ -2,6 +2,7 @@
 
 #include "reference/linear/ranks.h"
 #include "reference/mesh/mesh_limit.h"
+#include "reference/run/adaptive.h"
 #include "reference/run/cost.h"
 #include "reference/run/identity.h"
 #include "reference/run/model_choice.h"
@@ -49,16 +50,20 @@ void add_level_lines(const Scene& scene, const ModelChoice& choice, int levels, 
   };
   std::optional<Discretisation<dim>> coarsest;
   for (int level = 0; level < levels; ++level) {
+    const bool divided = scene.reference.adaptive_share && level > 0;
     const std::string size =
-        fmt::format("cells of {:.3g} mm at the deepest contact's rim", 1e3 * element_size_m(scene, choice, level));
+        divided ? "cells of the coarser mesh divided where its error is; the number of unknowns is a guess"
+                : fmt::format("cells of {:.3g} mm at the deepest contact's rim",
+                              1e3 * element_size_m(scene, choice, level));
     const std::string part = "mesh " + std::to_string(level + 1);
     try {
-      Discretisation<dim> mesh = level_mesh<dim>(scene, choice, level);
-      plan.push_back({part, true, size,
-                      add({.dim = dim,
-                           .unknowns = unknowns_of(mesh),
-                           .load_steps = load_steps,
-                           .friction = scene.contact.friction.has_value()})});
+      Discretisation<dim> mesh = divided ? *coarsest : level_mesh<dim>(scene, choice, level);
+      plan.push_back(
+          {part, true, size,
+           add({.dim = dim,
+                .unknowns = unknowns_of(mesh) * (divided ? std::pow(adaptive_growth(scene, dim), level) : 1.0),
+                .load_steps = load_steps,
+                .friction = scene.contact.friction.has_value()})});
       if (level == 0) coarsest = std::move(mesh);
     } catch (const MeshTooLarge& failure) {
       plan.push_back({part, false, failure.what(), ""});

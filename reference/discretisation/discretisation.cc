@@ -66,7 +66,8 @@ struct Discretisation<dim>::Parts {
 };
 
 template <int dim>
-Discretisation<dim>::Discretisation(std::shared_ptr<dealii::Triangulation<dim>> grid, const Map& place_m) {
+Discretisation<dim>::Discretisation(std::shared_ptr<dealii::Triangulation<dim>> grid, const Map& place_m)
+    : place_m_(place_m) {
   use_one_thread();
   parts_ = std::make_shared<Parts>(std::move(grid));
   const dealii::MappingQ<dim> flat(1);

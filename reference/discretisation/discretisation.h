@@ -68,6 +68,10 @@ class Discretisation {
   [[nodiscard]] std::string bytes() const;
   [[nodiscard]] static Discretisation from_bytes(std::string_view bytes);
 
+  /// The same body with these cells divided, one flag per cell, and those that would otherwise differ from a neighbour
+  /// by more than one division. Without materials. Not for a moved mesh, nor one from bytes.
+  [[nodiscard]] Discretisation refined(const std::vector<char>& divided) const;
+
   /// The same grid with its nodes moved.
   [[nodiscard]] Discretisation moved(const Map& place_m) const;
 
@@ -120,6 +124,7 @@ class Discretisation {
   struct Parts;
   void place(Nodal places_m);
 
+  Map place_m_;
   std::shared_ptr<Parts> parts_;
 };
 

@@ -383,12 +383,13 @@ Discretisation<dim> round_mesh(const RoundSpec& spec, const Grading<dim>& gradin
   MappedSpec<dim> mapped;
   Collector<dim> collector(mapped);
   add_cells(half_plane(meridian.layers()), spec, collector);
-  mapped.place_m = [&](const Eigen::Matrix<double, dim, 1>& x) -> Eigen::Matrix<double, dim, 1> {
+  // The mesh keeps the map, to be refined by.
+  mapped.place_m = [meridian, stretch = spec.stretch](const Eigen::Matrix<double, dim, 1>& x) {
     if constexpr (dim == 3) {
-      return place_m(meridian, spec.stretch, x);
+      return place_m(meridian, stretch, x);
     } else {
       const Vec2 rz_m = meridian.place_m(x[0], x[1]);
-      return {spec.stretch.x() * rz_m.x(), rz_m.y()};
+      return Vec2(stretch.x() * rz_m.x(), rz_m.y());
     }
   };
   const double held_m = spec.support_height_m + 1e-9 * meridian.shape().bounds().upper_m.x();

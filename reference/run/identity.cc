@@ -20,6 +20,9 @@ constexpr const char* method_version = "touchstone reference 4: Q2-P1disc u-p, p
 /// Raised alike, for scenes with friction alone.
 constexpr const char* friction_method = "3";
 
+/// Raised alike, for meshes refined by the estimator alone.
+constexpr const char* adaptive_method = "1";
+
 std::string tool_text(const scene::Tool& tool) {
   std::ostringstream text;
   text << std::setprecision(17);
@@ -61,6 +64,8 @@ std::string identity_text(const Scene& scene) {
        << "kinematics " << (scene.reference.kinematics == scene::Kinematics::finite ? "finite" : "small") << " element "
        << (scene.reference.element_size_m ? std::to_string(*scene.reference.element_size_m * 1e9) + " nm" : "automatic")
        << '\n';
+  if (const auto share = scene.reference.adaptive_share)
+    text << "adaptive " << adaptive_method << ' ' << *share << '\n';
   if (const auto& friction = scene.contact.friction) {
     text << "friction " << friction_method << " K " << friction->K << " beta " << friction->beta << " mu_D "
          << friction->mu_D << '\n';

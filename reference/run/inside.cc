@@ -3,6 +3,7 @@
 #include "reference/contact/interior.h"
 #include "reference/discretisation/volume_file.h"
 #include "reference/mesh/sampling.h"
+#include "reference/run/adaptive.h"
 #include "reference/run/identity.h"
 #include "reference/run/model_choice.h"
 #include "reference/run/sensitivity.h"
@@ -50,11 +51,11 @@ class StoredInside : public Inside {
     for (std::size_t k = 0; k < scene_.probes.size(); ++k) {
       points_m.col(static_cast<Eigen::Index>(k)) = scene_.probes[k].position_m;
     }
-    std::vector<double> finer;
+    std::vector<int> unknowns;
     std::vector<std::vector<Eigen::Matrix3Xd>> displacement_m(meshes_.size());
     std::vector<std::vector<Eigen::Matrix<double, 9, Eigen::Dynamic>>> stress_pa(meshes_.size());
     for (int level = 0; level <= finest(); ++level) {
-      finer.push_back(refinement(level));
+      unknowns.push_back(result_.levels[level].unknowns);
       const BodySampler<dim> sampler = this->sampler(mesh(level), points_m);
       for (std::size_t i = 0; i < result_.instants.size(); ++i) {
         PointValues values = at(sampler, mesh(level), solved(level, i));
@@ -62,6 +63,7 @@ class StoredInside : public Inside {
         stress_pa[level].push_back(std::move(values.stress_pa));
       }
     }
+    const std::vector<double> finer = fineness(scene_, dim, unknowns);
     const auto bands_m = point_band(displacement_m, finer), bands_pa = point_band(stress_pa, finer);
     std::vector<ProbeInstant> probes;
     for (std::size_t i = 0; i < result_.instants.size(); ++i) {
@@ -95,7 +97,7 @@ class StoredInside : public Inside {
 
   [[nodiscard]] const Discretisation<dim>& mesh(int level) const {
     std::optional<Discretisation<dim>>& mesh = meshes_[level];
-    if (!mesh) mesh = level_mesh<dim>(scene_, choice_, level);
+    if (!mesh) mesh = sequence_mesh<dim>(scene_, choice_, level, level > 0 ? &this->mesh(level - 1) : nullptr, store_);
     return *mesh;
   }
 

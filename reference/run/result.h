@@ -12,7 +12,7 @@ namespace touchstone::reference {
 
 /// What one mesh of the refinement sequence gave.
 struct LevelRecord {
-  double element_size_m = 0.0;                ///< under the tool
+  double element_size_m = 0.0;                ///< under the tool; of adaptive meshes the smallest
   int unknowns = 0;                           ///< displacement unknowns
   int newton_iterations = 0;                  ///< all load steps
   int steps_cut = 0;                          ///< load steps halved on the way

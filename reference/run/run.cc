@@ -7,6 +7,7 @@
 #include "reference/mesh/boundary_surface.h"
 #include "reference/mesh/mesh_limit.h"
 #include "reference/mesh/sampling.h"
+#include "reference/run/adaptive.h"
 #include "reference/run/cost.h"
 #include "reference/run/identity.h"
 #include "reference/run/records.h"
@@ -156,12 +157,15 @@ class Run {
 
   /// Expected time of the known levels after this one and of the sensitivities, before the run's own pace [s].
   [[nodiscard]] double expected_after_s(int level, const Discretisation<dim>& mesh, const Store& store) const {
-    double seconds = 0.0;
+    double seconds = 0.0, adaptive_unknowns = unknowns_of(mesh);
     for (int next = level + 1; next < known_levels(); ++next) {
       const int missing = missing_steps(store, next);
+      adaptive_unknowns *= adaptive_growth(scene_, dim);
       if (missing == 0) continue;
       try {
-        seconds += cost(unknowns_of(level_mesh<dim>(scene_, choice_, next)), missing).seconds;
+        const double unknowns =
+            scene_.reference.adaptive_share ? adaptive_unknowns : unknowns_of(level_mesh<dim>(scene_, choice_, next));
+        seconds += cost(unknowns, missing).seconds;
       } catch (const MeshTooLarge&) {
         return std::numeric_limits<double>::infinity();
       }
@@ -197,7 +201,7 @@ class Run {
     std::unique_ptr<Discretisation<dim>> mesh;
     Level answer;
     try {
-      mesh = std::make_unique<Discretisation<dim>>(level_mesh<dim>(scene_, choice_, level));
+      mesh = std::make_unique<Discretisation<dim>>(sequence_mesh<dim>(scene_, choice_, level, coarser_.get(), store));
       if (const std::optional<Limit> limit = limit_before(level, *mesh, store)) return end_before(level, *limit);
       solve_level(level, *mesh, store, answer);
     } catch (const TimeIsUp&) {
@@ -211,7 +215,7 @@ class Run {
     } catch (const std::bad_alloc&) {
       return end_before(level, {EndedBy::memory, "the memory did not suffice"});
     }
-    take(level, answer);
+    take(level, *mesh, answer);
     coarser_ = std::move(mesh);
     if (level == 0) coarsest_ = *coarser_;
     const bool enough = solved_levels() >= fewest_levels;
@@ -345,9 +349,15 @@ class Run {
         all_meshes_text(level, mesh_s, pace_.factor() * expected_after_s(level, mesh, store)));
   }
 
-  void take(int level, Level& answer) {
+  void take(int level, const Discretisation<dim>& mesh, Level& answer) {
     LevelRecord record;
     record.element_size_m = element_size_m(scene_, choice_, level);
+    if (scene_.reference.adaptive_share) {
+      record.element_size_m = std::numeric_limits<double>::infinity();
+      for (int cell = 0; cell < mesh.cell_count(); ++cell) {
+        record.element_size_m = std::min(record.element_size_m, mesh.pressure_frame(cell).second);
+      }
+    }
     for (const Step& step : answer.steps) {
       record.unknowns = std::max(record.unknowns, step.unknowns);
       record.newton_iterations += step.newton_iterations;
@@ -381,13 +391,14 @@ class Run {
   }
 
   void estimate_uncertainty() {
-    std::vector<double> finer;
+    std::vector<int> unknowns;
     std::vector<std::vector<double>> forces_n, pressure_peaks_pa;
     for (int level = 0; level < solved_levels(); ++level) {
-      finer.push_back(refinement(level));
+      unknowns.push_back(result_.levels[level].unknowns);
       forces_n.push_back(result_.levels[level].force_n);
       pressure_peaks_pa.push_back(result_.levels[level].pressure_peak_pa);
     }
+    const std::vector<double> finer = fineness(scene_, dim, unknowns);
     const std::vector<double> bands_n = force_band(forces_n, finer),
                               peak_bands_pa = force_band(pressure_peaks_pa, finer);
     std::vector<Eigen::VectorXd> bands_m = point_band(shapes_, finer), bands_pa = point_band(tractions_pa_, finer);

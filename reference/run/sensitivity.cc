@@ -51,6 +51,8 @@ std::vector<Change> changes(const scene::Scene& scene) {
                       return std::make_shared<DistanceGrid>(mesh, 0.5 * grid_spacing_m(mesh));
                     }});
   }
+  // An estimate has chosen the cells everywhere, and the levels' differences hold what they miss.
+  if (scene.reference.adaptive_share) return list;
   // Every level has smaller cells at the inclusions, so the levels' differences hold this one.
   if (!scene.body.inclusions.empty()) {
     list.push_back({.part = "inclusion_cells",

@@ -23,7 +23,8 @@ std::vector<Pair> pairs(const std::vector<double>& finer) {
   const std::size_t last = finer.size() - 1;
   std::vector<Pair> list;
   for (const auto [coarse, fine] : {std::array{last - 1, last}, {last - 2, last}, {last - 2, last - 1}}) {
-    if (finer[fine] < closest_pair * finer[coarse]) continue;
+    const bool widest = coarse + 2 == fine;
+    if (!widest && finer[fine] < closest_pair * finer[coarse]) continue;
     list.push_back({coarse, fine, 1.0 / (finer[last] / finer[coarse] - finer[last] / finer[fine])});
   }
   return list;

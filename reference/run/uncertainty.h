@@ -13,8 +13,8 @@ namespace touchstone::reference {
 
 /// Half width of the band per instant, for a quantity F0, F1, F2 on the last three levels, whose cells are 1 / f of a
 /// common size:
-///   b = 1.25 max over pairs j < k of |Fk - Fj| / (f2 / fj - f2 / fk),  pairs no closer than fk / fj = 1.5,
-/// then the largest over the instant and its two neighbours.
+///   b = 1.25 max over pairs j < k of |Fk - Fj| / (f2 / fj - f2 / fk),
+/// the widest and those no closer than fk / fj = 1.5, then the largest over the instant and its two neighbours.
 /// Why so: a contact force does not approach its limit from one side, because the contact's edge moves by whole nodes;
 /// Richardson's extrapolation would be luck. Each quotient is the error of F2 when the error is of first order in the
 /// cell size and the pair differs by no chance; quadratic cells do better. Several pairs guard against two levels

@@ -78,6 +78,7 @@ rate_hz = 200.0
 [reference]
 levels = 3
 element_size_m = 0.002
+adaptive_share = 0.8
 [compare]
 instants = 5
 [[probe]]

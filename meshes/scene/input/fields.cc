@@ -199,6 +199,8 @@ std::vector<Field<Scene>> make_scene_fields() {
            "Number of refined meshes in place of reference.error; an uncertainty needs at least 3."},
       {"reference.element_size_m", "m", above(0.0, 1.0), absent, reference, +[](S& s) -> std::optional<double>& { return s.reference.element_size_m; }, always,
            "Element size under the tool on the coarsest mesh; chosen from the contact radius when absent."},
+      {"reference.adaptive_share", "", between(0.05, 1.0), absent, reference, +[](S& s) -> std::optional<double>& { return s.reference.adaptive_share; }, always,
+           "Each mesh divides this share of the coarser one's cells, those with the largest estimated error; absent: a fixed family of meshes."},
 
       {"compare.instants", "", between(2, 2000), "25", both, +[](S& s) -> int& { return s.compare.instants; }, always,
            "Evenly spaced track instants at which both sides are recorded."},

@@ -156,6 +156,8 @@ struct ReferenceSettings {
   double error = 0.01;                   ///< refine until the uncertainty of force and shape is this
   std::optional<int> levels;             ///< in place of `error`: number of meshes, at least 3 for an uncertainty
   std::optional<double> element_size_m;  ///< cells under the tool on the coarsest level; automatic when absent
+  /// Share of a level's cells that the next one divides, where the error is estimated to be; absent: the fixed family
+  std::optional<double> adaptive_share;
 };
 
 struct CompareSettings {

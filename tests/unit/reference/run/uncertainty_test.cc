@@ -38,6 +38,11 @@ TEST(Uncertainty, LeavesOutPairsTooClose) {
   EXPECT_NEAR(band[0], 1.25 * 0.1 / (2.0 - 2.0 / 1.5), 1e-12);
 }
 
+/// Where all are close, the widest pair says what there is to say: an uncertainty is never zero for want of pairs.
+TEST(Uncertainty, KeepsTheWidestPair) {
+  EXPECT_NEAR(force_band({{1.0}, {1.05}, {1.1}}, {1.0, 1.1, 1.2})[0], 1.25 * 0.1 / (1.2 - 1.0), 1e-12);
+}
+
 TEST(Uncertainty, TakesTheLastThreeLevels) {
   const auto three = force_band({{1.1}, {1.05}, {1.0}}, {2.0, 3.0, 4.0});
   const auto four = force_band({{7.0}, {1.1}, {1.05}, {1.0}}, {1.5, 2.0, 3.0, 4.0});
