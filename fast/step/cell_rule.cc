@@ -10,8 +10,9 @@
 namespace touchstone::fast {
 namespace {
 
-/// At least so many as a device needs that leaves the track, see SlidingOverAnEdgeTurnsTheForceGradually.
-constexpr std::array points_tried{64, 128, 256, 512};
+constexpr std::array points_tried{32, 64, 128, 256, 512};
+/// Where the track has no contact.
+constexpr int points_otherwise = 64;
 /// Poses of the track, evenly spaced in time, and those in contact that are then looked at, at most.
 constexpr int poses_tried = 64;
 constexpr std::size_t poses_kept = 8;
@@ -121,7 +122,7 @@ double change_rel(const std::vector<Load>& coarse, const std::vector<Load>& fine
 ContactCells choose_cells(const std::vector<scene::Waypoint>& track, FastModel& model) {
   Softened softened(model);
   const std::vector<scene::Pose> poses = poses_in_contact(track, softened);
-  ContactCells chosen{rule_of(points_tried[0], 0), 0.0};
+  ContactCells chosen{rule_of(points_otherwise, 0), 0.0};
   if (poses.empty()) return chosen;
   for (const int points : points_tried) {
     chosen.rule = rule_of(points, 0);
