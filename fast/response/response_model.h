@@ -6,8 +6,9 @@
 // far the load moves over the body's surface per newton: the surface slopes by b and sways by s under it, so a ball of
 // radius R touches F (R b - s) away from below its centre. Force and lateral force have one potential.
 //
-// With friction the tool's way along the surface is that of the contact on the half space (slip_springs.h) and of the
-// body, F s + C_t Q, together. The load is by its displacement C_t Q and the contact's behind.
+// With friction, the tool's motion along the surface is the sum of the contact's displacement on the half space
+// (slip_springs.h) and the body's, F s + C_t Q. On the rest surface the load lags behind the tool by the displacement
+// that friction causes: C_t Q and the contact's.
 #pragma once
 
 #include "fast/realtime/stage_clock.h"

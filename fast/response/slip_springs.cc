@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 /// A force this part short of its limit is at it: more than rounding.
 constexpr double rounding_rel = 1e-9;
 
-/// The springs' forces after a common step, as return mapping to their limits, and together with its derivative.
+/// Sum of the springs' forces after a common step, each returned to its limit, and its derivative by the step.
 struct Trial {
   Vector2d force_n = Vector2d::Zero();
   Matrix2d stiffness_n_per_m = Matrix2d::Zero();
@@ -126,7 +126,7 @@ Slip slip(const SlipSprings& springs, const LocalContact& law, double indentatio
         scale * std::max(high.force_n - low.force_n + high.stiffness_n_per_m * (top.depth_m - high.depth_m) -
                              low.stiffness_n_per_m * (top.depth_m - low.depth_m),
                          0.0);
-    // What comes to touch is not sheared yet; what leaves takes its share of the force with it.
+    // Stiffness is added without shear; stiffness that is lost takes its share of the force with it.
     double& last = state.stiffness_n_per_m[k];
     if (stiffness < last) {
       state.x_n[k] *= stiffness / last;
@@ -163,7 +163,7 @@ Slip slip(const SlipSprings& springs, const LocalContact& law, double indentatio
   if (touching > 0 && state.stiffness_n_per_m[0] > 0.0) {
     out.displacement_m = Vector2d(forces.x_n[0], forces.y_n[0]) / state.stiffness_n_per_m[0];
   }
-  // What the tool's step leaves for the body, so that a step that was not found ends with the next.
+  // The body takes the rest of the tool's step. If Newton's method stopped short, the next tick goes on from there.
   state.body_m += step_m - local_step_m;
   return out;
 }

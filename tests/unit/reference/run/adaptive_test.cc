@@ -7,10 +7,11 @@
 #include "reference/solver.h"
 
 #include "scene/shape/surface.h"
+#include "support/press.h"
+#include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -23,13 +24,9 @@ namespace {
 /// A ball pressed on a ball: axisymmetric.
 class AdaptiveTest : public testing::Test {
  protected:
-  AdaptiveTest()
-      : root_(std::filesystem::temp_directory_path() / ("touchstone-adaptive-" + std::to_string(::getpid()))) {
-    scene_.body.shape = scene::BodyShape::sphere;
-    scene_.body.radius_m = 0.03;
+  AdaptiveTest() {
     scene_.body.support_height_m = 0.006;
-    scene_.body.material = {3e6, 0.5};
-    scene_.tool.radius_m = 0.01;
+    scene_.contact = {};
     scene_.track = {{0.0, {{0.0, 0.0, 0.0702}, Eigen::Quaterniond::Identity()}},
                     {1.0, {{0.0, 0.0, 0.0662}, Eigen::Quaterniond::Identity()}}};
     scene_.compare.instants = 5;
@@ -39,7 +36,6 @@ class AdaptiveTest : public testing::Test {
     scene_.probes = {{"below", {0.0, 0.0, 0.045}}};
     surface_ = scene::tessellate(*scene::body_shape(scene_.body), 128);
   }
-  ~AdaptiveTest() override { std::filesystem::remove_all(root_); }
 
   Result run(const std::atomic<bool>* stop = nullptr) {
     solved_ = 0;
@@ -55,8 +51,9 @@ class AdaptiveTest : public testing::Test {
   }
   [[nodiscard]] std::filesystem::path folder() const { return root_ / content_key(scene_); }
 
-  std::filesystem::path root_;
-  scene::Scene scene_;
+  compare::testing::TemporaryFolder temporary_;
+  std::filesystem::path root_ = temporary_.path();
+  scene::Scene scene_ = test::ball_on_sphere();
   scene::Surface surface_;
   int solved_ = 0;
   std::function<void(const Progress&)> watch_;
