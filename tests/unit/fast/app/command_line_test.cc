@@ -516,8 +516,9 @@ TEST(CompareVerb, ParametersAreTheFastSidesAlone) {
   const auto own = compared("own", ""), tuned = compared("tuned", " --parameters " + (dir / "tuned.toml").string());
   EXPECT_EQ(own["force.peak_reference_n"], tuned["force.peak_reference_n"]);
   EXPECT_GT(tuned["force.peak_fast_n"].get<double>(), 2.0 * own["force.peak_fast_n"].get<double>());
-  const auto keys = std::distance(std::filesystem::directory_iterator(dir / "store"), {});
-  EXPECT_EQ(keys, 1) << "the reference was solved for the tuned friction, too";
+  const auto solved = std::count_if(std::filesystem::directory_iterator(dir / "store"), {},
+                                    [](const auto& entry) { return entry.path().filename() != "response"; });
+  EXPECT_EQ(solved, 1) << "the reference was solved for the tuned friction, too";
   std::filesystem::remove_all(dir);
 }
 
