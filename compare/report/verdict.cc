@@ -84,6 +84,8 @@ Reason force_paragraph(const Errors& errors) {
 
 /// Cause of the force error, as far as the scene's own numbers show it; else empty.
 Reason cause_paragraph(const scene::Scene& scene, const Errors& errors) {
+  // The response model has no contact constants.
+  if (scene.fast.formulation == scene::Formulation::response) return {};
   const InstantErrors& deepest = errors.instants[errors.deepest];
   if (!errors.force_peak_rel.distinguishable() || !(deepest.force_fast_n > 0.0)) return {};
   const double d = deepest.depth_m;

@@ -66,6 +66,15 @@ TEST(Verdict, SaysHowWrongTheForceIsAndWhy) {
   EXPECT_TRUE(says(text, "The reference took 5.32 min for 23 instants on 3 meshes")) << text;
 }
 
+TEST(Verdict, BlamesNoConstantsOfAModelThatHasNone) {
+  testing::Sides sides = testing::pressed(23, 200);
+  sides.scene.fast.formulation = scene::Formulation::response;
+  const std::string text = told(sides);
+  EXPECT_TRUE(says(text, "too low")) << text;
+  EXPECT_FALSE(says(text, "Likely cause")) << text;
+  EXPECT_FALSE(says(text, "touchstone tune")) << text;
+}
+
 /// Both sides with the fast model's force multiplied by a factor.
 testing::Sides with_force_times(double factor) {
   testing::Sides sides = testing::pressed(5, 200);
