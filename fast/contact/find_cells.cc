@@ -116,6 +116,36 @@ Vec3 mean_normal(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const
   return mean_normal_at_edge(box, R_WT, p_W, rest, spread_T_m);
 }
 
+/// Where a direction's error moves the line through a far mass centre by more than this share of the contact's radius
+/// per unit, the sum of normals is taken by steady_direction(): partly from the first on, wholly from the second.
+constexpr double lever_from = 1.0, lever_to = 3.0;
+
+/// The direction d is the mean of the rest surface's normals n, and a mean of few normals that differ has an error. The
+/// tool's normals n_T say the same about a tool without edges, whose line through the mass centre moves with them: over
+/// a surface of mean curvature H that ends where the depth is 0, the divergence theorem for grad(depth^2) gives
+///   integral of depth n = integral of (depth n . n_T - depth^2 H) n_T.
+void steady_direction(const ToolSamples& tool, const Mat3& R_WT, const RegionPoints& points,
+                      InsideSummary& inside) noexcept {
+  if (tool.mean_curvature_per_m.empty() || points.count == 0) return;
+  const double mean = inside.normal_sum.norm() / inside.weight_sum;
+  const double differ = std::sqrt(std::max(0.0, 1.0 - mean * mean)), far_m = points.p_T_m(0).norm();
+  if (!(differ * far_m > 0.0)) return;
+  double area_m2 = 0.0;
+  Vec3 sum_T = Vec3::Zero();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
+    const double depth_m = points.depth_m[i];
+    if (!(depth_m > 0.0)) continue;
+    const Vec3 n_T(points.nx_T[i], points.ny_T[i], points.nz_T[i]);
+    const Vec3 n_W(points.rest_nx_W[i], points.rest_ny_W[i], points.rest_nz_W[i]);
+    area_m2 += points.area_m2[i];
+    sum_T += points.area_m2[i] * depth_m *
+             (n_W.dot(R_WT * n_T) - depth_m * nth(tool.mean_curvature_per_m, points.sample[i])) * n_T;
+  }
+  const double lever = differ * far_m / std::sqrt(area_m2 / std::numbers::pi);
+  const double x = std::clamp((lever - lever_from) / (lever_to - lever_from), 0.0, 1.0);
+  inside.normal_sum += x * x * (3.0 - 2.0 * x) * (R_WT * sum_T - inside.normal_sum);
+}
+
 /// Cells of the tool, a batch at a time, and what is inside of them.
 template <class Body>
 class CellFinder {
@@ -147,27 +177,17 @@ class CellFinder {
   /// CellScratch::near.
   void end_round() noexcept { place(); }
 
-  /// Takes what is inside of the cells. @return whether that is fine enough
+  /// Takes what is inside of the cells. @return whether those are enough points
   bool measure() noexcept {
     scratch_.parts.clear();
     inside_ = 0;
-    inside_m2_ = rim_m2_ = 0.0;
     const std::vector<PlacedCell>& placed = scratch_.placed;
     for (std::size_t begin = 0; begin < placed.size(); begin += CellBatch::size) {
       const std::size_t end = std::min(placed.size(), begin + CellBatch::size);
       cut_by_planes({placed.data() + begin, end - begin});
       for (std::size_t k = begin, lane = 0; k < end; ++k) measure(placed[k], cut_[k - begin], lane);
     }
-    return inside_ >= rule_.points && rim_m2_ <= rule_.rim_share * inside_m2_;
-  }
-
-  /// Whether the points that take() has made are enough for the lever of the mass centre.
-  [[nodiscard]] bool enough_for_lever(const InsideSummary& inside) const noexcept {
-    if (rule_.points_per_lever == 0.0 || points_.count == 0) return true;
-    const double mean = inside.normal_sum.norm() / inside.weight_sum;
-    const double spread = std::sqrt(std::max(0.0, 1.0 - mean * mean));
-    const double radius_m = std::sqrt(inside_m2_ / std::numbers::pi);
-    return !(rule_.points_per_lever * spread * points_.p_T_m(0).norm() > inside_ * radius_m);
+    return inside_ >= rule_.points;
   }
 
   /// Makes points of what measure() has found.
@@ -287,16 +307,12 @@ class CellFinder {
 
   void is_inside(const PlacedCell& here) noexcept {
     ++inside_;
-    inside_m2_ += here.cell->area_m2;
     scratch_.parts.push_back({&here, CellPart::Kind::inside, 1.0, Vec3::Zero()});
   }
 
   /// @param off_m  from the cell's centre to the middle of the share that is inside, tool frame
   void is_rim(const PlacedCell& here, double share, const Vec3& off_m) noexcept {
-    const double area_m2 = share * here.cell->area_m2;
-    rim_m2_ += area_m2;
     ++inside_;
-    inside_m2_ += area_m2;
     scratch_.parts.push_back({&here, CellPart::Kind::rim, share, off_m});
   }
 
@@ -410,7 +426,6 @@ class CellFinder {
   CellBatch& batch_;
   InsideSummary summary_;
   int inside_ = 0;
-  double inside_m2_ = 0.0, rim_m2_ = 0.0;
   std::array<const SurfaceCell*, CellBatch::size> cell_;  ///< asked for, not yet placed
   std::array<std::int32_t, CellBatch::size> index_;
   std::size_t asked_ = 0;
@@ -437,17 +452,16 @@ InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, con
     for (std::int32_t i = ball.begin; i < ball.end; ++i) found.look_at(nth(tool.cell, i), i);
   }
   found.end_round();
-  bool of_tool = true, room = 4 * near.size() <= max_cells;
+  const auto most = static_cast<std::size_t>(rule.room);
+  bool of_tool = true, room = 4 * near.size() <= most;
   std::size_t looked_at = 0;
+  int halvings = rule.halvings;
   while (true) {
-    // Fewer cells than points are asked for cannot be fine enough.
-    if (near.empty() || !room || near.size() >= static_cast<std::size_t>(rule.points)) {
-      const bool fine_enough = found.measure();
-      if (near.empty() || !room) return found.take();
-      if (fine_enough) {
-        const InsideSummary inside = found.take();
-        if (found.enough_for_lever(inside)) return inside;
-      }
+    // Fewer cells than points are asked for cannot be enough.
+    const bool last = near.empty() || !room;
+    if (last || near.size() >= static_cast<std::size_t>(rule.points)) {
+      const bool enough = found.measure();
+      if (last || (enough && halvings-- == 0)) break;
     }
     if (of_tool) scratch.begin();
     scratch.now.clear();
@@ -459,9 +473,12 @@ InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, con
     for (const std::int32_t k : scratch.now) found.look_at(scratch.half(k), k);
     found.end_round();
     looked_at += scratch.now.size();
-    room = looked_at + 2 * scratch.now.size() <= max_cells;
+    room = looked_at + 2 * scratch.now.size() <= most;
     of_tool = false;
   }
+  InsideSummary inside = found.take();
+  steady_direction(tool, at.R_WT, points, inside);
+  return inside;
 }
 
 }  // namespace
@@ -470,19 +487,19 @@ FindCells find_cells_for(const scene::Shape& shape) noexcept {
   return scene::as_solid<FindCells>(shape, []<class Body>() -> FindCells { return &find_cells<Body>; });
 }
 
-CellScratch::CellScratch(int samples)
-    : halves_(samples > 0 ? 2 * max_cells : 0),
+CellScratch::CellScratch(int samples, int room)
+    : room_(static_cast<std::size_t>(room)),
+      halves_(2 * room_),
       of_half_(halves_.size(), -1),
       of_sample_(static_cast<std::size_t>(samples), -1) {
-  if (samples == 0) return;
-  now.reserve(max_cells);
-  near.reserve(static_cast<std::size_t>(std::max(samples, max_cells)));
+  now.reserve(room_);
+  near.reserve(std::max(of_sample_.size(), room_));
   placed.reserve(near.capacity());
   parts.reserve(near.capacity());
 }
 
 void CellScratch::begin() noexcept {
-  if (used_ + max_cells <= halves_.size()) return;
+  if (used_ + room_ <= halves_.size()) return;
   std::fill(of_sample_.begin(), of_sample_.end(), -1);
   used_ = 0;
 }

@@ -15,16 +15,10 @@ namespace touchstone::fast {
 
 /// How the tool's cells become points.
 struct CellRule {
-  int points = 1;          ///< fewer than these are too few
-  double rim_share = 1.0;  ///< of the area inside, in cut cells; more than that is too much
-  /// Points that are asked for times the spread of the rest surface's normals over the contact, times the distance of
-  /// the mass centre over the contact's radius. The direction d is the mean of those normals, so its error grows with
-  /// their spread, and that of the line through the mass centre with the distance.
-  double points_per_lever = 0.0;
+  int points = 1;    ///< fewer than these are too few
+  int halvings = 0;  ///< of all cells near the body beyond that
+  int room = 1024;   ///< halved cells that find_cells() looks at in a tick, at most
 };
-
-/// Halved cells that find_cells() looks at in a tick, at most.
-inline constexpr int max_cells = 1024;
 
 /// A cell at its place.
 struct PlacedCell {
@@ -50,8 +44,10 @@ struct CellPart {
 /// answer never depends on which are.
 class CellScratch {
  public:
-  /// @param samples of the tool; 0 where cells are not asked for
-  explicit CellScratch(int samples);
+  /// Takes nothing: for samples in place of cells.
+  CellScratch() = default;
+  /// @param samples of the tool; @param room  of CellRule
+  CellScratch(int samples, int room);
   /// Makes room for a tick's halves.
   void begin() noexcept;
   /// The first of the two halves of a sample's cell, or of a half; the second follows it.
@@ -69,14 +65,15 @@ class CellScratch {
 
  private:
   [[nodiscard]] std::int32_t halves_of(const ToolSamples& tool, const SurfaceCell& cell, std::int32_t& first) noexcept;
+  std::size_t room_ = 0;
   std::vector<SurfaceCell> halves_;
   std::vector<std::int32_t> of_half_, of_sample_;  ///< the first half of each, -1 for not known
   std::size_t used_ = 0;
 };
 
 /// Fills `points` with what lies inside the rest surface of the tool's cells, one point for each at the middle of that
-/// part and with its area. Where the points are too few (also for the lever of the mass centre), or too much of the
-/// area is in cut cells, all cells near the body are halved, and again, as far as there is room.
+/// part and with its area. Where the points are too few, all cells near the body are halved, and again, as far as there
+/// is room.
 /// @param margin_m what lies outside, but for less than that, are points too, of negative depth
 using FindCells = InsideSummary (*)(const scene::Shape&, const ToolSamples&, const Placement&, const CellRule&,
                                     double margin_m, RegionPoints&, CellScratch&) noexcept;

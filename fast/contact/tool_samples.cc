@@ -355,16 +355,30 @@ ToolSamples sample_mesh(const scene::TriangleMesh& mesh, int count, bool even) {
 }  // namespace
 
 std::size_t ToolSamples::memory_bytes() const noexcept {
-  return 7 * x_T_m.size() * sizeof(double) + cell.size() * sizeof(SurfaceCell) + tree.size() * sizeof(SampleBall) +
-         groups.memory_bytes();
+  return (7 * x_T_m.size() + mean_curvature_per_m.size()) * sizeof(double) + cell.size() * sizeof(SurfaceCell) +
+         tree.size() * sizeof(SampleBall) + groups.memory_bytes();
 }
+
+namespace {
+
+ToolSamples with_curvature(ToolSamples samples) {
+  for (const SurfaceCell& cell : samples.cell) {
+    const Band& band = cell.band;
+    samples.mean_curvature_per_m.push_back(band.arc_radius_m > 0.0 ? 1.0 / band.arc_radius_m : 0.5 / band.start_m.x());
+  }
+  return samples;
+}
+
+}  // namespace
 
 ToolSamples cell_tool(const scene::Tool& tool, int count) {
   if (tool.shape == scene::ToolShape::mesh) return sample_mesh(scene::tool_mesh(tool), count, false);
   const auto shape = scene::tool_shape(tool);
   switch (tool.shape) {
     case scene::ToolShape::sphere:
-      return sample_revolution(as_revolution(static_cast<const scene::Sphere&>(*shape)), count);
+      return with_curvature(sample_revolution(as_revolution(static_cast<const scene::Sphere&>(*shape)), count));
+    case scene::ToolShape::capsule:
+      return with_curvature(sample_revolution(static_cast<const scene::Revolution&>(*shape), count));
     case scene::ToolShape::box:
       return sample_box(static_cast<const scene::Box&>(*shape), count);
     default:
@@ -379,6 +393,7 @@ ToolSamples sample_tool(const scene::Tool& tool, int count) {
       tool.shape == scene::ToolShape::mesh ? sample_mesh(scene::tool_mesh(tool), count, true) : cell_tool(tool, count);
   samples.cell = {};
   samples.groups = {};
+  samples.mean_curvature_per_m = {};
   return samples;
 }
 

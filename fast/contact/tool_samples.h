@@ -33,8 +33,10 @@ struct ToolSamples {
   std::vector<double> area_m2;    ///< A_i; sums to the surface
   std::vector<SurfaceCell> cell;  ///< of each sample, together the surface; only of cell_tool()
   CellGroups groups;              ///< of a fine mesh
-  double spacing_m = 0.0;         ///< sqrt(surface / count)
-  std::vector<SampleBall> tree;   ///< root first
+  /// Of each cell, half the sum of both curvatures of a tool without edges: a ball or capsule. Otherwise empty.
+  std::vector<double> mean_curvature_per_m;
+  double spacing_m = 0.0;        ///< sqrt(surface / count)
+  std::vector<SampleBall> tree;  ///< root first
 
   [[nodiscard]] int count() const noexcept { return static_cast<int>(x_T_m.size()); }
   [[nodiscard]] std::size_t memory_bytes() const noexcept;

@@ -12,6 +12,7 @@
 #include <array>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 
 namespace touchstone::fast {
 namespace {
@@ -76,6 +77,15 @@ std::string anchors_text(const AnchorPoints& anchors) {
     out += (out.empty() ? "" : ", ") + std::to_string(count) + " x " + std::string(words(reason));
   }
   return out;
+}
+
+std::string fineness_text(const std::optional<ContactCells>& cells) {
+  if (!cells || cells->change_rel == 0.0) return "";
+  std::string text =
+      fmt::format("; {} points are asked for, and cells of a quarter of the size change the load by {:.2g} %",
+                  cells->rule.points, 100.0 * cells->change_rel);
+  if (cells->change_rel > cell_tolerance_rel) text += ": THE FORCE DEPENDS ON THE CELLS";
+  return text;
 }
 
 std::string one_region_text(const scene::Tool& tool) {
@@ -169,7 +179,8 @@ scene::Plan plan(const scene::Scene& scene) {
       fmt::format("{} {} of the tool, {:.3g} mm apart, against the exact rest shape{}; {} points inside at the track's "
                   "deepest instant",
                   model.tool.count(), elements, model.tool.spacing_m * 1e3,
-                  published ? "" : ", and smaller ones where few are inside", points) +
+                  published ? "" : ", halved where few are inside", points) +
+          fineness_text(model.cells) +
           (measured.deepest_m > 0.0 && !measured.contact
                ? fmt::format("; CONTACT MISSED: the tool is {:.3g} mm deep there but the force is zero; raise "
                              "fast.tool_samples",

@@ -3,9 +3,6 @@
 namespace touchstone::fast {
 namespace {
 
-/// The force is then within about 1 % of the limit of fine cells, see CellsConverge.
-constexpr CellRule corrected_cells{.points = 64, .rim_share = 0.33, .points_per_lever = 50.0};
-
 /// A cell is as accurate as several samples, and cells are refined where needed.
 constexpr int samples_per_cell = 4;
 
@@ -20,15 +17,12 @@ Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {
   const SplitForce split_force = split_force_of(fast.formulation, skeleton);
   Formulas formulas;
   if (fast.formulation == scene::Formulation::published) {
-    formulas = {std::nullopt,          distribute_mass_published,    resolve_friction_published, split_force,
-                interpolate_published, apply_local_factor_published, several_regions_published};
+    formulas = {distribute_mass_published, resolve_friction_published,   split_force,
+                interpolate_published,     apply_local_factor_published, several_regions_published};
   } else {
-    formulas = {corrected_cells,       distribute_mass_corrected,    resolve_friction_corrected, split_force,
-                interpolate_corrected, apply_local_factor_corrected, several_regions_corrected};
+    formulas = {distribute_mass_corrected, resolve_friction_corrected,   split_force,
+                interpolate_corrected,     apply_local_factor_corrected, several_regions_corrected};
   }
-  // With several regions the normals of all cells together describe no single region, so the lever does not refine
-  // cells.
-  if (formulas.cells && !scene.tool.convex() && fast.max_regions > 1) formulas.cells->points_per_lever = 0.0;
   if (!scene.contact.friction) formulas.resolve_friction = nullptr;
   if (fast.C_n == 0.0) formulas.apply_local_factor = nullptr;
   return formulas;
@@ -51,6 +45,7 @@ FastModel::FastModel(const scene::Scene& scene)
       formulas(formulas_of(scene, skeleton)),
       max_regions(scene.tool.convex() ? 1 : scene.fast.max_regions) {
   if (max_regions > 1) clusters = std::make_unique<const ClusterGrid>(cluster_grid(tool, scene.contact.r_th_m));
+  if (scene.fast.formulation != scene::Formulation::published) cells = choose_cells(scene.track, *this);
 }
 
 void FastModel::set_constants(const scene::Scene& scene) {

@@ -4,12 +4,12 @@
 #include "fast/contact/contact_detection.h"
 #include "fast/contact/contact_law.h"
 #include "fast/contact/contact_regions.h"
-#include "fast/contact/find_cells.h"
 #include "fast/contact/friction.h"
 #include "fast/contact/mass_distribution.h"
 #include "fast/contact/tool_samples.h"
 #include "fast/skeleton/anchor_points.h"
 #include "fast/skeleton/beam_skeleton.h"
+#include "fast/step/cell_rule.h"
 #include "fast/surface/interpolation.h"
 #include "fast/surface/local_factor.h"
 #include "fast/surface/normals.h"
@@ -26,7 +26,6 @@ namespace touchstone::fast {
 
 /// The stages in which the published and the corrected formulation differ, chosen when the model is built.
 struct Formulas {
-  std::optional<CellRule> cells;  ///< how the tool's cells become points; without, its samples are the points
   DistributeMass distribute_mass = nullptr;
   ResolveFriction resolve_friction = nullptr;  ///< null where the scene has no friction: there is no such stage
   SplitForce split_force = nullptr;
@@ -48,6 +47,7 @@ struct FastModel {
   std::unique_ptr<const scene::Shape> body;  ///< rest shape
   Detection detection;
   ToolSamples tool;
+  std::optional<ContactCells> cells;  ///< of the tool, that become points; without, its samples are the points
   ContactLaw law;
   std::optional<FrictionLaw> friction;
   std::unique_ptr<const AnchorPoints> anchors;
@@ -62,7 +62,11 @@ struct FastModel {
 
   /// Points of a tick, at most: two for each cell, its part inside and, for several regions, the one outside.
   [[nodiscard]] int max_points() const noexcept {
-    return formulas.cells ? 2 * std::max(tool.count(), max_cells / 2) : tool.count();
+    return cells ? 2 * std::max(tool.count(), cells->rule.room / 2) : tool.count();
+  }
+  /// For find_points().
+  [[nodiscard]] CellScratch cell_scratch() const {
+    return cells ? CellScratch(tool.count(), cells->rule.room) : CellScratch();
   }
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };

@@ -70,8 +70,7 @@ bool move_to(const Pose& asked, FastState& state) noexcept {
 InsideSummary find_points(const FastModel& model, const Placement& at, double margin_m, RegionPoints& points,
                           CellScratch& cells) noexcept {
   const Detection& detection = model.detection;
-  if (model.formulas.cells)
-    return detection.find_cells(*model.body, model.tool, at, *model.formulas.cells, margin_m, points, cells);
+  if (model.cells) return detection.find_cells(*model.body, model.tool, at, model.cells->rule, margin_m, points, cells);
   return detection.find_inside(*model.body, model.tool, at, margin_m, model.tool.count(), points);
 }
 

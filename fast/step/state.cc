@@ -45,7 +45,7 @@ std::size_t SeveralRegionsState::memory_bytes() const noexcept {
 
 FastState::FastState(const FastModel& model, int max_regions)
     : store(model.max_points()),
-      cells(model.formulas.cells ? model.tool.count() : 0),
+      cells(model.cell_scratch()),
       probe(model.max_points()),
       regions(static_cast<std::size_t>(max_regions), ContactRegion(model.skeleton.anchor_m.size())),
       field(model.rest),

@@ -34,11 +34,12 @@ TEST_P(DetectionWithoutHeap, FindsSplitsFollowsAndTakesBack) {
   const Detection detection = detection_for(*body);
   const ToolSamples tool = cell_tool(scene.tool, 2000);
   const ClusterGrid grid = cluster_grid(tool, 0.002);
+  const CellRule rule{.points = 100};
   ClusterScratch scratch(grid, tool.count());
   PullBackScratch scratch_back(tool.count());
   RegionTracker tracker(tool.count(), 20, 10);
-  test::OwnedPoints points(tool.count()), fine_points(2 * max_cells);
-  CellScratch cells(tool.count());
+  test::OwnedPoints points(tool.count()), fine_points(2 * rule.room);
+  CellScratch cells(tool.count(), rule.room);
   std::vector<Cluster> clusters(20);
   std::vector<TrackedRegion> regions(10);
   const double top_m = body->bounds().upper_m.z();
@@ -50,7 +51,7 @@ TEST_P(DetectionWithoutHeap, FindsSplitsFollowsAndTakesBack) {
       Placement at;
       at.R_WT = Eigen::AngleAxisd(0.6 * std::sin(3.0 * s), Vec3::UnitY()).toRotationMatrix();
       at.origin_W_m = Vec3(0.01 * std::sin(s), 0.0, top_m + 0.002 * std::cos(2.0 * s));
-      detection.find_cells(*body, tool, at, {100, 0.25}, 1e-4, fine_points, cells);
+      detection.find_cells(*body, tool, at, rule, 1e-4, fine_points, cells);
       detection.find_inside(*body, tool, at, 1e-4, tool.count(), points);
       ticks_in_contact += points.count > 0;
       const ClusterCount found = cluster(grid, points, scratch, clusters);

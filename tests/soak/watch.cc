@@ -70,7 +70,7 @@ Watch::Watch(const fast::FastModel& model, fast::FastState& state, Figures& figu
       state_(state),
       figures_(figures),
       report_(std::move(report)),
-      cells_(model.formulas.cells ? model.tool.count() : 0),
+      cells_(model.cell_scratch()),
       group_(static_cast<std::size_t>(model.max_points())) {}
 
 void Watch::check(Property property, bool holds, const std::string& otherwise) {

@@ -25,7 +25,7 @@ void bare_tick(const FastModel& model, const scene::Pose& pose, FastState& state
   ContactRegion& region = state.regions[0];
   fast::RegionPoints points = state.store.window();
   const fast::InsideSummary inside =
-      model.detection.find_cells(*model.body, model.tool, at, *model.formulas.cells, 0.0, points, state.cells);
+      model.detection.find_cells(*model.body, model.tool, at, model.cells->rule, 0.0, points, state.cells);
   if (points.count == 0) return;
   region.d = region.active ? fast::follow_direction(region.d, inside) : fast::direction_from(inside, region.d);
   region.active = true;

@@ -1,0 +1,134 @@
+#include "fast/step/cell_rule.h"
+
+#include "fast/step/step.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace touchstone::fast {
+namespace {
+
+/// At least so many as a device needs that leaves the track, see SlidingOverAnEdgeTurnsTheForceGradually.
+constexpr std::array points_tried{64, 128, 256, 512};
+/// Poses of the track, evenly spaced in time, and those in contact that are then looked at, at most.
+constexpr int poses_tried = 64;
+constexpr std::size_t poses_kept = 8;
+/// A load below this share of the track's largest may change as much as that one.
+constexpr double small_load_rel = 0.2;
+
+/// All rounds together look at several times as many cells as the last one, which may have twice as many as are asked
+/// for.
+CellRule rule_of(int points, int halvings) {
+  return {.points = points, .halvings = halvings, .room = std::max(1024, (points << halvings) * 16)};
+}
+
+/// What the law makes the force of, over all regions.
+struct Load {
+  double linear_m = 0.0;  ///< mean depths, by the mass shares
+  double cubic_m3 = 0.0;  ///< means of the depths' third powers
+};
+
+Load load_of(const FastState& state) {
+  Load load;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(state.region_count); ++k) {
+    const ContactRegion& region = state.regions[k];
+    if (!region.pressing()) continue;
+    load.linear_m += region_load(DuffingLaw(1.0, 0.0), region.points).force_n;
+    load.cubic_m3 += region_load(DuffingLaw(0.0, 1.0), region.points).force_n;
+  }
+  return load;
+}
+
+/// So soft that no region deforms the body where another one is.
+scene::Contact soft_law() {
+  scene::Contact contact;
+  contact.k1_n_per_m = 1e-6;
+  contact.k3_n_per_m3 = 0.0;
+  return contact;
+}
+
+/// A model without friction and with that law while this lives.
+class Softened {
+ public:
+  explicit Softened(FastModel& model)
+      : model_(model), cells_(model.cells), law_(model.law), resolve_friction_(model.formulas.resolve_friction) {
+    model.law = ContactLaw(soft_law());
+    model.formulas.resolve_friction = nullptr;
+  }
+  ~Softened() {
+    model_.cells = cells_;
+    model_.law = law_;
+    model_.formulas.resolve_friction = resolve_friction_;
+  }
+  Softened(const Softened&) = delete;
+  Softened& operator=(const Softened&) = delete;
+
+  std::vector<Load> loads(const CellRule& rule, const std::vector<scene::Pose>& poses) {
+    model_.cells = ContactCells{rule, 0.0};
+    FastState state(model_);
+    std::vector<Load> loads;
+    for (const scene::Pose& pose : poses) {
+      step_force(model_, pose, state);
+      loads.push_back(load_of(state));
+    }
+    return loads;
+  }
+
+ private:
+  FastModel& model_;
+  std::optional<ContactCells> cells_;
+  ContactLaw law_;
+  ResolveFriction resolve_friction_;
+};
+
+/// Some poses of the track that are in contact.
+std::vector<scene::Pose> poses_in_contact(const std::vector<scene::Waypoint>& track, Softened& model) {
+  std::vector<scene::Pose> all, touching, kept;
+  if (track.empty()) return kept;
+  const double begin_s = track.front().time_s, length_s = track.back().time_s - begin_s;
+  for (int k = 0; k < poses_tried; ++k)
+    all.push_back(scene::pose_at(track, begin_s + length_s * k / (poses_tried - 1)));
+  const std::vector<Load> loads = model.loads(rule_of(points_tried[0], 0), all);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (loads[k].linear_m > 0.0) touching.push_back(all[k]);
+  }
+  const std::size_t count = std::min(poses_kept, touching.size());
+  for (std::size_t k = 1; k <= count; ++k) kept.push_back(touching[k * touching.size() / count - 1]);
+  return kept;
+}
+
+double change_rel(const std::vector<Load>& coarse, const std::vector<Load>& fine) {
+  double most_m = 0.0, most_m3 = 0.0, most = 0.0;
+  for (const Load& load : fine) {
+    most_m = std::max(most_m, load.linear_m);
+    most_m3 = std::max(most_m3, load.cubic_m3);
+  }
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    const Load &a = coarse[i], &b = fine[i];
+    const double floor_m = std::max(b.linear_m, small_load_rel * most_m),
+                 floor_m3 = std::max(b.cubic_m3, small_load_rel * most_m3);
+    if (floor_m > 0.0) most = std::max(most, std::abs(a.linear_m - b.linear_m) / floor_m);
+    // The third power changes more; it is a part of the force.
+    if (floor_m3 > 0.0) most = std::max(most, 0.5 * std::abs(a.cubic_m3 - b.cubic_m3) / floor_m3);
+  }
+  return most;
+}
+
+}  // namespace
+
+ContactCells choose_cells(const std::vector<scene::Waypoint>& track, FastModel& model) {
+  Softened softened(model);
+  const std::vector<scene::Pose> poses = poses_in_contact(track, softened);
+  ContactCells chosen{rule_of(points_tried[0], 0), 0.0};
+  if (poses.empty()) return chosen;
+  for (const int points : points_tried) {
+    chosen.rule = rule_of(points, 0);
+    chosen.change_rel = change_rel(softened.loads(chosen.rule, poses), softened.loads(rule_of(points, 2), poses));
+    if (chosen.change_rel <= cell_tolerance_rel) break;
+  }
+  return chosen;
+}
+
+}  // namespace touchstone::fast
