@@ -21,6 +21,7 @@ struct CellBatch {
   alignas(64) Column beyond{};                        ///< above 0: surely further out
   alignas(64) Column distance_m{}, nx{}, ny{}, nz{};  ///< RestDistance of the middle
   std::array<std::array<Column, 3>, 4> corner_m{};    ///< from the middle, frame T
+  std::array<std::array<Column, 3>, 2> sag_m{};       ///< of SurfaceCell
   alignas(64) Column nx_T{}, ny_T{}, nz_T{};          ///< (nx, ny, nz) in frame T
   alignas(64) Column lowest_m{}, highest_m{};         ///< corners, over the tangent plane of the rest surface
 
@@ -50,6 +51,13 @@ struct CellBatch {
       corner_m[k][0][i] = at_m.x();
       corner_m[k][1][i] = at_m.y();
       corner_m[k][2][i] = at_m.z();
+    }
+  }
+  void set_sag(std::size_t i, const SurfaceCell& cell) noexcept {
+    for (std::size_t k = 0; k < sag_m.size(); ++k) {
+      sag_m[k][0][i] = cell.sag_m[k].x();
+      sag_m[k][1][i] = cell.sag_m[k].y();
+      sag_m[k][2][i] = cell.sag_m[k].z();
     }
   }
   TOUCHSTONE_INLINE void set_rest(std::size_t i, const scene::Distance& d) noexcept {

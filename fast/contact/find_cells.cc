@@ -12,6 +12,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <utility>
 
 namespace touchstone::fast {
 namespace {
@@ -150,21 +151,16 @@ void steady_direction(const ToolSamples& tool, const Mat3& R_WT, const RegionPoi
 template <class Body>
 class CellFinder {
  public:
-  CellFinder(const Body& body, const Placement& at, const CellRule& rule, double margin_m, RegionPoints& points,
+  CellFinder(const Body& body, const Placement& at, double margin_m, RegionPoints& points,
              CellScratch& scratch) noexcept
-      : body_(body),
-        at_(at),
-        rule_(rule),
-        margin_m_(margin_m),
-        points_(points),
-        scratch_(scratch),
-        batch_(scratch.batch) {}
+      : body_(body), at_(at), margin_m_(margin_m), points_(points), scratch_(scratch), batch_(scratch.batch) {}
 
   /// Begins with a new round of cells.
   void begin_round() noexcept {
     scratch_.placed.clear();
     scratch_.near.clear();
     asked_ = 0;
+    inside_ = 0;
   }
   /// @param index  of the cell, for CellScratch::near
   void look_at(const SurfaceCell& cell, std::int32_t index) noexcept {
@@ -177,17 +173,18 @@ class CellFinder {
   /// CellScratch::near.
   void end_round() noexcept { place(); }
 
-  /// Takes what is inside of the cells. @return whether those are enough points
-  bool measure() noexcept {
+  /// Cells of the round of which some is inside.
+  [[nodiscard]] int inside() const noexcept { return inside_; }
+
+  /// Takes what is inside of the cells.
+  void measure() noexcept {
     scratch_.parts.clear();
-    inside_ = 0;
     const std::vector<PlacedCell>& placed = scratch_.placed;
     for (std::size_t begin = 0; begin < placed.size(); begin += CellBatch::size) {
       const std::size_t end = std::min(placed.size(), begin + CellBatch::size);
       cut_by_planes({placed.data() + begin, end - begin});
       for (std::size_t k = begin, lane = 0; k < end; ++k) measure(placed[k], cut_[k - begin], lane);
     }
-    return inside_ >= rule_.points;
   }
 
   /// Makes points of what measure() has found.
@@ -270,21 +267,31 @@ class CellFinder {
     batch_.count = kept;
     level_batch(at_.R_WT, batch_);
     for (std::size_t i = 0; i < kept; ++i) {
-      const PlacedCell here{cell_[i],
+      // Only the ball around the cell reaches the body.
+      const SurfaceCell& cell = *cell_[i];
+      if (margin_m_ == 0.0 && cell.group < 0 && batch_.distance_m[i] > -cell.radius_m &&
+          !(batch_.lowest_m[i] < cell.bulge_m))
+        continue;
+      const PlacedCell here{&cell,
                             Vec3(batch_.x_m[i], batch_.y_m[i], batch_.z_m[i]),
                             {batch_.distance_m[i], Vec3(batch_.nx[i], batch_.ny[i], batch_.nz[i])},
                             Vec3(batch_.nx_T[i], batch_.ny_T[i], batch_.nz_T[i]),
                             batch_.lowest_m[i],
                             batch_.highest_m[i]};
-      if (is_near(here)) scratch_.near.push_back(index_[i]);
+      const bool inside = some_inside(here);
+      inside_ += inside;
+      if (inside || may_be_inside(here)) scratch_.near.push_back(index_[i]);
       scratch_.placed.push_back(here);
     }
   }
 
+  /// Whether measure() finds some of the cell inside.
+  [[nodiscard]] static bool some_inside(const PlacedCell& here) noexcept {
+    return here.wholly_inside() || (here.cell->group >= 0 ? lowest_of_group_m(here, slope(here)) : here.lowest_m) < 0.0;
+  }
   /// Whether some of the cell may be inside.
-  [[nodiscard]] static bool is_near(const PlacedCell& here) noexcept {
-    return here.wholly_inside() || here.lowest_m < here.cell->bulge_m ||
-           (here.cell->group >= 0 && lowest_of_group_m(here, slope(here)) < 0.0);
+  [[nodiscard]] static bool may_be_inside(const PlacedCell& here) noexcept {
+    return here.lowest_m < here.cell->bulge_m;
   }
 
   /// A cell's spread in two vectors, of which one is level and the other shows how the surface rises.
@@ -306,13 +313,11 @@ class CellFinder {
   }
 
   void is_inside(const PlacedCell& here) noexcept {
-    ++inside_;
     scratch_.parts.push_back({&here, CellPart::Kind::inside, 1.0, Vec3::Zero()});
   }
 
   /// @param off_m  from the cell's centre to the middle of the share that is inside, tool frame
   void is_rim(const PlacedCell& here, double share, const Vec3& off_m) noexcept {
-    ++inside_;
     scratch_.parts.push_back({&here, CellPart::Kind::rim, share, off_m});
   }
 
@@ -348,6 +353,7 @@ class CellFinder {
       if (cut_[k] != Cut::by_plane) continue;
       const std::size_t lane = batch_.count++;
       batch_.set_corners(lane, *here.cell);
+      batch_.set_sag(lane, *here.cell);
       batch_.distance_m[lane] = here.rest.signed_distance_m;
       batch_.nx_T[lane] = here.normal_T.x();
       batch_.ny_T[lane] = here.normal_T.y();
@@ -419,24 +425,33 @@ class CellFinder {
 
   const Body& body_;
   const Placement& at_;
-  const CellRule& rule_;
   double margin_m_;
   RegionPoints& points_;
   CellScratch& scratch_;
   CellBatch& batch_;
   InsideSummary summary_;
-  int inside_ = 0;
   std::array<const SurfaceCell*, CellBatch::size> cell_;  ///< asked for, not yet placed
   std::array<std::int32_t, CellBatch::size> index_;
   std::size_t asked_ = 0;
+  int inside_ = 0;
   std::array<Cut, CellBatch::size> cut_;
 };
+
+/// How often all of `cells` are halved until they are so many.
+int halvings_to(int points, std::size_t cells) noexcept {
+  int times = 0;
+  for (; cells < static_cast<std::size_t>(points); cells *= 2) ++times;
+  return times;
+}
+
+/// Cells made on the way.
+std::size_t made_by(int times, std::size_t cells) noexcept { return cells * ((std::size_t{2} << times) - 2); }
 
 template <class Body>
 InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, const Placement& at, const CellRule& rule,
                          double margin_m, RegionPoints& points, CellScratch& scratch) noexcept {
   const Body& body = static_cast<const Body&>(shape);
-  CellFinder<Body> found(body, at, rule, margin_m, points, scratch);
+  CellFinder<Body> found(body, at, margin_m, points, scratch);
   const std::vector<std::int32_t>& near = scratch.near;
   found.begin_round();
   const auto nodes = static_cast<std::int32_t>(tool.tree.size());
@@ -452,30 +467,24 @@ InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, con
     for (std::int32_t i = ball.begin; i < ball.end; ++i) found.look_at(nth(tool.cell, i), i);
   }
   found.end_round();
-  const auto most = static_cast<std::size_t>(rule.room);
-  bool of_tool = true, room = 4 * near.size() <= most;
-  std::size_t looked_at = 0;
-  int halvings = rule.halvings;
-  while (true) {
-    // Fewer cells than points are asked for cannot be enough.
-    const bool last = near.empty() || !room;
-    if (last || near.size() >= static_cast<std::size_t>(rule.points)) {
-      const bool enough = found.measure();
-      if (last || (enough && halvings-- == 0)) break;
-    }
+  // Halved as often as it takes, in as few rounds as possible, while there is room.
+  std::size_t room = static_cast<std::size_t>(rule.room);
+  bool of_tool = true;
+  int beyond = rule.halvings;
+  while (!near.empty()) {
+    int times =
+        found.inside() < rule.points ? std::max(1, halvings_to(rule.points, near.size())) : std::exchange(beyond, 0);
+    while (times > 0 && made_by(times, near.size()) > room) --times;
+    if (times == 0) break;
+    room -= made_by(times, near.size());
     if (of_tool) scratch.begin();
-    scratch.now.clear();
-    for (const std::int32_t k : near) {
-      const std::int32_t first = of_tool ? scratch.halves_of_sample(tool, k) : scratch.halves_of_half(tool, k);
-      scratch.now.insert(scratch.now.end(), {first, first + 1});
-    }
+    scratch.now.assign(near.begin(), near.end());
+    for (; times > 0; --times, of_tool = false) scratch.halve(tool, of_tool);
     found.begin_round();
     for (const std::int32_t k : scratch.now) found.look_at(scratch.half(k), k);
     found.end_round();
-    looked_at += scratch.now.size();
-    room = looked_at + 2 * scratch.now.size() <= most;
-    of_tool = false;
   }
+  found.measure();
   InsideSummary inside = found.take();
   steady_direction(tool, at.R_WT, points, inside);
   return inside;
@@ -523,6 +532,16 @@ std::int32_t CellScratch::halves_of_sample(const ToolSamples& tool, std::int32_t
 std::int32_t CellScratch::halves_of_half(const ToolSamples& tool, std::int32_t half) noexcept {
   const auto i = static_cast<std::size_t>(half);
   return halves_of(tool, halves_[i], of_half_[i]);
+}
+
+void CellScratch::halve(const ToolSamples& tool, bool of_tool) noexcept {
+  const std::size_t count = now.size();
+  now.resize(2 * count);
+  for (std::size_t i = count; i-- > 0;) {
+    const std::int32_t first = of_tool ? halves_of_sample(tool, now[i]) : halves_of_half(tool, now[i]);
+    now[2 * i] = first;
+    now[2 * i + 1] = first + 1;
+  }
 }
 
 std::size_t CellScratch::memory_bytes() const noexcept {

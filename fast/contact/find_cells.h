@@ -15,9 +15,9 @@ namespace touchstone::fast {
 
 /// How the tool's cells become points.
 struct CellRule {
-  int points = 1;    ///< fewer than these are too few
-  int halvings = 0;  ///< of all cells near the body beyond that
-  int room = 1024;   ///< halved cells that find_cells() looks at in a tick, at most
+  int points = 1;    ///< fewer cells than these near the body are too few
+  int halvings = 0;  ///< of all of them beyond that
+  int room = 1024;   ///< halved cells that find_cells() makes in a tick, at most
 };
 
 /// A cell at its place.
@@ -50,9 +50,8 @@ class CellScratch {
   CellScratch(int samples, int room);
   /// Makes room for a tick's halves.
   void begin() noexcept;
-  /// The first of the two halves of a sample's cell, or of a half; the second follows it.
-  [[nodiscard]] std::int32_t halves_of_sample(const ToolSamples& tool, std::int32_t sample) noexcept;
-  [[nodiscard]] std::int32_t halves_of_half(const ToolSamples& tool, std::int32_t half) noexcept;
+  /// Puts the halves of its cells into `now`. @param of_tool  those are samples' cells, not halves
+  void halve(const ToolSamples& tool, bool of_tool) noexcept;
   [[nodiscard]] const SurfaceCell& half(std::int32_t index) const noexcept {
     return halves_[static_cast<std::size_t>(index)];
   }
@@ -64,6 +63,9 @@ class CellScratch {
   std::vector<CellPart> parts;  ///< what is inside of those, or nearly
 
  private:
+  /// The first of the two halves of a sample's cell, or of a half; the second follows it.
+  [[nodiscard]] std::int32_t halves_of_sample(const ToolSamples& tool, std::int32_t sample) noexcept;
+  [[nodiscard]] std::int32_t halves_of_half(const ToolSamples& tool, std::int32_t half) noexcept;
   [[nodiscard]] std::int32_t halves_of(const ToolSamples& tool, const SurfaceCell& cell, std::int32_t& first) noexcept;
   std::size_t room_ = 0;
   std::vector<SurfaceCell> halves_;
@@ -72,8 +74,8 @@ class CellScratch {
 };
 
 /// Fills `points` with what lies inside the rest surface of the tool's cells, one point for each at the middle of that
-/// part and with its area. Where the points are too few, all cells near the body are halved, and again, as far as there
-/// is room.
+/// part and with its area. Where too few cells are near the body, all of them are halved, and again, as far as there is
+/// room.
 /// @param margin_m what lies outside, but for less than that, are points too, of negative depth
 using FindCells = InsideSummary (*)(const scene::Shape&, const ToolSamples&, const Placement&, const CellRule&,
                                     double margin_m, RegionPoints&, CellScratch&) noexcept;

@@ -171,6 +171,8 @@ SurfaceCell band_cell(const Band& band) noexcept {
   const double r_m_most = std::max(band.start_m.x(), band.end_m.x());
   cell.bulge_m = 0.125 * ((r_m_most + cell_sagitta_m(band)) * band.turn * band.turn) + cell_sagitta_m(band);
   cell.radius_m = farthest_m(cell) + cell.bulge_m;
+  const double around_m = 0.0625 * (band.start_m.x() + band.end_m.x()) * band.turn * band.turn;
+  cell.sag_m = {Vec3(around_m * azimuth.x(), around_m * azimuth.y(), 0.0), cell_sagitta_m(band) * cell.normal_T};
   const CutPolygon::Moments polygon = CutPolygon(cell.corner_m).moments();
   cell.polygon_m2 = polygon.area_m2;
   cell.polygon_center_m = polygon.center_m;

@@ -41,10 +41,11 @@ struct alignas(64) SurfaceCell {
   std::int32_t group = -1;              ///< of CellGroups: neighbouring triangles of a fine mesh
   std::int8_t corners = 4;              ///< 3 or 4
   bool curved = false;                  ///< `band` says how; without group: flat
+  double bulge_m = 0.0;                 ///< no point of it is further from the polygon of its corners
   std::array<scene::Vec3, 4> corner_m;  ///< from the centre, in order; of a group: of a rectangle around it
   double polygon_m2 = 0.0;              ///< area of the polygon of its corners
   scene::Vec3 polygon_center_m;         ///< from the centre
-  double bulge_m = 0.0;                 ///< no point of it is further from the polygon of its corners
+  Spread sag_m{scene::Vec3::Zero(), scene::Vec3::Zero()};  ///< from the middle of an even or odd side to the surface
   Band band;
 };
 

@@ -11,7 +11,7 @@ namespace touchstone::fast {
 namespace {
 
 /// At least so many as a device needs that leaves the track, see SlidingOverAnEdgeTurnsTheForceGradually.
-constexpr std::array points_tried{64, 128, 256, 512};
+constexpr std::array points_tried{48, 64, 96, 128, 192, 256, 384, 512};
 /// Poses of the track, evenly spaced in time, and those in contact that are then looked at, at most.
 constexpr int poses_tried = 64;
 constexpr std::size_t poses_kept = 8;

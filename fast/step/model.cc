@@ -3,13 +3,17 @@
 namespace touchstone::fast {
 namespace {
 
-/// A cell is as accurate as several samples, and cells are refined where needed.
+/// A cell is as accurate as several samples.
 constexpr int samples_per_cell = 4;
+/// The contact of a convex tool halves as many cells as it needs. Several regions are told apart by the distance
+/// between whole ones.
+constexpr int most_cells_if_convex = 500;
 
 ToolSamples samples_of(const scene::Scene& scene) {
   const int count = scene.fast.tool_samples;
   if (scene.fast.formulation == scene::Formulation::published) return sample_tool(scene.tool, count);
-  return cell_tool(scene.tool, std::max(1, count / samples_per_cell));
+  const int cells = std::max(1, count / samples_per_cell);
+  return cell_tool(scene.tool, scene.tool.convex() ? std::min(cells, most_cells_if_convex) : cells);
 }
 
 Formulas formulas_of(const scene::Scene& scene, const BeamSkeleton& skeleton) {

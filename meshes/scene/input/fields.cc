@@ -160,8 +160,8 @@ std::vector<Field<Scene>> make_scene_fields() {
       {"fast.triangles", "", between(12, 1e5), "3952", fast, +[](S& s) -> int& { return s.fast.triangles; }, always,
            "Triangles of the body's surface; their corners are the rest points compared. Times compare.instants at most 1e7."},
       {"fast.tool_samples", "", between(1, 1e5), "2000", fast, +[](S& s) -> int& { return s.fast.tool_samples; }, always,
-           "Points on the tool's surface. The corrected form takes cells, a quarter as many, and smaller ones where few "
-           "are in contact."},
+           "Points on the tool's surface. The corrected form takes cells: a quarter as many, at most 500 of a convex tool, "
+           "and smaller ones in the contact."},
       {"fast.rate_hz", "Hz", between(1.0, 1e5), "1000.0", fast, +[](S& s) -> double& { return s.fast.rate_hz; }, always,
            "Ticks per second of virtual time."},
       {"fast.max_regions", "", between(1, 64), "10", fast, +[](S& s) -> int& { return s.fast.max_regions; }, tool_mesh,

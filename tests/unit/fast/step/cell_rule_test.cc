@@ -58,7 +58,7 @@ TEST(ChooseCells, WithoutContactOnTheTrackHasAFixedNumber) {
   scene::Scene scene = press();
   scene.track = {{0.0, test::pressed(-0.002, 0.0, 0.0)}, {1.0, test::pressed(-0.001, 0.0, 0.0)}};
   const FastModel model(scene);
-  EXPECT_EQ(model.cells->rule.points, 64);
+  EXPECT_EQ(model.cells->rule.points, 48);
   EXPECT_EQ(model.cells->change_rel, 0.0);
 }
 
