@@ -146,19 +146,16 @@ void cut_batch(CellBatch& batch) noexcept {
     double at[4];
 #pragma GCC unroll 4
     for (std::size_t k = 0; k < 4; ++k) at[k] = nx * c[k][0][i] + ny * c[k][1][i] + nz * c[k][2][i] + level;
-    double sag[2];
+    double bend[2];
 #pragma GCC unroll 2
     for (std::size_t k = 0; k < 2; ++k)
-      sag[k] = 4.0 * (nx * batch.sag_m[k][0][i] + ny * batch.sag_m[k][1][i] + nz * batch.sag_m[k][2][i]);
+      bend[k] = 4.0 * (nx * batch.sag_m[k][0][i] + ny * batch.sag_m[k][1][i] + nz * batch.sag_m[k][2][i]);
     // Each corner, and where the plane crosses the side behind it, which bends.
     Corner corner[8];
 #pragma GCC unroll 4
     for (std::size_t k = 0; k < 4; ++k) {
       const std::size_t next = (k + 1) % 4;
-      const double x = c[k][0][i], y = c[k][1][i], z = c[k][2][i], falls = at[k] - at[next];
-      const double straight = at[k] / falls, s = sag[k % 2];
-      const double moved = straight + s * straight * (1.0 - straight) / (falls - s * (1.0 - 2.0 * straight));
-      const double along = smaller(larger(moved, 0.0), 1.0);
+      const double x = c[k][0][i], y = c[k][1][i], z = c[k][2][i], along = crossing(at[k], at[next], bend[k % 2]);
       corner[2 * k] = {x, y, z, at[k] < 0.0};
       corner[2 * k + 1] = {x + along * (c[next][0][i] - x), y + along * (c[next][1][i] - y),
                            z + along * (c[next][2][i] - z), (at[k] < 0.0) != (at[next] < 0.0)};

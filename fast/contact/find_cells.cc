@@ -77,7 +77,7 @@ void cut(const scene::Revolution& body, const Mat3& R_WT, const PlacedCell& at, 
       level[k] = level_of(at.p_W + R_WT * corners[k]);
       cuts = cuts || level[k] >= 0.0;
     }
-    if (cuts) polygon.keep_below({level.data(), corners.size()});
+    if (cuts) polygon.keep_below({level.data(), corners.size()}, at.normal_T);
   }
 }
 
@@ -374,7 +374,7 @@ class CellFinder {
   }
 
   void measure_cut(const PlacedCell& here) noexcept {
-    CutPolygon polygon({here.cell->corner_m.data(), static_cast<std::size_t>(here.cell->corners)});
+    CutPolygon polygon(*here.cell);
     fast::cut(body_, at_.R_WT, here, polygon);
     if (!polygon.is_cut() && here.rest.signed_distance_m < 0.0) return is_inside(here);
     const CutPolygon::Moments part = polygon.moments();

@@ -258,31 +258,48 @@ std::array<SurfaceCell, 2> halves(const SurfaceCell& cell, const CellGroups& gro
 
 CutPolygon::CutPolygon(std::span<const Vec3> corners_m) noexcept : count_(static_cast<int>(corners_m.size())) {
   std::copy(corners_m.begin(), corners_m.end(), corner_m_.begin());
+  side_.fill(-1);
 }
 
-void CutPolygon::keep_below(std::span<const double> level) noexcept {
+CutPolygon::CutPolygon(const SurfaceCell& cell) noexcept
+    : CutPolygon({cell.corner_m.data(), static_cast<std::size_t>(cell.corners)}) {
+  if (cell.corners != 4) return;
+  for (std::size_t k = 0; k < 4; ++k) side_[k] = k % 2;
+  sag_m_ = cell.sag_m;
+}
+
+void CutPolygon::keep_below(std::span<const double> level, const Vec3& normal_T) noexcept {
+  const std::array bend{4.0 * normal_T.dot(sag_m_[0]), 4.0 * normal_T.dot(sag_m_[1])};
   std::array<Vec3, max_corners> kept;
+  std::array<std::int8_t, max_corners> side;
   cut_ = true;
   std::size_t count = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(count_); ++k) {
     const std::size_t next = k + 1 == static_cast<std::size_t>(count_) ? 0 : k + 1;
     if (count + 2 > max_corners) break;
-    if (level[k] < 0.0) kept[count++] = corner_m_[k];
-    if ((level[k] < 0.0) == (level[next] < 0.0)) continue;
-    kept[count++] = corner_m_[k] + level[k] / (level[k] - level[next]) * (corner_m_[next] - corner_m_[k]);
+    const bool whole = (level[k] < 0.0) == (level[next] < 0.0);
+    if (level[k] < 0.0) {
+      side[count] = whole ? side_[k] : std::int8_t{-1};
+      kept[count++] = corner_m_[k];
+    }
+    if (whole) continue;
+    const double along = crossing(level[k], level[next], side_[k] < 0 ? 0.0 : nth(bend, side_[k]));
+    side[count] = -1;
+    kept[count++] = corner_m_[k] + along * (corner_m_[next] - corner_m_[k]);
   }
   std::copy_n(kept.begin(), count, corner_m_.begin());
+  std::copy_n(side.begin(), count, side_.begin());
   count_ = static_cast<int>(count);
 }
 
-void CutPolygon::keep_below(const Vec3& normal, double level) noexcept {
+void CutPolygon::keep_below(const Vec3& normal_T, double level) noexcept {
   std::array<double, max_corners> at_corner;
   bool cuts = false;
   for (std::size_t k = 0; k < static_cast<std::size_t>(count_); ++k) {
-    at_corner[k] = normal.dot(corner_m_[k]) + level;
+    at_corner[k] = normal_T.dot(corner_m_[k]) + level;
     cuts = cuts || at_corner[k] >= 0.0;
   }
-  if (cuts) keep_below({at_corner.data(), static_cast<std::size_t>(count_)});
+  if (cuts) keep_below({at_corner.data(), static_cast<std::size_t>(count_)}, normal_T);
 }
 
 CutPolygon::Moments CutPolygon::moments() const noexcept {

@@ -3,6 +3,7 @@
 // surface cuts cells, so the contact's area does not jump by whole samples.
 #pragma once
 
+#include "fast/realtime/wide_loops.h"
 #include "scene/base/frames.h"
 
 #include <array>
@@ -79,15 +80,26 @@ struct CellGroups {
 /// The two parts of a cell, cut across its longer side.
 [[nodiscard]] std::array<SurfaceCell, 2> halves(const SurfaceCell& cell, const CellGroups& groups) noexcept;
 
-/// A flat polygon that half-spaces cut, at most twelve of them. Corners are vectors from any one point.
+/// Where a level is 0 between two corners, one above and one below, as a share of the way: one Newton step from the
+/// straight side. @param bend  four times what the middle of the surface's side is above the straight one
+TOUCHSTONE_INLINE double crossing(double level, double next_level, double bend) noexcept {
+  const double falls = level - next_level, straight = level / falls;
+  const double moved = straight + bend * straight * (1.0 - straight) / (falls - bend * (1.0 - 2.0 * straight));
+  return moved > 0.0 ? (moved < 1.0 ? moved : 1.0) : 0.0;
+}
+
+/// The polygon of a cell's corners, or of any others, that half-spaces cut, at most twelve of them. Corners are vectors
+/// from any one point.
 class CutPolygon {
  public:
   static constexpr std::size_t max_corners = 16;
   explicit CutPolygon(std::span<const scene::Vec3> corners_m) noexcept;
-  /// Keeps the part where level, linear along each side, is below 0. @param level of every corner, see corners()
-  void keep_below(std::span<const double> level) noexcept;
+  explicit CutPolygon(const SurfaceCell& cell) noexcept;
+  /// Keeps the part where a level is below 0. @param level of every corner, see corners(); @param normal_T  its slope,
+  /// for the bend of sides
+  void keep_below(std::span<const double> level, const scene::Vec3& normal_T) noexcept;
   /// Keeps x with normal . x + level < 0.
-  void keep_below(const scene::Vec3& normal, double level) noexcept;
+  void keep_below(const scene::Vec3& normal_T, double level) noexcept;
   [[nodiscard]] std::span<const scene::Vec3> corners() const noexcept {
     return {corner_m_.data(), static_cast<std::size_t>(count_)};
   }
@@ -101,6 +113,9 @@ class CutPolygon {
 
  private:
   std::array<scene::Vec3, max_corners> corner_m_;
+  std::array<std::int8_t, max_corners>
+      side_;  ///< of the cell, 0 even or 1 odd, from this corner to the next; -1: no whole one
+  Spread sag_m_{scene::Vec3::Zero(), scene::Vec3::Zero()};
   int count_ = 0;
   bool cut_ = false;
 };

@@ -10,7 +10,7 @@
 namespace touchstone::fast {
 namespace {
 
-/// At least so many as a device needs that leaves the track, see SlidingOverAnEdgeTurnsTheForceGradually.
+/// A device leaves the track, so no fewer than the first, see SlidingOverAnEdgeTurnsTheForceGradually.
 constexpr std::array points_tried{48, 64, 96, 128, 192, 256, 384, 512};
 /// Poses of the track, evenly spaced in time, and those in contact that are then looked at, at most.
 constexpr int poses_tried = 64;
@@ -18,8 +18,7 @@ constexpr std::size_t poses_kept = 8;
 /// A load below this share of the track's largest may change as much as that one.
 constexpr double small_load_rel = 0.2;
 
-/// All rounds together look at several times as many cells as the last one, which may have twice as many as are asked
-/// for.
+/// All rounds together make several times as many cells as the last one, which may have twice as many as are asked for.
 CellRule rule_of(int points, int halvings) {
   return {.points = points, .halvings = halvings, .room = std::max(1024, (points << halvings) * 16)};
 }

@@ -18,8 +18,9 @@ struct ContactCells {
   double change_rel = 0.0;
 };
 
-/// The largest change_rel that is fine enough.
-inline constexpr double cell_tolerance_rel = 0.01;
+/// The largest change_rel that is fine enough: cells are of second order, so the limit is a third of it further away,
+/// 1 % in all.
+inline constexpr double cell_tolerance_rel = 0.0075;
 
 /// The fewest points whose load is as good as that, or the most there are. The load is that of a unit law, linear and
 /// cubic, without friction, so that the answer does not depend on constants that are fitted.

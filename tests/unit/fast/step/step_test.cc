@@ -161,8 +161,8 @@ TEST(Step, SlidingOverAnEdgeTurnsTheForceGradually) {
   double turned_rad = 0.0;
   for (int i = 0; s.force_n().norm() > 0.5; ++i) {
     s.step_to(test::pressed(0.003, 0.0001 * i));
-    // A tenth of a millimetre moves only a few samples from the top to the side.
-    EXPECT_LT((s.force_n() - before_n).norm(), 0.3) << i;
+    // A tenth of a millimetre moves few cells from the top to the side: 0.07 N with fine ones.
+    EXPECT_LT((s.force_n() - before_n).norm(), 0.4) << i;
     before_n = s.force_n();
     turned_rad = std::max(turned_rad, std::atan2(before_n.x(), before_n.z()));
   }
