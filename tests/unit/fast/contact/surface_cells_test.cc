@@ -111,6 +111,20 @@ TEST(CutPolygon, KeepsWhatLiesBelow) {
   EXPECT_EQ(polygon.moments().area_m2, 0.0);
 }
 
+/// Of a cap of the ball that the cube's top cuts off, projected.
+TEST(CellsOfABall, AreCutWhereItsSurfaceIsNotAtTheirChords) {
+  const scene::Scene scene = test::ball_on_cube();
+  FastModel model(scene);
+  model.cells->rule.points = 48;
+  FastState state(model);
+  for (int k = 1; k <= 20; ++k) {
+    const double depth_m = 0.0002 * k;
+    step_force(model, test::pressed(depth_m), state);
+    const double area_m2 = std::numbers::pi * depth_m * (2.0 * scene.tool.radius_m - depth_m);
+    EXPECT_NEAR(state.regions[0].extent.area_m2, area_m2, 4e-3 * area_m2) << depth_m;
+  }
+}
+
 struct Press {
   std::string name;
   scene::Scene scene;
