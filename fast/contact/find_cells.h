@@ -15,7 +15,8 @@ namespace touchstone::fast {
 
 /// How the tool's cells become points.
 struct CellRule {
-  int points = 1;    ///< fewer cells than these near the body are too few
+  int points = 48;  ///< fewer cells than these inside are too few; the default is for a device that leaves the track,
+                    ///< see SlidingOverAnEdgeTurnsTheForceGradually
   int halvings = 0;  ///< of all of them beyond that
   int room = 1024;   ///< halved cells that find_cells() makes in a tick, at most
 };

@@ -1,6 +1,7 @@
 #include "fast/response/response_engine.h"
 #include "fast/run/make_engine.h"
 #include "fast/run/run.h"
+#include "fast/step/cell_rule.h"
 #include "fast/step/skeleton_engine.h"
 #include "scene/base/error.h"
 #include "scene/base/index.h"

@@ -10,8 +10,7 @@
 namespace touchstone::fast {
 namespace {
 
-/// A device leaves the track, so no fewer than the first, see SlidingOverAnEdgeTurnsTheForceGradually.
-constexpr std::array points_tried{48, 64, 96, 128, 192, 256, 384, 512};
+constexpr std::array points_tried{CellRule{}.points, 64, 96, 128, 192, 256, 384, 512};
 /// Poses of the track, evenly spaced in time, and those in contact that are then looked at, at most.
 constexpr int poses_tried = 64;
 constexpr std::size_t poses_kept = 8;
@@ -128,6 +127,12 @@ ContactCells choose_cells(const std::vector<scene::Waypoint>& track, FastModel& 
     if (chosen.change_rel <= cell_tolerance_rel) break;
   }
   return chosen;
+}
+
+FastModel model_of(const scene::Scene& scene) {
+  FastModel model(scene);
+  if (model.cells) model.cells = choose_cells(scene.track, model);
+  return model;
 }
 
 }  // namespace touchstone::fast

@@ -1,22 +1,12 @@
 // How finely a scene's contact has to be looked at: chosen once, from its track.
 #pragma once
 
-#include "fast/contact/find_cells.h"
+#include "fast/step/model.h"
 #include "scene/model/scene.h"
 
 #include <vector>
 
 namespace touchstone::fast {
-
-struct FastModel;
-
-/// Cells of a scene's contact.
-struct ContactCells {
-  CellRule rule;
-  /// Largest change of the load by cells of a quarter of the size, over the track, relative to the load or, where that
-  /// is less, a fifth of the track's largest; 0 where there is no contact.
-  double change_rel = 0.0;
-};
 
 /// The largest change_rel that is fine enough: cells are of second order, so the limit is a third of it further away,
 /// 1 % in all.
@@ -24,7 +14,10 @@ inline constexpr double cell_tolerance_rel = 0.0075;
 
 /// The fewest points whose load is as good as that, or the most there are. The load is that of a unit law, linear and
 /// cubic, without friction, so that the answer does not depend on constants that are fitted.
-/// @param model  complete but for its cells; rules are tried in it, and it is left as it was
+/// @param model  rules are tried in it, and it is left as it was
 [[nodiscard]] ContactCells choose_cells(const std::vector<scene::Waypoint>& track, FastModel& model);
+
+/// A scene's model with the cells that its track needs.
+[[nodiscard]] FastModel model_of(const scene::Scene& scene);
 
 }  // namespace touchstone::fast

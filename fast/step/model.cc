@@ -49,7 +49,7 @@ FastModel::FastModel(const scene::Scene& scene)
       formulas(formulas_of(scene, skeleton)),
       max_regions(scene.tool.convex() ? 1 : scene.fast.max_regions) {
   if (max_regions > 1) clusters = std::make_unique<const ClusterGrid>(cluster_grid(tool, scene.contact.r_th_m));
-  if (scene.fast.formulation != scene::Formulation::published) cells = choose_cells(scene.track, *this);
+  if (scene.fast.formulation != scene::Formulation::published) cells.emplace();
 }
 
 void FastModel::set_constants(const scene::Scene& scene) {

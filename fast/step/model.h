@@ -4,12 +4,12 @@
 #include "fast/contact/contact_detection.h"
 #include "fast/contact/contact_law.h"
 #include "fast/contact/contact_regions.h"
+#include "fast/contact/find_cells.h"
 #include "fast/contact/friction.h"
 #include "fast/contact/mass_distribution.h"
 #include "fast/contact/tool_samples.h"
 #include "fast/skeleton/anchor_points.h"
 #include "fast/skeleton/beam_skeleton.h"
-#include "fast/step/cell_rule.h"
 #include "fast/surface/interpolation.h"
 #include "fast/surface/local_factor.h"
 #include "fast/surface/normals.h"
@@ -23,6 +23,14 @@
 #include <optional>
 
 namespace touchstone::fast {
+
+/// Cells of a scene's contact.
+struct ContactCells {
+  CellRule rule;
+  /// Largest change of the load by cells of a quarter of the size, over the track, relative to the load or, where that
+  /// is less, a fifth of the track's largest; 0 where that is not known.
+  double change_rel = 0.0;
+};
 
 /// The stages in which the published and the corrected formulation differ, chosen when the model is built.
 struct Formulas {
@@ -47,7 +55,8 @@ struct FastModel {
   std::unique_ptr<const scene::Shape> body;  ///< rest shape
   Detection detection;
   ToolSamples tool;
-  std::optional<ContactCells> cells;  ///< of the tool, that become points; without, its samples are the points
+  std::optional<ContactCells>
+      cells;  ///< of the tool, become points: see model_of(); without, its samples are the points
   ContactLaw law;
   std::optional<FrictionLaw> friction;
   std::unique_ptr<const AnchorPoints> anchors;

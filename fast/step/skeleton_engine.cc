@@ -1,5 +1,6 @@
 #include "fast/step/skeleton_engine.h"
 
+#include "fast/step/cell_rule.h"
 #include "fast/step/step.h"
 #include "scene/base/index.h"
 
@@ -7,7 +8,7 @@
 
 namespace touchstone::fast {
 
-SkeletonEngine::SkeletonEngine(const scene::Scene& scene) : model_(scene), state_(model_) {}
+SkeletonEngine::SkeletonEngine(const scene::Scene& scene) : model_(model_of(scene)), state_(model_) {}
 
 StepStatus SkeletonEngine::force(const scene::Pose& pose) noexcept {
   state_.clock = clock();

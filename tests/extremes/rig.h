@@ -3,6 +3,7 @@
 #pragma once
 
 #include "fast/contact/equivalent_point.h"
+#include "fast/step/cell_rule.h"
 #include "fast/step/stages.h"
 #include "fast/step/step.h"
 #include "support/press.h"
@@ -118,7 +119,7 @@ inline scene::Pose in(const scene::Scene& scene, double depth_m, double x_m = 0.
 class Rig {
  public:
   explicit Rig(const scene::Scene& scene)
-      : model(scene), state(model), support_height_m_(static_cast<float>(scene.body.support_height_m)) {}
+      : model(model_of(scene)), state(model), support_height_m_(static_cast<float>(scene.body.support_height_m)) {}
 
   StepStatus to(const scene::Pose& pose) {
     const StepStatus status = step(model, pose, state);

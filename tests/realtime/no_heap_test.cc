@@ -1,5 +1,6 @@
 // No heap use below step(): at first contact, in contact, on a jump, on an invalid pose, and on release.
 #include "support/no_heap.h"
+#include "fast/step/cell_rule.h"
 
 #include "fast/response/response_step.h"
 #include "fast/step/step.h"
@@ -20,7 +21,7 @@ namespace {
 using scene::Formulation;
 
 void run_without_heap(const scene::Scene& scene) {
-  const FastModel model(scene);
+  const FastModel model = model_of(scene);
   FastState state(model);
   const double top_m = model.body->bounds().upper_m.z() + scene.tool.radius_m;
   int in_contact = 0;
@@ -79,7 +80,7 @@ TEST(NoHeap, BelowAStepOnASphere) {
 }
 
 TEST(NoHeap, InTheShapeOfSeveralRegions) {
-  const FastModel model(test::ball_on_cube());
+  const FastModel model = model_of(test::ball_on_cube());
   SurfaceField field(model.rest);
   ShapeStack stack(model.rest, *model.anchors, 3);
   const std::vector<scene::Vec3> anchor_m(model.skeleton.anchor_m.size(), scene::Vec3(1e-4, 0.0, -1e-4));
@@ -121,7 +122,7 @@ class ShippedSceneWithoutHeap : public testing::TestWithParam<std::string> {};
 TEST_P(ShippedSceneWithoutHeap, BelowAStep) {
   for (const auto formulation : {scene::Formulation::published, scene::Formulation::corrected}) {
     const scene::Scene scene = test::shipped_scene(GetParam(), formulation);
-    const FastModel model(scene);
+    const FastModel model = model_of(scene);
     FastState state(model);
     const double begin_s = scene.track.front().time_s, end_s = scene.track.back().time_s;
     int in_contact = 0;

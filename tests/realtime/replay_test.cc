@@ -1,5 +1,6 @@
 // The pipeline in virtual time is a function of its scene, bit for bit.
 #include "fast/run/run.h"
+#include "fast/step/cell_rule.h"
 #include "fast/step/step.h"
 #include "support/press.h"
 #include "support/shipped_scenes.h"
@@ -78,7 +79,7 @@ TEST(Replay, HashSeesEveryPhysicalChange) {
 TEST(Replay, AHeldPoseIsAFixedPoint) {
   // However many ticks a tool rests, nothing drifts.
   for (const Formulation formulation : {Formulation::published, Formulation::corrected}) {
-    const FastModel model(busy(formulation));
+    const FastModel model = model_of(busy(formulation));
     FastState state(model);
     scene::Pose pose = test::pressed(0.004, 0.011, -0.003);
     pose.orientation = test::tilted();

@@ -3,6 +3,7 @@
 #include "fast/command/progress_line.h"
 #include "fast/command/stop_signals.h"
 #include "fast/live/safety.h"
+#include "fast/step/cell_rule.h"
 #include "fast/step/step.h"
 #include "soak/closed_path.h"
 #include "soak/random_device.h"
@@ -109,7 +110,7 @@ void look_at_gain(Run& run, const scene::Scene& scene, PathKind kind, const soak
 void run_scene(Run& run, int index, const soak::ToolMeshes& meshes, fast::ProgressLine& progress) {
   Random random(run.options.seed, static_cast<std::uint64_t>(index));
   const scene::Scene scene = soak::random_scene(index, meshes, random);
-  const fast::FastModel model(scene);
+  const fast::FastModel model = fast::model_of(scene);
   fast::FastState state(model);
   const std::int64_t ticks = run.options.per_scene();
   std::int64_t tick = 0;

@@ -1,6 +1,7 @@
 #include "fast/contact/surface_cells.h"
 
 #include "fast/contact/tool_samples.h"
+#include "fast/step/cell_rule.h"
 #include "fast/step/stages.h"
 #include "fast/step/step.h"
 #include "scene/shape/surface.h"
@@ -156,7 +157,7 @@ double press_n(const Press& press, int samples, const CellRule* rule) {
     return scene::Pose{at.point_m + (low_m - depth_m * share) * at.normal, press.orientation};
   };
   scene.track = {{0.0, pose(-0.15)}, {1.0, pose(1.0)}};
-  FastModel model(scene);
+  FastModel model = model_of(scene);
   if (rule != nullptr) model.cells->rule = *rule;
   FastState state(model);
   for (const double share : {-0.15, 0.05, 0.25, 0.5, 0.75, 1.0}) step_force(model, pose(share), state);

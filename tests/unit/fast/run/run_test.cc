@@ -1,5 +1,6 @@
 #include "fast/run/run.h"
 
+#include "fast/step/cell_rule.h"
 #include "fast/step/step.h"
 #include "support/bounded_memory.h"
 #include "support/press.h"
@@ -44,7 +45,7 @@ TEST(Run, RecordsTheBeamEndsOfEveryPressingRegion) {
   for (const char* name : {"ball-on-cube-press", "compass-two-pins", "ellipsoid-pvc-inside"}) {
     const scene::Scene scene = test::shipped_scene(name, scene::Formulation::corrected);
     const auto result = run(scene);
-    const FastModel model(scene);
+    const FastModel model = model_of(scene);
     std::size_t row = 0;
     for (const scene::InstantRecord& record : result.instants) {
       Vec3 sum_n = Vec3::Zero();
@@ -97,7 +98,7 @@ TEST(Run, MemoryDoesNotHangOnTheTicks) {
 TEST(Run, RecordsWhatAStepAnswers) {
   const scene::Scene scene = test::ball_on_cube();
   const auto result = run(scene);
-  const FastModel model(scene);
+  const FastModel model = model_of(scene);
   FastState state(model);
   step(model, scene.track.front().pose, state);
   step(model, scene.track.back().pose, state);
@@ -198,7 +199,7 @@ TEST(ConvexMeshTool, TakesTheStepOfItsShape) {
 
   mesh.convex = true;
   scene.tool.mesh = std::make_shared<scene::TriangleMesh>(mesh);
-  const FastModel model(scene);
+  const FastModel model = model_of(scene);
   EXPECT_EQ(FastState(model).several, nullptr);
   EXPECT_NEAR(model.tool.count(), shape.tool.count(), 0.1 * shape.tool.count());
   const auto of_mesh = run(scene);

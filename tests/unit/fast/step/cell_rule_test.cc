@@ -16,25 +16,25 @@ scene::Scene press() {
 
 TEST(ChooseCells, TakesTheFewestPointsThatAreFineEnough) {
   scene::Scene scene = press();
-  const FastModel model(scene);
+  const FastModel model = model_of(scene);
   EXPECT_LE(model.cells->change_rel, cell_tolerance_rel);
   EXPECT_GT(model.cells->change_rel, 0.0);
   // A ball so large that the contact spans few of its cells and the body's edges needs more of them.
   scene.tool.radius_m = 0.3;
   for (scene::Waypoint& at : scene.track) at.pose.position_m += scene::Vec3(0.02, 0.013, 0.29);
-  const FastModel large(scene);
+  const FastModel large = model_of(scene);
   EXPECT_GT(large.cells->rule.points, model.cells->rule.points);
   EXPECT_GE(large.cells->rule.room, 16 * large.cells->rule.points);
 }
 
 TEST(ChooseCells, DoesNotDependOnConstantsThatAreFitted) {
   scene::Scene scene = press();
-  const FastModel model(scene);
+  const FastModel model = model_of(scene);
   scene.contact.k1_n_per_m *= 30.0;
   scene.contact.k3_n_per_m3 = -scene.contact.k3_n_per_m3;
   scene.contact.friction = scene::Friction{};
   scene.fast.C_n *= 0.5;
-  const FastModel other(scene);
+  const FastModel other = model_of(scene);
   EXPECT_EQ(other.cells->rule.points, model.cells->rule.points);
   EXPECT_EQ(other.cells->change_rel, model.cells->change_rel);
 }
@@ -42,7 +42,7 @@ TEST(ChooseCells, DoesNotDependOnConstantsThatAreFitted) {
 TEST(ChooseCells, LeavesTheModelAsItWas) {
   scene::Scene scene = press();
   scene.contact.friction = scene::Friction{};
-  FastModel model(scene);
+  FastModel model = model_of(scene);
   const auto friction = model.formulas.resolve_friction;
   const int points = model.cells->rule.points;
   const double force_n = model.law.at(0.001).force_n(0.002);
@@ -57,7 +57,7 @@ TEST(ChooseCells, LeavesTheModelAsItWas) {
 TEST(ChooseCells, WithoutContactOnTheTrackHasAFixedNumber) {
   scene::Scene scene = press();
   scene.track = {{0.0, test::pressed(-0.002, 0.0, 0.0)}, {1.0, test::pressed(-0.001, 0.0, 0.0)}};
-  const FastModel model(scene);
+  const FastModel model = model_of(scene);
   EXPECT_EQ(model.cells->rule.points, 48);
   EXPECT_EQ(model.cells->change_rel, 0.0);
 }

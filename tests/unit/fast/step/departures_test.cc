@@ -5,6 +5,7 @@
 #include "fast/run/run.h"
 #include "fast/skeleton/beam.h"
 #include "fast/skeleton/beam_stress.h"
+#include "fast/step/cell_rule.h"
 #include "fast/step/stages.h"
 #include "fast/step/step.h"
 #include "scene/model/rules.h"
@@ -65,7 +66,7 @@ void states(const std::string& row, const std::string& figure, double value) {
 
 /// Runs a scene in as few ticks as the figure allows.
 struct Walk {
-  explicit Walk(const scene::Scene& scene_in) : scene(scene_in), model(scene), state(model) {
+  explicit Walk(const scene::Scene& scene_in) : scene(scene_in), model(model_of(scene)), state(model) {
     step_to(scene.track.front().pose);
   }
   Walk(const std::string& name, Formulation formulation) : Walk(test::shipped_scene(name, formulation)) {}

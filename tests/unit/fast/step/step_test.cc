@@ -1,4 +1,5 @@
 #include "fast/step/step.h"
+#include "fast/step/cell_rule.h"
 
 #include "support/press.h"
 
@@ -15,7 +16,7 @@ using scene::Vec3;
 constexpr scene::Formulation formulations[] = {scene::Formulation::published, scene::Formulation::corrected};
 
 struct Rig {
-  explicit Rig(const scene::Scene& scene) : model(scene), state(model) {}
+  explicit Rig(const scene::Scene& scene) : model(model_of(scene)), state(model) {}
   StepStatus step_to(const scene::Pose& pose) { return step(model, pose, state); }
   [[nodiscard]] const Vec3& force_n() const { return state.regions[0].force.force_n; }
   [[nodiscard]] double top_displacement_m() const {
