@@ -43,7 +43,10 @@ RecordedTick record(const FastState& state, int instant) {
 class OneRegion {
  public:
   explicit OneRegion(const FastModel& model)
-      : model_(model), cells_(model.cell_scratch()), scratch_(*model.clusters, model.max_points()), was_(samples(), 0) {}
+      : model_(model),
+        cells_(model.cell_scratch()),
+        scratch_(*model.clusters, model.max_points()),
+        was_(samples(), 0) {}
 
   /// For a tick whose points, if any, are in the state's region, before their depths are measured.
   [[nodiscard]] bool holds(FastState& state) {
