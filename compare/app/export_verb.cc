@@ -103,21 +103,23 @@ int export_deck(const fast::VerbOptions& options, const ExportOptions& export_op
   });
 }
 
-fast::Command add_export_verb(fast::Command& program, fast::VerbOptions& options, ExportOptions& export_options,
-                              const ReferenceOptions& reference) {
-  fast::Command verb = fast::add_verb(
-      program, "export", "the scene as an input deck for CalculiX, an independent finite element code",
+void add_export_verb(fast::Command& program, fast::VerbOptions& options, ExportOptions& export_options,
+                     ReferenceOptions& reference) {
+  fast::Command verb = fast::add_verb_with_folder(
+      program, "export", "write the scene as an input deck for CalculiX, an independent finite element code",
       "meshes/scenes/ball-on-cube-press.toml --mesh 2 --run", options,
       [&options, &export_options, &reference] { return export_deck(options, export_options, reference); });
-  verb.option("--mesh", export_options.mesh, "of the reference's meshes, 1 the coarsest").range(1, 6).shows_default();
+  verb.option("--mesh", export_options.mesh, "which of the reference's meshes; 1 is the coarsest")
+      .range(1, 6)
+      .shows_default();
   verb.option("--contact-stiffness", export_options.contact_stiffness_pa_per_m,
-              "contact pressure over overclosure [Pa/m] (default: changes the force by about a thousandth)")
+              "contact pressure per penetration [Pa/m] (default: changes the force by about 0.1 %)")
       .positive();
   verb.option("--time-to-error", export_options.time_to_error,
               "instead of one deck: solve this many meshes with both codes and print CPU time over force error")
       .range(2, 4);
-  verb.flag("--run", export_options.run, "run ccx on it, solve the reference, and print both side by side");
-  return verb;
+  verb.flag("--run", export_options.run, "run CalculiX on it, solve the reference, and print both side by side");
+  add_store_option(verb, reference);
 }
 
 }  // namespace touchstone::compare

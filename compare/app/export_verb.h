@@ -21,7 +21,7 @@ int export_deck(const fast::VerbOptions& options, const ExportOptions& export_op
                 const ReferenceOptions& reference);
 
 /// Adds the command; its variables must outlive Program::run.
-fast::Command add_export_verb(fast::Command& program, fast::VerbOptions& options, ExportOptions& export_options,
-                              const ReferenceOptions& reference);
+void add_export_verb(fast::Command& program, fast::VerbOptions& options, ExportOptions& export_options,
+                     ReferenceOptions& reference);
 
 }  // namespace touchstone::compare

@@ -96,13 +96,13 @@ int gate(const GateOptions& options, const std::string& command) {
 }
 
 void add_gate_verb(fast::Command& program, GateOptions& options) {
-  fast::Command verb = program.add("gate", "accuracy gates; exit 1 when one is red");
+  fast::Command verb = program.add("gate", "check accuracy gates; exit 1 when one is red");
   verb.option("NAME", options.names, "gates to check, FILE or FILE.GATE (default all)");
   verb.option("--gates", options.folder, "folder of the gate files").shows_default();
   verb.option("--out", options.out, "result folder").shows_default();
   verb.option("--junit", options.junit, "also write JUnit's XML to this file");
   verb.option("--base", options.base, "commit or branch whose limits may not be widened without a waiver");
-  verb.flag("--list", options.list, "names, quantities and limits, nothing is run");
+  verb.flag("--list", options.list, "print names, quantities and limits; nothing is run");
   verb.prints("--keys", gate_reference_markdown, "print every key of a gate file as Markdown tables");
   verb.flag("--quiet", options.quiet, "no progress, only results and errors");
   const fast::Option prove =
@@ -113,7 +113,7 @@ void add_gate_verb(fast::Command& program, GateOptions& options) {
       verb.flag("--accept", options.accept, "write the values of the named drift gates as accepted");
   regenerate.excludes(prove).excludes(accept);
   accept.excludes(prove);
-  verb.option("--store", options.reference.store, "for --regenerate: content-addressed reference results")
+  verb.option("--store", options.reference.store, "for --regenerate: folder of stored reference results")
       .shows_default()
       .needs(regenerate);
   verb.example("gate --junit out/gates.xml --base origin/main");

@@ -29,9 +29,11 @@ int run(const fast::VerbOptions& options, const ReferenceOptions& reference) {
 
 }  // namespace
 
-fast::Command add_prepare_verb(fast::Command& program, fast::VerbOptions& options, const ReferenceOptions& reference) {
-  return fast::add_verb(program, "prepare", "the body's linear response, which the response model reads",
-                        "meshes/scenes/ball-on-cube-press.toml", options, [&] { return run(options, reference); });
+void add_prepare_verb(fast::Command& program, fast::VerbOptions& options, ReferenceOptions& reference) {
+  add_store_option(
+      fast::add_verb(program, "prepare", "compute the body's linear response, which the response model reads",
+                     "meshes/scenes/ball-on-cube-press.toml", options, [&] { return run(options, reference); }),
+      reference);
 }
 
 }  // namespace touchstone::compare

@@ -7,6 +7,6 @@
 namespace touchstone::compare {
 
 /// Adds the command; its variables must outlive Program::run.
-fast::Command add_prepare_verb(fast::Command& program, fast::VerbOptions& options, const ReferenceOptions& reference);
+void add_prepare_verb(fast::Command& program, fast::VerbOptions& options, ReferenceOptions& reference);
 
 }  // namespace touchstone::compare

@@ -29,7 +29,7 @@ int report_results(const ResultsOptions& options) {
 }
 
 fast::Command add_report_verb(fast::Command& program, ResultsOptions& options) {
-  fast::Command verb = program.add("report", "one page over many results of compare");
+  fast::Command verb = program.add("report", "write one page over many results of compare");
   verb.option("DIR", options.folders, "result folders").required();
   verb.option("--out", options.out, "the page's file").shows_default();
   verb.action([&options] { return report_results(options); });

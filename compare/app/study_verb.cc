@@ -33,7 +33,7 @@ int expand_verb(const StudyOptions& options) {
   const std::filesystem::path folder =
       options.out.empty() ? std::filesystem::path("out") / (study.name + "-study") : options.out;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
-  const StudyManifest manifest = expand(study, folder, program, options.store);
+  const StudyManifest manifest = expand(study, folder, program, options.reference.store);
   const std::size_t count = manifest.cases.size();
   warn_of_no_contact(manifest);
   const auto done = std::count_if(manifest.cases.begin(), manifest.cases.end(), [&](const ManifestCase& one) {
@@ -42,7 +42,8 @@ int expand_verb(const StudyOptions& options) {
   std::cout << fmt::format("{} cases in {}", count, (folder / "manifest.json").string());
   if (count < study.cases.size()) std::cout << fmt::format(", {} equal ones omitted", study.cases.size() - count);
   if (done > 0) std::cout << fmt::format(", {} already done", done);
-  const std::string run = program.string() + " study run " + folder.string() + " --store " + options.store.string();
+  const std::string run =
+      program.string() + " study run " + folder.string() + " --store " + options.reference.store.string();
   std::cout << fmt::format(
       "\n\nOne after the other, or this in several windows:\n  {0}\nGNU parallel, two at a time:\n  seq {1} | "
       "OMP_NUM_THREADS=1 parallel -j 2 {0} --quiet --index {{}}\nSlurm, once you have read and edited it:\n  sbatch "
@@ -55,11 +56,9 @@ int run_verb(const StudyOptions& options) {
   const StudyManifest manifest = read_manifest(options.study);
   const auto run = [&](const std::filesystem::path& scene_file, const std::filesystem::path& folder) {
     const fast::VerbOptions verb{.scene_file = scene_file, .out = folder, .overrides = {}, .quiet = options.quiet};
-    ReferenceOptions reference;
-    reference.store = options.store;
-    if (manifest.run == "fast") return run_fast(verb, reference);
-    if (manifest.run == "reference") return run_reference(verb, reference);
-    return run_compare(verb, reference);
+    if (manifest.run == "fast") return run_fast(verb, options.reference);
+    if (manifest.run == "reference") return run_reference(verb, options.reference);
+    return run_compare(verb, options.reference);
   };
   const int count = static_cast<int>(manifest.cases.size());
   const CaseRange range =
@@ -79,20 +78,18 @@ int collect_verb(const StudyOptions& options) {
 }  // namespace
 
 void add_study_verb(fast::Command& program, StudyOptions& options) {
-  fast::Command study = program.add("study", "many cases of one scene, for a loop, GNU parallel or a batch system");
+  fast::Command study =
+      program.add("study", "run many cases of one scene: in a loop, with GNU parallel or on a batch system");
   const auto add = [&](const char* name, const char* what, const char* argument, const char* meaning, auto action) {
     fast::Command verb = study.add(name, what);
     verb.option(argument, options.study, meaning).required();
     verb.action([&options, action] { return action(options); });
     return verb;
   };
-  const auto add_store = [&](fast::Command verb) {
-    verb.option("--store", options.store, "content-addressed reference results, shared by all cases").shows_default();
-  };
   fast::Command expand =
       add("expand", "write a folder of independent cases", "STUDY", "study file (TOML)", expand_verb);
   expand.option("--out", options.out, "the study's folder (default out/<study>-study)");
-  add_store(expand);
+  add_store_option(expand, options.reference);
   expand.example("study expand meshes/studies/ball-on-cube-depth-and-place.toml --out out/depth-and-place");
 
   fast::Command run = add("run", "run the remaining cases of a study; several processes may run at a time", "DIR",
@@ -102,7 +99,7 @@ void add_study_verb(fast::Command& program, StudyOptions& options) {
   run.option("--step", options.step, "and every case in steps of this after it, for long studies in short arrays")
       .range(1, static_cast<int>(study_cases_max))
       .needs(index);
-  add_store(run);
+  add_store_option(run, options.reference);
   run.flag("--quiet", options.quiet, "no progress of the cases' solvers");
   run.example("study run out/depth-and-place --index 3");
 

@@ -1,6 +1,7 @@
 // `study expand|run|collect`.
 #pragma once
 
+#include "compare/solve/reference_options.h"
 #include "fast/command/command_line.h"
 
 #include <filesystem>
@@ -8,11 +9,11 @@
 namespace touchstone::compare {
 
 struct StudyOptions {
-  std::filesystem::path study;  ///< expand: the study file; run, collect: the study's folder
-  std::filesystem::path out;    ///< expand: the folder; empty: `out/<study>-study`
-  std::filesystem::path store = "out/reference-store";
-  int index = 0;  ///< 0: all cases
-  int step = 0;   ///< 0: the one case
+  std::filesystem::path study;   ///< expand: the study file; run, collect: the study's folder
+  std::filesystem::path out;     ///< expand: the folder; empty: `out/<study>-study`
+  ReferenceOptions reference{};  ///< of these only the store
+  int index = 0;                 ///< 0: all cases
+  int step = 0;                  ///< 0: the one case
   bool quiet = false;
 };
 

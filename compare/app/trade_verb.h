@@ -8,9 +8,7 @@
 namespace touchstone::compare {
 
 /// Adds the command; its variables must outlive Program::run.
-/// @param options    shared with the other commands that take a scene; the caller adds --out
-/// @param reference  the caller adds its options
-fast::Command add_trade_verb(fast::Command& program, fast::VerbOptions& options, TradeOptions& trade,
-                             ReferenceOptions& reference);
+void add_trade_verb(fast::Command& program, fast::VerbOptions& options, TradeOptions& trade,
+                    ReferenceOptions& reference);
 
 }  // namespace touchstone::compare

@@ -3,6 +3,7 @@
 #include "compare/format/text.h"
 #include "compare/tune/tune.h"
 #include "compare/tune/tune_results.h"
+#include "fast/command/progress_line.h"
 #include "scene/output/results.h"
 
 #include <fmt/format.h>
@@ -49,9 +50,7 @@ int run(const TuneOptions& options, const ReferenceOptions& reference) {
         [&](const scene::Scene& scene, const scene::Surface& surface) {
           return solve_with_progress(asked(scene, reference), surface, reference, options.quiet);
         },
-        [&](const std::string& line) {
-          if (!options.quiet) std::cerr << line << '\n';
-        });
+        fast::progress_lines(options.quiet));
     manifest.times.push_back(watch.read("references, fits and errors"));
     for (const TuningData& data : tuning.data)
       manifest.entries.emplace_back("reference of " + data.contact.name, data.result.key);
@@ -68,7 +67,7 @@ int run(const TuneOptions& options, const ReferenceOptions& reference) {
 
 }  // namespace
 
-fast::Command add_tune_verb(fast::Command& program, TuneOptions& options, ReferenceOptions& reference) {
+void add_tune_verb(fast::Command& program, TuneOptions& options, ReferenceOptions& reference) {
   fast::Command tune =
       program.add("tune", "fit the fast model's free constants on training contacts, judge them on held-out ones");
   tune.option("STUDY", options.study, "tuning study (TOML)").required();
@@ -76,7 +75,7 @@ fast::Command add_tune_verb(fast::Command& program, TuneOptions& options, Refere
   tune.flag("--quiet", options.quiet, "no progress");
   tune.action([&] { return run(options, reference); });
   tune.example("tune meshes/studies/ball-on-cube.toml");
-  return tune;
+  add_solve_options(tune, reference);
 }
 
 }  // namespace touchstone::compare

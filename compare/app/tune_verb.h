@@ -15,7 +15,6 @@ struct TuneOptions {
 };
 
 /// Adds the command; its variables must outlive Program::run.
-/// @param reference  the caller adds its options
-fast::Command add_tune_verb(fast::Command& program, TuneOptions& options, ReferenceOptions& reference);
+void add_tune_verb(fast::Command& program, TuneOptions& options, ReferenceOptions& reference);
 
 }  // namespace touchstone::compare

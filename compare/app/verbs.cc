@@ -9,6 +9,7 @@
 #include "compare/report/plot_files.h"
 #include "compare/report/vtk_out.h"
 #include "compare/solve/reference_run.h"
+#include "fast/command/progress_line.h"
 #include "fast/command/results.h"
 #include "reference/run/inside.h"
 #include "reference/solver.h"
@@ -19,19 +20,6 @@
 
 namespace touchstone::compare {
 namespace {
-
-void refuse(std::vector<scene::Fault> faults) {
-  if (!faults.empty()) throw scene::InputError(std::move(faults));
-}
-
-/// Lines about what takes long, on stderr.
-std::function<void(const std::string&)> saying(bool quiet) {
-  return [quiet](const std::string& line) {
-    if (!quiet) std::cerr << line << '\n';
-  };
-}
-
-}  // namespace
 
 int plan(const fast::VerbOptions& options, const ReferenceOptions& reference) {
   const scene::Scene scene = asked(options.load(), reference);
@@ -47,12 +35,14 @@ int plan(const fast::VerbOptions& options, const ReferenceOptions& reference) {
   return fast::done;
 }
 
+}  // namespace
+
 int run_fast(const fast::VerbOptions& options, const ReferenceOptions& reference) {
   const scene::Scene scene = asked(options.load(), reference);
   const std::filesystem::path folder = options.folder(scene, "fast");
   const scene::FolderLock lock = scene::prepare_result_folder(folder);
   scene::Manifest manifest = scene::make_manifest(scene, "touchstone fast");
-  prepare_missing(scene, saying(options.quiet));
+  prepare_missing(scene, fast::progress_lines(options.quiet));
   const scene::Stopwatch watch;
   const fast::Run run = fast::run_into_folder(scene, folder, manifest, options.quiet);
   manifest.times.push_back(watch.read("fast"));
@@ -65,7 +55,7 @@ int run_fast(const fast::VerbOptions& options, const ReferenceOptions& reference
 
 int run_reference(const fast::VerbOptions& options, const ReferenceOptions& reference) {
   const scene::Scene scene = asked(options.load(), reference);
-  refuse(reference::unsupported(scene));
+  refuse_unsupported(scene);
   const std::filesystem::path folder = options.folder(scene, "reference");
   const scene::FolderLock lock = scene::prepare_result_folder(folder);
   return with_reference_exits([&] {
@@ -87,17 +77,17 @@ int run_reference(const fast::VerbOptions& options, const ReferenceOptions& refe
 int run_compare(const fast::VerbOptions& options, const ReferenceOptions& reference, const CompareOptions& more) {
   const std::filesystem::path& parameters = more.parameters;
   const scene::Scene given = asked(options.load(), reference);
-  refuse(reference::unsupported(given));
+  refuse_unsupported(given);
   const scene::Scene scene = parameters.empty() ? given : with_parameters(given, parameters);
   const Contenders judged =
       contenders(given, parameters.empty() ? std::vector<std::filesystem::path>{} : std::vector{parameters},
-                 more.models, reference.store, saying(options.quiet));
+                 more.models, fast::progress_lines(options.quiet));
   const std::filesystem::path folder = options.folder(scene, "compare");
   const scene::FolderLock lock = scene::prepare_result_folder(folder);
-  const Call call{options.scene_file, options.overrides, reference, parameters, folder, more.models};
+  const Call call{options.scene_file, options.overrides, reference, more, folder};
   return with_reference_exits([&] {
     scene::Manifest manifest = scene::make_manifest(scene, "touchstone compare");
-    prepare_missing(scene, saying(options.quiet));
+    prepare_missing(scene, fast::progress_lines(options.quiet));
     const scene::Stopwatch fast_watch;
     const fast::Run run = fast_model().set_up(scene)->track().value();
     manifest.times.push_back(fast_watch.read("fast"));
@@ -109,8 +99,7 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
     manifest.entries.emplace_back("reference_key", result.key);
     manifest.entries.emplace_back("command_line", command_text(call, ""));
     const auto inside = reference::inside(given, result, reference.store);
-    const Comparison comparison =
-        write_comparison(folder, scene, run, result, manifest, judged, call, more.plots, inside.get());
+    const Comparison comparison = write_comparison(folder, scene, run, result, manifest, judged, call, inside.get());
     const std::string files = write_inside(folder, given, result, *inside, reference.volume);
     if (more.plots) {
       std::cout << "Plots: " << (folder / "plots").string() << " (SVG"
@@ -120,6 +109,31 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
               << '\n';
     return exit_of(result, reference);
   });
+}
+
+void add_scene_verbs(fast::Command& program, fast::VerbOptions& options, ReferenceOptions& reference,
+                     CompareOptions& more) {
+  add_store_option(
+      fast::add_verb(program, "plan", "show what each solver models of a scene, what it leaves out and why",
+                     "meshes/scenes/ball-on-cube-press.toml --set fast.formulation=published", options,
+                     [&] { return plan(options, reference); }),
+      reference);
+  add_store_option(
+      fast::add_verb_with_folder(program, "fast", "run the real-time model over the scene's track, in virtual time",
+                                 "meshes/scenes/ball-on-cube-press.toml --out out/press", options,
+                                 [&] { return run_fast(options, reference); }),
+      reference);
+  add_result_options(
+      fast::add_verb_with_folder(
+          program, "reference", "solve offline; uses stored results, continues where it was interrupted",
+          "meshes/scenes/hertz-sphere.toml --error 0.005", options, [&] { return run_reference(options, reference); }),
+      reference);
+  const fast::Command compared =
+      fast::add_verb_with_folder(program, "compare", "run both solvers and report the errors in force and shape",
+                                 "meshes/scenes/ball-on-cube-press.toml --set tool.radius_m=0.008 --error 0.02",
+                                 options, [&] { return run_compare(options, reference, more); });
+  add_compare_options(compared, more);
+  add_result_options(compared, reference);
 }
 
 }  // namespace touchstone::compare

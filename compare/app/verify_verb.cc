@@ -223,10 +223,10 @@ int verify(const VerifyOptions& options, const std::string& command, const std::
 
 void add_verify_verb(fast::Command& program, VerifyOptions& options) {
   fast::Command verb =
-      program.add("verify", "the reference against closed forms and published benchmarks; exit 1 on a miss");
+      program.add("verify", "check the reference against closed forms and published benchmarks; exit 1 on a miss");
   verb.option("NAME", options.names, "problems to run (default all)");
   verb.flag("--quick", options.quick, "about a minute: one mesh fewer, without the most expensive cases");
-  verb.flag("--list", options.list, "names and sources of the problems, nothing is run");
+  verb.flag("--list", options.list, "print names and sources of the problems; nothing is run");
   verb.option("--out", options.out, "result folder").shows_default();
   verb.flag("--quiet", options.quiet, "no progress, only results and errors");
   verb.example("verify hertz sneddon --quick");

@@ -68,7 +68,7 @@ int view_result(const ViewOptions& options) {
 }
 
 fast::Command add_view_verb(fast::Command& program, ViewOptions& options) {
-  fast::Command verb = program.add("view", "a window on a result: body, tool, force curve, one instant at a time");
+  fast::Command verb = program.add("view", "show a result in a window: body, tool, force curve, one instant at a time");
   verb.option("DIR", options.folder, "result folder of fast, reference or compare").required();
   verb.option("--screenshot", options.screenshot, "write this PNG or JPEG file, by its extension, and open no window");
   verb.option("--instant", options.instant, "show this instant, from 1 (default: the deepest)").positive();

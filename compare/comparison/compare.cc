@@ -48,8 +48,7 @@ std::vector<scene::Column> curve_columns(const fast::Run& run, const reference::
 
 Comparison write_comparison(const std::filesystem::path& folder, const scene::Scene& scene, const fast::Run& run,
                             const reference::Result& result, const scene::Manifest& manifest,
-                            const Contenders& contenders, const Call& call, bool plots,
-                            const reference::Inside* inside) {
+                            const Contenders& contenders, const Call& call, const reference::Inside* inside) {
   const Errors errors = compute_errors(scene, run, result.instants);
   const Plans plans{fast::plan(scene), reference::plan(scene)};
   const Verdict told = verdict(scene, run, result, errors, call);
@@ -68,7 +67,7 @@ Comparison write_comparison(const std::filesystem::path& folder, const scene::Sc
   write_surfaces(folder, run, result, errors);
   write_tool(folder, scene.tool, result.instants);
   scene::write_file(folder / "shape.svg", as_file(drawings.bodies_in_a_row));
-  if (plots) write_plots(folder / "plots", drawings.all());
+  if (call.compare.plots) write_plots(folder / "plots", drawings.all());
   for (const NextStep& step : told.next) {
     if (!step.file_name.empty()) scene::write_file(folder / step.file_name, step.file_text);
   }

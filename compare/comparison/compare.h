@@ -29,13 +29,12 @@ struct Comparison {
 /// Compares and writes the whole folder, which must exist.
 /// @param run         of the scene, by the fast model, which the page is about
 /// @param contenders  all models that are judged by this answer of the reference
-/// @param call   for the commands to type next; without a scene file there are none
+/// @param call    its options, and for the commands to type next; without a scene file there are none
 /// @param inside  of the result, for the stress in the section; nullptr: not drawn
-/// @param plots  also every plot of the report as files, in plots/
 /// @throws std::logic_error when the sides do not belong together, std::filesystem::filesystem_error
 Comparison write_comparison(const std::filesystem::path& folder, const scene::Scene& scene, const fast::Run& run,
                             const reference::Result& result, const scene::Manifest& manifest,
-                            const Contenders& contenders, const Call& call = {}, bool plots = false,
+                            const Contenders& contenders, const Call& call = {},
                             const reference::Inside* inside = nullptr);
 
 }  // namespace touchstone::compare

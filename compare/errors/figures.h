@@ -17,7 +17,7 @@ inline constexpr std::string_view uncertainty_suffix = "_uncertainty";
 /// that says why.
 [[nodiscard]] scene::Figures error_figures(const Errors& errors);
 
-/// Every figure of a comparison: the errors, the reference's, and what the model alone tells.
+/// Every figure of a comparison: errors, the reference's figures, and those of the model alone.
 [[nodiscard]] scene::Figures make_figures(const Errors& errors, const reference::Result& result,
                                           scene::Figures of_model);
 

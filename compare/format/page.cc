@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 namespace touchstone::compare {
 namespace {
@@ -127,19 +126,6 @@ for (const figure of document.querySelectorAll('figure')) {
 }
 //]]></script>
 )";
-
-/// Makes a title an anchor for links within the page.
-std::string slug(const std::string& title) {
-  std::string out;
-  for (const char c : title) {
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
-      out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    } else if (!out.empty() && out.back() != '-') {
-      out += '-';
-    }
-  }
-  return out;
-}
 
 }  // namespace
 

@@ -94,7 +94,7 @@ struct Plot {
 enum class BandSeen { nowhere, narrower_than_the_line, area };
 [[nodiscard]] BandSeen band_seen(const Plot& plot, const Band& band, int width_px = 560, int height_px = 360);
 
-/// The same `<svg>` element as a file: dark on white, whatever the page around it.
+/// The same `<svg>` element as a file: dark on white, independent of a page's colours.
 [[nodiscard]] std::string as_file(const std::string& svg);
 
 /// Colour of a look, "#rrggbb".

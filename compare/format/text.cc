@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <span>
@@ -150,6 +151,19 @@ std::string csv_cell(const std::string& text) {
   std::string out = "\"";
   for (const char c : told) out += c == '"' ? "\"\"" : std::string(1, c);
   return out + "\"";
+}
+
+std::string slug(std::string_view title) {
+  std::string out;
+  for (const char c : title) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
+      out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    } else if (!out.empty() && out.back() != '-') {
+      out += '-';
+    }
+  }
+  while (out.ends_with('-')) out.pop_back();
+  return out;
 }
 
 std::string escape_xml(std::string_view text) {

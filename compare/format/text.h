@@ -41,6 +41,9 @@ inline constexpr double least_ratio = 1e-6;
 /// as spreadsheets write a text themselves; a number does not.
 [[nodiscard]] std::string csv_cell(const std::string& text);
 
+/// A title as part of a dotted key or as an anchor of a page: "Force, over time" is "force-over-time".
+[[nodiscard]] std::string slug(std::string_view title);
+
 /// For text and attributes of HTML, SVG and XML.
 [[nodiscard]] std::string escape_xml(std::string_view text);
 

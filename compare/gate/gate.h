@@ -48,7 +48,7 @@ struct GateRecord {
   std::string file;
   Gate gate;
   std::optional<double> value, uncertainty, accepted;
-  std::string failure;  ///< why it is red whatever the number: no number, stale data, a wider limit; empty otherwise
+  std::string failure;  ///< why it is red apart from its number: none, stale data, a wider limit; else empty
 
   /// "file.gate"
   [[nodiscard]] std::string name() const { return file + "." + gate.name; }

@@ -1,6 +1,7 @@
 #include "compare/model/judge.h"
 
 #include "compare/errors/compute_errors.h"
+#include "compare/model/usual_models.h"
 #include "fast/run/duration_histogram.h"
 #include "fast/run/ticks.h"
 #include "scene/model/rest_depth.h"
@@ -97,10 +98,9 @@ Errors judge(const ModelEntry& entry, ContactModel& model, const scene::Scene& s
 }
 
 Contenders contenders(const scene::Scene& scene, const std::vector<std::filesystem::path>& parameters,
-                      const std::vector<std::string>& keys, const std::filesystem::path& store,
-                      const std::function<void(const std::string&)>& say) {
-  const ModelRequest request{.scene = scene, .parameters = parameters, .store = store, .say = say};
-  Contenders out{scene, list_models(request, compared_models())};
+                      const std::vector<std::string>& keys, const std::function<void(const std::string&)>& say) {
+  const ModelRequest request{.scene = scene, .parameters = parameters, .say = say};
+  Contenders out{scene, usual_models(request)};
   for (const std::string& key : keys) {
     const auto same = [&](const ModelEntry& entry) { return entry.key == key; };
     if (std::ranges::any_of(out.models, same)) continue;

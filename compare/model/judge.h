@@ -43,12 +43,11 @@ struct Contenders {
   std::vector<ModelEntry> models;
 };
 
-/// Those of every comparison, then those of these keys; store and say as of ModelRequest. @throws scene::InputError for
-/// a key that is none
+/// Those of every comparison, then those of these keys. @throws scene::InputError for a key that is none
+/// @param say  as of ModelRequest
 [[nodiscard]] Contenders contenders(const scene::Scene& scene,
                                     const std::vector<std::filesystem::path>& parameters = {},
                                     const std::vector<std::string>& keys = {},
-                                    const std::filesystem::path& store = "out/reference-store",
                                     const std::function<void(const std::string&)>& say = {});
 
 /// Judges every model by the same answer of the reference.

@@ -83,7 +83,7 @@ class ModelReplay {
 
   virtual ~ModelReplay() = default;
   /// Total force on the tool at every instant of the track [N].
-  /// @param scene  that of the set-up but for the constants
+  /// @param scene  the set-up's, with other constants
   [[nodiscard]] virtual std::vector<scene::Vec3> forces_n(const scene::Scene& scene) = 0;
   /// @param scene     its constants of the force are those of the last call of forces_n(), which must have been one
   /// @param instants  in rising order

@@ -21,11 +21,6 @@ const std::vector<ModelList>& registered_models() {
   return models;
 }
 
-const std::vector<ModelList>& compared_models() {
-  static const std::vector<ModelList> models{usual_models};
-  return models;
-}
-
 std::vector<ModelEntry> list_models(const ModelRequest& request, const std::vector<ModelList>& kinds) {
   std::vector<ModelEntry> models;
   for (const ModelList list : kinds) {

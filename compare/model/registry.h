@@ -9,11 +9,8 @@
 namespace touchstone::compare {
 
 /// Every kind, in the order in which tables list them: `trade` judges all of them, gates and `compare` find them by
-/// key. A new kind is a line here.
+/// key. A new kind is a line here. Which of them every comparison judges: `usual_models.h`.
 [[nodiscard]] const std::vector<ModelList>& registered_models();
-
-/// The kinds that every comparison judges.
-[[nodiscard]] const std::vector<ModelList>& compared_models();
 
 [[nodiscard]] std::vector<ModelEntry> list_models(const ModelRequest& request, const std::vector<ModelList>& kinds);
 

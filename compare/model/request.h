@@ -18,10 +18,9 @@ struct ModelRequest {
   std::vector<std::filesystem::path> parameters{};  ///< files of tuned constants, each one more model
   bool quick = false;                               ///< small sizes
   std::function<int()> reference_levels{};          ///< that every contact's reference has; empty: it is no model here
-  /// The reference of a contact on so many levels.
+  /// The reference of a contact on a number of levels.
   std::function<reference::Result(const scene::Scene&, const scene::Surface&, int levels)> solve{};
-  std::filesystem::path store = "out/reference-store";  ///< folder of what a model prepares once
-  std::function<void(const std::string&)> say{};        ///< one line about what takes long; may be empty
+  std::function<void(const std::string&)> say{};  ///< one line about what takes long; may be empty
 };
 
 /// Some models of one kind.

@@ -18,13 +18,11 @@ std::vector<ModelEntry> response_models(const ModelRequest& request) {
            .label = "response",
            .method = "half space, response",
            .family = ModelFamily::response,
-           .set_up = [store = request.store, say = request.say](const scene::Scene& given) {
+           .set_up = [say = request.say](const scene::Scene& given) {
              if (const std::string needs = scene::response_needs(given); !needs.empty()) {
                throw Unavailable("the response model needs that " + needs);
              }
-             scene::Scene scene = with_response(given);
-             scene.fast.store = store;
-             return engine_model(std::move(scene), say);
+             return engine_model(with_response(given), say);
            }}};
 }
 

@@ -3,21 +3,17 @@
 #include "compare/format/text.h"
 #include "compare/input/tuning_study.h"
 #include "compare/model/engine_model.h"
-#include "compare/model/response_model.h"
 #include "fast/run/replay.h"
 #include "scene/model/area_law.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <iterator>
 #include <utility>
 
 namespace touchstone::compare {
 namespace {
 
 using scene::Scene;
-using Change = std::function<Scene(Scene)>;
 
 class SkeletonReplay final : public ModelReplay {
  public:
@@ -34,28 +30,9 @@ class SkeletonReplay final : public ModelReplay {
   fast::Replay replay_;
 };
 
-ModelEntry skeleton(ModelEntry entry, const Change& change) {
-  entry.set_up = [change](const Scene& scene) { return engine_model(change(scene)); };
-  return entry;
-}
-
 ModelFamily family_of(const Scene& scene) {
   return scene.contact.law == scene::ContactLaw::duffing ? ModelFamily::paper : ModelFamily::area_aware;
 }
-
-std::string method_of(const Scene& scene) {
-  return std::string(scene::name_of(scene.contact.law).title) + ", " +
-         std::string(scene::name_of(scene.fast.formulation));
-}
-
-/// Only the skeleton has constants.
-bool same_model(const Scene& a, const Scene& b) {
-  if (a.fast.formulation != b.fast.formulation) return false;
-  return a.fast.formulation == scene::Formulation::response ||
-         (a.contact == b.contact && a.fast.s_c_m2 == b.fast.s_c_m2);
-}
-
-Scene as_given(Scene scene) { return scene; }
 
 }  // namespace
 
@@ -78,53 +55,26 @@ Scene with_untuned_area_law(Scene scene) {
   return scene;
 }
 
-ModelEntry fast_model() {
-  ModelEntry entry =
-      skeleton({.name = "fast model", .key = "fast", .family = ModelFamily::paper, .own = true}, as_given);
-  entry.replay = [](const Scene& scene) { return std::make_unique<SkeletonReplay>(scene); };
+ModelEntry skeleton_model(ModelEntry entry, const SceneChange& change) {
+  entry.set_up = [change](const Scene& scene) { return engine_model(change(scene)); };
   return entry;
 }
 
-std::vector<ModelEntry> usual_models(const ModelRequest& request) {
-  const Scene& given = request.scene;
-  struct Variant {
-    std::string key, name;
-    Change change;
-    bool tuned = false;
-  };
-  std::vector<Variant> variants;
-  if (given.contact.law == scene::ContactLaw::duffing) variants.push_back({"paper", "paper as printed", as_printed});
-  variants.push_back({"area_aware", "untuned, from the material",
-                      [](Scene scene) { return with_untuned_area_law(corrected(std::move(scene))); }});
-  variants.push_back({"response", "response, untuned", with_response});
-  variants.push_back({"scene", "scene's own constants", as_given});
-  const bool tuned = !request.parameters.empty();
-  if (tuned) {
-    const std::filesystem::path& file = request.parameters.front();
-    variants.push_back({"tuned", "tuned: " + file.filename().string(),
-                        [file](Scene scene) { return with_parameters(std::move(scene), file); }, true});
-  }
-  std::vector<ModelEntry> models;
-  std::vector<Scene> scenes;
-  for (const Variant& one : variants) {
-    const Scene& scene = scenes.emplace_back(one.change(given));
-    const bool listed = std::any_of(scenes.begin(), std::prev(scenes.end()),
-                                    [&](const Scene& other) { return same_model(other, scene); });
-    if (listed && !one.tuned) continue;
-    if (scene.fast.formulation == scene::Formulation::response) {
-      ModelEntry& entry = models.emplace_back(response_models(request).front());
-      entry.name = one.name;
-      entry.own = !tuned && same_model(scene, given);
-      continue;
-    }
-    models.push_back(skeleton({.name = one.name,
-                               .key = one.key,
-                               .method = method_of(scene),
-                               .family = family_of(scene),
-                               .own = tuned ? one.tuned : same_model(scene, given)},
-                              one.change));
-  }
-  return models;
+ModelEntry skeleton_model(const std::string& key, const Scene& given, const SceneChange& change) {
+  const Scene scene = change(given);
+  return skeleton_model({.name = "",
+                         .key = key,
+                         .method = std::string(scene::name_of(scene.contact.law).title) + ", " +
+                                   std::string(scene::name_of(scene.fast.formulation)),
+                         .family = family_of(scene)},
+                        change);
+}
+
+ModelEntry fast_model() {
+  ModelEntry entry = skeleton_model({.name = "fast model", .key = "fast", .family = ModelFamily::paper, .own = true},
+                                    [](Scene scene) { return scene; });
+  entry.replay = [](const Scene& scene) { return std::make_unique<SkeletonReplay>(scene); };
+  return entry;
 }
 
 std::vector<ModelEntry> skeleton_models(const ModelRequest& request) {
@@ -136,33 +86,33 @@ std::vector<ModelEntry> skeleton_models(const ModelRequest& request) {
   for (const auto& [name, change] : {Form{"published", as_printed}, Form{"corrected", corrected}}) {
     const std::string form = name;
     if (law == scene::ContactLaw::duffing) {
-      models.push_back(skeleton({.name = form + " skeleton, Duffing law of the scene",
-                                 .key = form + "-duffing",
-                                 .label = form,
-                                 .family = ModelFamily::paper},
-                                change));
+      models.push_back(skeleton_model({.name = form + " skeleton, Duffing law of the scene",
+                                       .key = form + "-duffing",
+                                       .label = form,
+                                       .family = ModelFamily::paper},
+                                      change));
     } else {
       models.push_back({.name = form + " skeleton, Duffing law",
                         .key = form + "-duffing",
                         .family = ModelFamily::paper,
                         .absent = "the scene's law is the " + own_title + " one"});
       if (!own_area_law) {
-        models.push_back(skeleton({.name = form + " skeleton, " + own_title + " law of the scene",
-                                   .key = form + "-" + own_word,
-                                   .label = form + ", " + own_title,
-                                   .family = ModelFamily::area_aware},
-                                  change));
+        models.push_back(skeleton_model({.name = form + " skeleton, " + own_title + " law of the scene",
+                                         .key = form + "-" + own_word,
+                                         .label = form + ", " + own_title,
+                                         .family = ModelFamily::area_aware},
+                                        change));
       }
     }
     const std::string from = own_area_law ? "of the scene" : "k1 and s_c of material and size";
-    models.push_back(skeleton({.name = form + " skeleton, area-aware law, " + from,
-                               .key = form + "-area-aware",
-                               .label = form + ", area-aware",
-                               .family = ModelFamily::area_aware},
-                              [change = change, own_area_law](Scene scene) {
-                                scene = change(std::move(scene));
-                                return own_area_law ? scene : with_untuned_area_law(std::move(scene));
-                              }));
+    models.push_back(skeleton_model({.name = form + " skeleton, area-aware law, " + from,
+                                     .key = form + "-area-aware",
+                                     .label = form + ", area-aware",
+                                     .family = ModelFamily::area_aware},
+                                    [change = change, own_area_law](Scene scene) {
+                                      scene = change(std::move(scene));
+                                      return own_area_law ? scene : with_untuned_area_law(std::move(scene));
+                                    }));
   }
   for (const std::filesystem::path& file : request.parameters) {
     const Scene tuned = with_parameters(request.scene, file);
@@ -170,11 +120,11 @@ std::vector<ModelEntry> skeleton_models(const ModelRequest& request) {
     const std::string title(scene::name_of(tuned.contact.law).title);
     const std::string form(scene::name_of(tuned.fast.formulation));
     models.push_back(
-        skeleton({.name = fmt::format("{} skeleton, {} law, tuned ({})", form, title, file.filename().string()),
-                  .key = "tuned-" + file.stem().string(),
-                  .label = form + (duffing ? "" : ", " + title) + ", tuned",
-                  .family = family_of(tuned)},
-                 [file](Scene scene) { return with_parameters(std::move(scene), file); }));
+        skeleton_model({.name = fmt::format("{} skeleton, {} law, tuned ({})", form, title, file.filename().string()),
+                        .key = "tuned-" + file.stem().string(),
+                        .label = form + (duffing ? "" : ", " + title) + ", tuned",
+                        .family = family_of(tuned)},
+                       [file](Scene scene) { return with_parameters(std::move(scene), file); }));
   }
   return models;
 }
@@ -185,12 +135,12 @@ std::vector<ModelEntry> skeleton_meshes(const ModelRequest& request) {
   const bool tuned = !request.parameters.empty();
   for (const int triangles : sizes) {
     if (triangles == request.scene.fast.triangles) continue;  // already in the list
-    const Change change = [triangles, tuned, file = tuned ? request.parameters.front() : ""](Scene scene) {
+    const SceneChange change = [triangles, tuned, file = tuned ? request.parameters.front() : ""](Scene scene) {
       if (tuned) scene = with_parameters(std::move(scene), file);
       scene.fast.triangles = triangles;
       return corrected(std::move(scene));
     };
-    models.push_back(skeleton(
+    models.push_back(skeleton_model(
         {.name = fmt::format("corrected skeleton{}, {} triangles", tuned ? ", tuned" : "", thousands_text(triangles)),
          .key = "corrected-" + thousands_text(triangles),
          .label = thousands_text(triangles),

@@ -4,6 +4,10 @@
 
 #include "compare/model/request.h"
 
+#include <functional>
+#include <string>
+#include <vector>
+
 namespace touchstone::compare {
 
 /// The scene with the published formulation; with the corrected one.
@@ -14,13 +18,15 @@ namespace touchstone::compare {
 /// tuned for.
 [[nodiscard]] scene::Scene with_untuned_area_law(scene::Scene scene);
 
+/// From a scene to the one that a model is set up for.
+using SceneChange = std::function<scene::Scene(scene::Scene)>;
+
+/// The skeleton for a changed scene. The second has method and family of the changed scene, and no name.
+[[nodiscard]] ModelEntry skeleton_model(ModelEntry entry, const SceneChange& change);
+[[nodiscard]] ModelEntry skeleton_model(const std::string& key, const scene::Scene& given, const SceneChange& change);
+
 /// The fast model with the scene's own constants, which `fast`, `compare`, `tune` and gates are about.
 [[nodiscard]] ModelEntry fast_model();
-
-/// Which to use: the paper's model as printed, the area-aware law and the response model, which need no tuning, the
-/// scene's own, and the first file of tuned constants. A model that is the same as another is listed once, but for the
-/// tuned ones.
-[[nodiscard]] std::vector<ModelEntry> usual_models(const ModelRequest& request);
 
 /// Both formulations with both laws, and one model for every file of tuned constants.
 [[nodiscard]] std::vector<ModelEntry> skeleton_models(const ModelRequest& request);

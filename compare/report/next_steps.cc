@@ -197,7 +197,7 @@ class Finder {
     if (!(trial.force_nrmse < worth_it * before)) return;
     const std::string name = "area-aware.toml";
     Call untuned = call_;
-    untuned.parameters = call_.folder / name;
+    untuned.compare.parameters = call_.folder / name;
     steps_.push_back(
         {fmt::format(
              "Take the area-aware law with the material's modulus and stiff beams. Tried: force error from {} to {}, "
@@ -217,7 +217,7 @@ class Finder {
     const auto matters = [](const Measure& error) {
       return error.value.value_or(0.0) > small_error && error.distinguishable();
     };
-    if (!call_.parameters.empty() || (!matters(errors_.force_nrmse) && !matters(errors_.shape_rel_l2))) return;
+    if (!call_.compare.parameters.empty() || (!matters(errors_.force_nrmse) && !matters(errors_.shape_rel_l2))) return;
     if (const std::filesystem::path study = tuning_study_of(call_.scene_file); !study.empty()) {
       add("Tune the constants to the reference on this and other contacts.",
           "touchstone tune " + fast::shell_word(study.string()));
@@ -241,14 +241,6 @@ class Finder {
 };
 
 }  // namespace
-
-std::string command_text(const Call& call, const std::string& options) {
-  std::string text = "touchstone compare " + fast::shell_word(call.scene_file.string());
-  for (const std::string& setting : call.overrides) text += " --set " + fast::shell_word(setting);
-  if (!call.parameters.empty()) text += " --parameters " + fast::shell_word(call.parameters.string());
-  for (const std::string& key : call.models) text += " --model " + fast::shell_word(key);
-  return text + options_text(call.reference) + options;
-}
 
 std::vector<NextStep> next_steps(const scene::Scene& scene, const fast::Run& run, const reference::Result& result,
                                  const Errors& errors, const Call& call) {

@@ -3,28 +3,14 @@
 #pragma once
 
 #include "compare/errors/errors.h"
-#include "compare/solve/reference_run.h"
+#include "compare/report/call.h"
 #include "fast/run/run.h"
 #include "reference/solver.h"
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace touchstone::compare {
-
-/// How a comparison was called, for commands that can be typed again.
-struct Call {
-  std::filesystem::path scene_file;
-  std::vector<std::string> overrides;  ///< of --set
-  ReferenceOptions reference;
-  std::filesystem::path parameters;   ///< of --parameters; empty: none
-  std::filesystem::path folder;       ///< of the results
-  std::vector<std::string> models{};  ///< of --model
-};
-
-/// The command with its words quoted for a shell where they need it. @param options  more, with a space before
-[[nodiscard]] std::string command_text(const Call& call, const std::string& options);
 
 struct NextStep {
   std::string why;      ///< a sentence or two

@@ -24,27 +24,10 @@ std::string time_left_text(const reference::Progress& p) {
 
 }  // namespace
 
-std::string options_text(const ReferenceOptions& options) {
-  std::string text;
-  if (options.levels) text += fmt::format(" --level {}", *options.levels);
-  if (options.error) text += fmt::format(" --error {}", *options.error);
-  if (options.memory_gib) text += fmt::format(" --memory-gib {}", *options.memory_gib);
-  if (options.minutes) text += fmt::format(" --minutes {}", *options.minutes);
-  if (options.volume) text += " --volume";
-  return text;
-}
-
-scene::Scene asked(scene::Scene scene, const ReferenceOptions& options) {
-  scene.fast.store = options.store;
-  if (options.levels) scene.reference.levels = options.levels;
-  if (options.error) {
-    scene.reference.error = *options.error;
-    scene.reference.levels.reset();
+void refuse_unsupported(const scene::Scene& scene) {
+  if (std::vector<scene::Fault> faults = reference::unsupported(scene); !faults.empty()) {
+    throw scene::InputError(std::move(faults));
   }
-  if (options.require_error && !scene.reference.levels) {
-    scene.reference.error = std::min(scene.reference.error, *options.require_error);
-  }
-  return scene;
 }
 
 std::string progress_text(const reference::Progress& p) {

@@ -1,35 +1,19 @@
 // The reference as the commands run it: progress on the terminal, Ctrl-C, its own figures and curve.
 #pragma once
 
+#include "compare/solve/reference_options.h"
 #include "reference/solver.h"
 #include "scene/output/results.h"
 #include "scene/shape/surface.h"
 
 #include <filesystem>
 #include <functional>
-#include <optional>
+#include <string>
 
 namespace touchstone::compare {
 
-/// Limit of one solve that refines until an error is reached.
-constexpr double default_minutes = 60.0;
-
-/// Command-line options of a solve.
-struct ReferenceOptions {
-  std::filesystem::path store = "out/reference-store";  ///< content-addressed results, shared by all runs
-  std::optional<int> levels = {};                       ///< in place of the scene's levels or error
-  std::optional<double> error = {};                     ///< in place of the scene's levels or error
-  std::optional<double> memory_gib = {};                ///< limit of one solve, as the next
-  std::optional<double> minutes = {};  ///< absent: default_minutes, and no limit where a number of meshes is asked for
-  bool volume = false;                 ///< also write the inside of the body
-  std::optional<double> require_error = {};  ///< uncertainty of force and shape that the exit code depends on
-};
-
-/// The given options that affect the result, as typed: " --level 3 --minutes 20".
-[[nodiscard]] std::string options_text(const ReferenceOptions& options);
-
-/// The scene with the levels or the error that the command line asks for, and the store.
-[[nodiscard]] scene::Scene asked(scene::Scene scene, const ReferenceOptions& options);
+/// @throws scene::InputError with what of the scene the reference cannot do
+void refuse_unsupported(const scene::Scene& scene);
 
 /// One line for the terminal, the most important first.
 [[nodiscard]] std::string progress_text(const reference::Progress& progress);

@@ -60,10 +60,9 @@ struct Trade {
 };
 
 struct TradeOptions {
-  std::vector<std::filesystem::path> parameters{};      ///< files of tuned constants, each one more row
-  std::filesystem::path held_out{};                     ///< a tuning study; empty: judged on the scene
-  bool quick = false;                                   ///< few steps, small sizes
-  std::filesystem::path store = "out/reference-store";  ///< as of ModelRequest
+  std::vector<std::filesystem::path> parameters{};  ///< files of tuned constants, each one more row
+  std::filesystem::path held_out{};                 ///< a tuning study; empty: judged on the scene
+  bool quick = false;                               ///< few steps, small sizes
 };
 
 /// Sets up, times and judges every row.

@@ -34,6 +34,7 @@ class RowMaker {
     } else {
       trade_.contacts = load_tuning_study(options.held_out, reference::unsupported).held_out;
       trade_.held_out = true;
+      for (TuningContact& contact : trade_.contacts) contact.scene.fast.store = scene.fast.store;
     }
     // Faulty files are reported before any solve.
     for (const auto& file : options.parameters) (void)with_parameters(scene, file);
@@ -48,7 +49,6 @@ class RowMaker {
                          [this](const Scene& scene, const scene::Surface& surface, int levels) {
                            return reference_on(scene, surface, levels);
                          },
-                         options_.store,
                          say_};
     for (const TuningContact& contact : trade_.contacts) request.contacts.push_back(contact.scene);
     for (const ModelEntry& entry : list_models(request, models)) add(entry);
@@ -69,7 +69,7 @@ class RowMaker {
     if (say_) say_(line);
   }
 
-  /// The reference's result on a surface of so many triangles, on the meshes chosen for the contact's own surface.
+  /// The reference's result on a surface with this number of triangles, on the meshes chosen for the contact's own.
   /// Finer surfaces would ask for finer meshes, which take hours and are not worth a row.
   const TuningData& data_of(std::size_t contact, int triangles) {
     const int own = trade_.contacts[contact].scene.fast.triangles;
@@ -96,7 +96,7 @@ class RowMaker {
     return levels;
   }
 
-  /// The result that the models are judged by, if it has so many levels.
+  /// The result that the models are judged by, if it has this number of levels.
   reference::Result reference_on(const Scene& scene, const scene::Surface& surface, int levels) {
     for (const auto& [key, data] : data_) {
       const bool same = reference::content_key(data->contact.scene) == reference::content_key(scene);

@@ -1,6 +1,7 @@
 #include "compare/tune/tune_results.h"
 
 #include "compare/errors/figures.h"
+#include "compare/format/text.h"
 #include "compare/tune/tune_report.h"
 #include "scene/base/files.h"
 #include "scene/input/fields.h"
@@ -9,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <set>
 
@@ -17,20 +17,6 @@ namespace touchstone::compare {
 namespace {
 
 using Field = scene::Field<scene::Scene>;
-
-/// A name as part of a dotted key.
-std::string slug(const std::string& name) {
-  std::string out;
-  for (const char c : name) {
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
-      out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    } else if (!out.empty() && out.back() != '-') {
-      out += '-';
-    }
-  }
-  while (out.ends_with('-')) out.pop_back();
-  return out;
-}
 
 /// The reference's figures that describe one contact and do not depend on the machine.
 scene::Figures reference_side(const Tuning& tuning, const TuningOutcome& outcome) {

@@ -37,12 +37,12 @@ int run_program(int argc, char** argv) {
   fast::NewOptions new_options;
   std::string shell;
   fast::add_new_verb(program, new_options);
-  fast::add_verb(program, "plan", "what the fast model computes for a scene, what it leaves out and why",
+  fast::add_verb(program, "plan", "show what the fast model computes for a scene, what it leaves out and why",
                  "meshes/scenes/ball-on-cube-press.toml --set fast.formulation=published", options,
                  [&] { return plan(options); });
-  fast::add_verb(program, "fast", "the real-time model over the scene's track in virtual time",
-                 "meshes/scenes/ball-on-cube-press.toml --out out/press", options, [&] { return run(options); })
-      .option("--out", options.out, "result folder (default out/<scene>-fast)");
+  fast::add_verb_with_folder(program, "fast", "run the real-time model over the scene's track, in virtual time",
+                             "meshes/scenes/ball-on-cube-press.toml --out out/press", options,
+                             [&] { return run(options); });
   live::add_live_verb(program, options, live_options);
   bench::add_bench_verb(program, bench_options);
   fast::add_completion_verb(program, shell);

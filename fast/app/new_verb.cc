@@ -263,7 +263,7 @@ Command add_new_verb(Command& program, NewOptions& options) {
       .required()
       .values(2)
       .type("sphere|capsule|cylinder|box|mesh SIZE");
-  verb.option("--unit", options.unit, "of a mesh tool's coordinates").type("m|cm|mm|in");
+  verb.option("--unit", options.unit, "unit of a mesh tool's coordinates").type("m|cm|mm|in");
   verb.option("--depth", options.depth, "how far the tool moves beyond first contact, such as 3mm")
       .required()
       .type("LENGTH");

@@ -1,4 +1,4 @@
-// Measuring one case: the step and its floor by turns, so that a machine that drifts does it to both.
+// Measuring one case: step and floor in alternating blocks, so that clock drift affects both.
 #pragma once
 
 #include "fast/bench/counters.h"

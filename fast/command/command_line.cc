@@ -47,6 +47,13 @@ Command add_verb(Command& program, const std::string& name, const std::string& w
   return verb;
 }
 
+Command add_verb_with_folder(Command& program, const std::string& name, const std::string& what,
+                             const std::string& example, VerbOptions& options, std::function<int()> action) {
+  Command verb = add_verb(program, name, what, example, options, std::move(action));
+  verb.option("--out", options.out, "result folder (default out/<scene>-" + name + ")");
+  return verb;
+}
+
 namespace {
 
 constexpr const char* no_memory = "not enough memory; expected more memory, or a smaller scene";

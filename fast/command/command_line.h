@@ -33,6 +33,10 @@ struct VerbOptions {
 Command add_verb(Command& program, const std::string& name, const std::string& what, const std::string& example,
                  VerbOptions& options, std::function<int()> action);
 
+/// The same for a command that writes a result folder: with --out.
+Command add_verb_with_folder(Command& program, const std::string& name, const std::string& what,
+                             const std::string& example, VerbOptions& options, std::function<int()> action);
+
 /// What a failure is to its user.
 struct Failure {
   int exit_code;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <iostream>
 
 namespace touchstone::fast {
 namespace {
@@ -84,6 +85,12 @@ void ProgressLine::finish() {
   if (open_) write("\n");
   open_ = false;
   width_ = 0;
+}
+
+std::function<void(const std::string&)> progress_lines(bool quiet) {
+  return [quiet](const std::string& line) {
+    if (!quiet) std::cerr << line << '\n';
+  };
 }
 
 }  // namespace touchstone::fast

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <string>
 
 namespace touchstone::fast {
@@ -35,6 +36,9 @@ class ProgressLine {
   std::string marked_;     // the last text that was
   std::chrono::steady_clock::time_point last_;
 };
+
+/// Prints lines about what takes long to stderr.
+[[nodiscard]] std::function<void(const std::string&)> progress_lines(bool quiet);
 
 /// The first characters of a text, dots at the end where some are left out. UTF-8; a code point counts as one column.
 [[nodiscard]] std::string cut_to_width(const std::string& text, std::size_t columns);

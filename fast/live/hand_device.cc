@@ -15,21 +15,17 @@ constexpr std::int64_t longest_gap = 1000;
 }  // namespace
 
 HandDevice::HandDevice(std::vector<scene::Waypoint> track, const scene::LiveSettings& settings, double period_s)
-    : track_(std::move(track)),
-      mass_kg_(settings.hand_mass_kg),
-      damping_n_s_per_m_(settings.hand_damping_n_s_per_m),
-      stiffness_n_per_m_(settings.hand_stiffness_n_per_m),
-      period_s_(period_s),
-      position_m_(track_.front().pose.position_m) {
+    : track_(std::move(track)), hand_(settings), period_s_(period_s), position_m_(track_.front().pose.position_m) {
   // Unstable if a root of z^2 - (2 - a - b) z + (1 - b) is outside the unit circle.
-  const double a = stiffness_n_per_m_ * period_s_ * period_s_ / mass_kg_, b = damping_n_s_per_m_ * period_s_ / mass_kg_;
+  const double a = hand_.hand_stiffness_n_per_m * period_s_ * period_s_ / hand_.hand_mass_kg,
+               b = hand_.hand_damping_n_s_per_m * period_s_ / hand_.hand_mass_kg;
   if (!(a + 2.0 * b < 4.0) || !(b < 2.0)) {
     throw scene::InputError(fmt::format(
         "live.hand_mass_kg = {:g} is too light for hand_stiffness_n_per_m = {:g} and hand_damping_n_s_per_m = {:g} "
         "at {:g} Hz; expected at least {:g}",
-        mass_kg_, stiffness_n_per_m_, damping_n_s_per_m_, 1.0 / period_s_,
-        std::max(0.25 * (stiffness_n_per_m_ * period_s_ + 2.0 * damping_n_s_per_m_) * period_s_,
-                 0.5 * damping_n_s_per_m_ * period_s_)));
+        hand_.hand_mass_kg, hand_.hand_stiffness_n_per_m, hand_.hand_damping_n_s_per_m, 1.0 / period_s_,
+        std::max(0.25 * (hand_.hand_stiffness_n_per_m * period_s_ + 2.0 * hand_.hand_damping_n_s_per_m) * period_s_,
+                 0.5 * hand_.hand_damping_n_s_per_m * period_s_)));
   }
 }
 
@@ -40,9 +36,9 @@ void HandDevice::advance() noexcept {
   const scene::Vec3 here_m = scene::pose_at(track_, time_s).position_m;
   const scene::Vec3 there_m = scene::pose_at(track_, time_s + period_s_).position_m;
   const scene::Vec3 track_m_per_s = (there_m - here_m) / period_s_;
-  const scene::Vec3 total_n =
-      force_n_ + stiffness_n_per_m_ * (here_m - position_m_) + damping_n_s_per_m_ * (track_m_per_s - velocity_m_per_s_);
-  velocity_m_per_s_ += period_s_ / mass_kg_ * total_n;
+  const scene::Vec3 total_n = force_n_ + hand_.hand_stiffness_n_per_m * (here_m - position_m_) +
+                              hand_.hand_damping_n_s_per_m * (track_m_per_s - velocity_m_per_s_);
+  velocity_m_per_s_ += period_s_ / hand_.hand_mass_kg * total_n;
   position_m_ += period_s_ * velocity_m_per_s_;
   ++periods_;
 }
@@ -61,7 +57,8 @@ bool HandDevice::read(const Tick& tick, DeviceSample& sample) noexcept {
 
 double HandDevice::energy_j() const noexcept {
   const scene::Vec3 stretch_m = scene::pose_at(track_, time_s()).position_m - position_m_;
-  return 0.5 * mass_kg_ * velocity_m_per_s_.squaredNorm() + 0.5 * stiffness_n_per_m_ * stretch_m.squaredNorm();
+  return 0.5 * hand_.hand_mass_kg * velocity_m_per_s_.squaredNorm() +
+         0.5 * hand_.hand_stiffness_n_per_m * stretch_m.squaredNorm();
 }
 
 }  // namespace touchstone::live

@@ -35,7 +35,8 @@ class HandDevice final : public Device {
   [[nodiscard]] double time_s() const noexcept;
 
   std::vector<scene::Waypoint> track_;
-  double mass_kg_, damping_n_s_per_m_, stiffness_n_per_m_, period_s_;
+  scene::LiveSettings hand_;  ///< of these the hand_...
+  double period_s_;
   std::int64_t periods_ = 0;  ///< integrated so far
   std::int64_t last_tick_ = 0;
   scene::Vec3 position_m_, velocity_m_per_s_ = scene::Vec3::Zero();

@@ -55,7 +55,7 @@ struct LiveResult {
 /// Runs the loop in real time and writes live.csv meanwhile.
 /// @param stop     ends the run early, with all written; polled
 /// @param tell     called a few times a second from the calling thread with a line of progress; may be empty
-/// @param warn     called once per refused wish, before the first line of progress; may be empty
+/// @param warn     called once per refused request to the system, before the first line of progress; may be empty
 /// @throws scene::InputError for options or a log that cannot be; std::filesystem::filesystem_error where the log
 /// cannot
 ///   be written

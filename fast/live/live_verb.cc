@@ -60,11 +60,12 @@ int live_verb(const fast::VerbOptions& options, const LiveOptions& live, const s
 }
 
 void add_live_verb(fast::Command& program, fast::VerbOptions& options, LiveOptions& live, const WritePage& page) {
-  fast::Command verb = fast::add_verb(program, "live", "the fast model in real time, driven by a device",
-                                      "meshes/scenes/ball-on-cube-press.toml --device hand --seconds 10", options,
-                                      [&options, &live, name = program.program_name(), page] {
-                                        return live_verb(options, live, name + " live", page);
-                                      });
+  fast::Command verb =
+      fast::add_verb_with_folder(program, "live", "run the fast model in real time, driven by a device",
+                                 "meshes/scenes/ball-on-cube-press.toml --device hand --seconds 10", options,
+                                 [&options, &live, name = program.program_name(), page] {
+                                   return live_verb(options, live, name + " live", page);
+                                 });
   verb.option(
           "--device",
           [&live](const std::string& name) -> std::string {
@@ -81,8 +82,7 @@ void add_live_verb(fast::Command& program, fast::VerbOptions& options, LiveOptio
   verb.option("--seconds", live.seconds, "length (default the track's or the log's; 10 for hand)");
   verb.option("--rate", live.rate_hz, "ticks per second, 1 to 10000 (default 1000, or the log's)");
   verb.option("--log", live.log, "replay: live.csv of an earlier run");
-  verb.option("--processor", live.scheduling.processor, "for the loop's thread (default the last allowed)");
-  verb.option("--out", options.out, "result folder (default out/<scene>-live)");
+  verb.option("--processor", live.scheduling.processor, "processor for the loop's thread (default the last allowed)");
 }
 
 }  // namespace touchstone::live

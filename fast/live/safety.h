@@ -7,7 +7,7 @@
 namespace touchstone::live {
 
 /// Bounds of the wrench sent to the device. A torque T counts as the force |T| / lever_m, so that the two limits of the
-/// scene bound it too, whatever couple a contact makes.
+/// scene bound it too, for any couple of a contact.
 struct WrenchLimits {
   double force_max_n = 0.0;
   double force_slew_n_per_s = 0.0;

@@ -23,7 +23,7 @@ struct Scheduling {
   [[nodiscard]] std::string text() const;
 };
 
-/// Threads from here on have a stack of 2 MiB each, whatever the limit for stacks is: locked memory holds all of it.
+/// Threads started from here on have a stack of 2 MiB each, regardless of the limit: locked memory holds all of it.
 void give_threads_small_stacks() noexcept;
 
 /// Asks for SCHED_FIFO and a processor of its own for the calling thread, and for the process's present memory to stay

@@ -13,7 +13,7 @@ namespace touchstone::fast {
 /// right to 1 %. Fixed size, no heap.
 class DurationHistogram {
  public:
-  /// Durations below zero count as zero, those beyond 18 minutes as that long, but for the maximum.
+  /// Negative durations count as zero, those beyond 18 minutes as 18 minutes; only the maximum keeps its value.
   void add(std::int64_t duration_ns) noexcept;
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
   [[nodiscard]] std::int64_t max_ns() const noexcept { return max_ns_; }

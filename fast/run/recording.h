@@ -25,9 +25,9 @@ struct RecordedTick {
   std::vector<double> numbers;  ///< x_T, y_T, z_T, depth, rises and mass weight of every point, column by column
 };
 
-/// The ticks on which the answer at the instants hangs: all of them with friction, which remembers; else the instants.
-/// Nothing where the constants might decide which samples make up which region: a tool that may have several regions
-/// has one at every tick, whatever the constants, if
+/// The ticks on which the answer at the instants depends: with friction, which has a memory, all of them, else those of
+/// the instants. Nothing if the constants could change which samples form which region. A tool that may have several
+/// regions has one at every tick, for any constants, if
 /// - it has no friction, so that no anchor point moves further than the tick's deepest sample is deep and the surface
 ///   extends outside the rest surface by at most that;
 /// - at every tick the samples inside are one cluster, and every sample outside but within reach of the last tick's

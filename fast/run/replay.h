@@ -18,7 +18,7 @@ class Replay {
   explicit Replay(const scene::Scene& scene, std::size_t bytes_max = std::size_t{512} << 20);
 
   /// Total force on the tool at every instant [N]; equal to run()'s bit for bit.
-  /// @param scene  that of the constructor but for the constants
+  /// @param scene  the constructor's, with other constants
   [[nodiscard]] std::vector<scene::Vec3> forces_n(const scene::Scene& scene);
 
   /// Displacement at some instants, equal to run()'s bit for bit. Where recorded(), with the forces of the last call of

@@ -23,7 +23,7 @@ class Ticks {
   explicit Ticks(const scene::Scene& scene);
   /// The next one, or nothing after the last.
   [[nodiscard]] std::optional<Tick> next();
-  /// How many there will be, but for instants that share a tick.
+  /// Upper bound of their number: two instants may share a tick.
   [[nodiscard]] std::int64_t count() const noexcept { return last_ + 1; }
 
  private:

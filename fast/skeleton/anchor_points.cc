@@ -201,7 +201,7 @@ PatchPlace EllipsoidAnchors::at(int patch, const Vec3& p_m) const noexcept {
 
 RevolutionAnchors::RevolutionAnchors(const scene::Revolution& revolution, double support_height_m)
     : revolution_(revolution),
-      // A flat bottom is fixed as a face, whatever its height.
+      // A flat bottom is fixed as a face, at any height.
       support_height_m_(revolution.flat_bottom() ? -std::numeric_limits<double>::infinity() : support_height_m) {
   const int pieces = revolution.piece_count();
   parts_.resize(static_cast<std::size_t>(pieces));

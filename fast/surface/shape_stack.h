@@ -32,7 +32,7 @@ struct PassScratch {
   using Lane = std::array<float, block_vertices>;
   std::array<Lane, patch_corners_max> corner_weight{};
   std::vector<Lane> height;       ///< of the hats, one per region
-  std::vector<std::size_t> near;  ///< regions whose R reaches the patch at hand
+  std::vector<std::size_t> near;  ///< regions whose R reaches the present patch
   SurfacePatches points;          ///< the body's patches, with one block of vertices: the points asked for
 };
 

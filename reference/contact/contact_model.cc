@@ -157,7 +157,7 @@ std::vector<NodeContact<dim>> ContactModel<dim>::contacts_of(const State<dim>& s
     normal_n[touching.region_of[point]] += contact.normal_n;
     if (!state.sliding.empty() && state.sliding[contact.node]) sliding[touching.region_of[point]] = 1;
   }
-  // While nothing presses yet, next to nothing stands for it.
+  // Lower bound of the normal force, so that the coefficient is finite before the contact carries load.
   for (NodeContact<dim>& contact : contacts) {
     contact.coefficient =
         friction->coefficient(std::max(normal_n[contact.region], smallest_force_n()), sliding[contact.region] != 0);

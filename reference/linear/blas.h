@@ -1,4 +1,4 @@
-// The BLAS this process runs on. It is chosen when the process starts, so it is asked of whatever is loaded.
+// The BLAS that this process uses. It is chosen when the process starts, so the loaded library is queried.
 #pragma once
 
 #include <string>

@@ -79,7 +79,7 @@ using Map = std::function<Eigen::Matrix<double, dim, 1>(const Eigen::Matrix<doub
 template <int dim>
 void refine(dealii::Triangulation<dim>& grid, const Grading<dim>& grading, const Map<dim>& place_m = unmapped<dim>) {
   constexpr double children = 1 << dim;
-  // A cell a hair above the wished size is small enough.
+  // A cell slightly above the requested size is small enough.
   constexpr double slack = 1.0 + 1e-6;
   for (bool changed = true; changed;) {
     changed = false;

@@ -5,7 +5,8 @@
 //   int sigma(w) : grad v = -int_free (sigma_k N) . v + int_inclusions (sigma_k - sigma(u_k)) : grad v,
 //   w = -u_k where the body is held,
 // so that no mesh has to resolve the load. With nu < 0.5 on a curved surface sigma_k N grows as 1 / distance towards
-// the load, and w at the load's own place as its logarithm; the mesh then stands for the size of the load.
+// the load, and w at the load's own place as its logarithm; the size of the mesh's cells then takes the place of the
+// size of the load.
 #pragma once
 
 #include "scene/response/response.h"

@@ -12,7 +12,7 @@
 
 namespace touchstone::reference {
 
-/// How far a solve is: a Newton iteration, a finished load step, or something worth a word.
+/// How far a solve is: a Newton iteration, a finished load step, or an event.
 struct Progress {
   int level = 0;                  ///< 1-based mesh
   int levels = 0;                 ///< meshes asked for, or that are needed at least
@@ -25,7 +25,7 @@ struct Progress {
   double seconds_left =
       -1.0;  ///< estimate for this mesh, those up to `levels` and the sensitivities; negative: unknown
   bool step_finished = false;  ///< true once per finished load step, after it is on disk
-  bool event = false;          ///< worth a line in a log: a mesh or a sensitivity begins, or nothing had to be solved
+  bool event = false;          ///< for a log, too: a mesh or a sensitivity begins, or nothing had to be solved
   std::string note{};          ///< "load step halved", "begins", "from the store"; usually empty
 };
 

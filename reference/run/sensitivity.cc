@@ -111,8 +111,8 @@ class Repeat {
         const double from_s = current.time_s, to_s = given_.times_s[instant];
         for (int k = 1; k <= change.load_steps; ++k) {
           const double share = static_cast<double>(k) / change.load_steps;
-          // With friction the state found depends a little on where Newton starts: like the level's own but for what
-          // is changed. Shorter load steps start without the linear predictor, so that their change holds this too.
+          // With friction the state found depends a little on where Newton starts. So it starts as for the level
+          // itself; only shorter load steps start without the linear predictor, and their change includes its effect.
           const bool predict = before && change.load_steps == 1;
           report = path.advance(predict ? &*before : nullptr, current,
                                 k == change.load_steps ? to_s : from_s + share * (to_s - from_s), solved,
@@ -125,8 +125,8 @@ class Repeat {
       }
       return report;
     };
-    // Friction remembers its path; without it the last step tells all, and on another mesh the solution itself, unless
-    // other cells make too much of the difference.
+    // Friction depends on the path, so all steps are solved. Without it the last step is enough, and on another mesh
+    // the solution itself serves as the start, unless the other cells change it too much.
     const Solved<dim> rest{given_.times_s[0] - lead_s, problem.rest(), false};
     AdvanceReport report;
     report.converged = false;

@@ -14,8 +14,8 @@ namespace touchstone::reference {
 
 /// The folder of one answer. Holding an object of this class holds the folder's lock: a second process waits.
 ///
-/// Whatever stops a process at whatever instant, the next one goes on: a step is on disk whole or not at all, what was
-/// half-written is removed, and a step's file is believed only when its checksum, which covers the answer, level and
+/// A process may be killed at any time, and the next one continues: a step is on disk completely or not at all,
+/// incomplete files are removed, and a step's file is used only if its checksum, which covers the answer, level and
 /// instant it belongs to, is right. On a file system without locks two processes do the same work twice.
 class Store {
  public:
@@ -30,7 +30,7 @@ class Store {
   /// Keeps a finished step. @throws std::filesystem::filesystem_error; the step is then absent
   void write(int level, int instant, std::string_view record) const;
 
-  /// The same for a solution that is no step of a level, by name.
+  /// The same for a named solution that is no step of a level.
   void write(const std::string& name, std::string_view record) const;
   [[nodiscard]] std::optional<std::string> read(const std::string& name) const;
 

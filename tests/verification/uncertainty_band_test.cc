@@ -11,6 +11,7 @@
 #include "reference/verification/closed_forms.h"
 
 #include "scene/shape/surface.h"
+#include "support/ball_on_ball.h"
 
 #include <gtest/gtest.h>
 
@@ -26,14 +27,7 @@ class UncertaintyBand : public testing::Test {
  protected:
   UncertaintyBand()
       : root_(std::filesystem::temp_directory_path() / ("touchstone-band-" + std::to_string(::getpid()))) {
-    scene_.body.shape = scene::BodyShape::sphere;
-    scene_.body.radius_m = 0.03;
-    scene_.body.support_height_m = 0.006;
-    scene_.body.material = {3e6, 0.5};
-    scene_.tool.radius_m = 0.01;
-    scene_.track = {{0.0, {{0.0, 0.0, 0.0702}, Eigen::Quaterniond::Identity()}},
-                    {1.0, {{0.0, 0.0, 0.0662}, Eigen::Quaterniond::Identity()}}};
-    scene_.compare.instants = 6;
+    scene_ = ball_on_ball_scene({{0.0, 0.0702}, {1.0, 0.0662}}, 6, 0.5);
   }
   ~UncertaintyBand() override { std::filesystem::remove_all(root_); }
 

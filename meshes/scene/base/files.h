@@ -1,4 +1,4 @@
-// Files that are whole or absent, and folders that one process works in at a time, whatever kills the processes.
+// Files that are complete or absent, and folders that one process works in at a time, even if processes are killed.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace touchstone::scene {
 
-/// Writes a file that is whole or absent whatever happens, a kill, a full disk, a power cut: to a temporary name of its
+/// Writes a file that is complete or absent even after a kill, a full disk or a power cut: to a temporary name of its
 /// own, to the disk, then under its name. Several processes may write the same file at a time; one of them wins.
 /// @throws std::filesystem::filesystem_error; the file is then what it was before
 void write_file(const std::filesystem::path& path, std::string_view content);

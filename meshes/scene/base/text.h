@@ -48,7 +48,7 @@ template <class Number>
   return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
-/// The number that is written with so many significant digits.
+/// The number rounded to this many significant digits.
 [[nodiscard]] double rounded(double value, int digits);
 
 /// Without the byte order mark that some editors put first.

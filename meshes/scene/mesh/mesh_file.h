@@ -29,7 +29,7 @@ inline constexpr std::size_t mesh_triangles_max = 500'000, mesh_pieces_max = 100
 [[nodiscard]] std::shared_ptr<const TriangleMesh> mesh_of_file(std::string content, const std::filesystem::path& file,
                                                                double unit_m, std::vector<Fault>& faults);
 
-/// The file's content as it was when the mesh was read, whatever became of the file; null for a mesh that
+/// The file's content as it was when the mesh was read, even if the file has changed since; null for a mesh that
 /// mesh_of_file() did not make. It exists as long as the mesh.
 [[nodiscard]] const std::string* content_of_file(const std::shared_ptr<const TriangleMesh>& mesh);
 

@@ -43,7 +43,7 @@ Header read_header(TextLines& lines) {
     if (words[0] == "end_header") {
       if (!format) lines.fail("the header names no format");
       for (const Element& element : header.elements) {
-        // Rows without properties have no data, whatever their count.
+        // Rows without properties have no data, however many there are.
         if (element.properties.empty())
           lines.fail("element " + name_or_nothing(element.name) + " has no property; expected at least one");
       }

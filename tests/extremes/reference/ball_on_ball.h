@@ -4,6 +4,7 @@
 #include "reference/solver.h"
 #include "scene/base/error.h"
 #include "scene/shape/surface.h"
+#include "support/ball_on_ball.h"
 
 #include <gtest/gtest.h>
 
@@ -25,17 +26,8 @@ inline scene::Waypoint at(double time_s, const Vec3& position_m) {
 
 /// A ball of 10 mm pressed 4 mm into a ball of 30 mm; axisymmetric.
 inline scene::Scene ball_on_ball() {
-  scene::Scene scene;
-  scene.name = "ball-on-ball";
-  scene.body.shape = scene::BodyShape::sphere;
-  scene.body.radius_m = 0.03;
-  scene.body.support_height_m = 0.006;
-  scene.body.material = {3e6, 0.45};
-  scene.tool.radius_m = 0.01;
-  scene.track = {at(0.0, {0.0, 0.0, 0.0705}), at(1.0, {0.0, 0.0, 0.066})};
-  scene.compare.instants = 4;
+  scene::Scene scene = ball_on_ball_scene({{0.0, 0.0705}, {1.0, 0.066}}, 4);
   scene.reference.levels = 1;
-  scene.reference.element_size_m = 0.003;
   return scene;
 }
 

@@ -67,6 +67,8 @@ TEST(Text, IsWrappedAtSpacesByCharacters) {
 
 TEST(Text, IsEscapedForMarkup) { EXPECT_EQ(escape_xml("a<b>&\"c\"\x01"), "a&lt;b&gt;&amp;&quot;c&quot;"); }
 
+TEST(Text, ATitleIsAnAnchor) { EXPECT_EQ(slug("(Force, over time)"), "force-over-time"); }
+
 TEST(CsvCell, IsNoFormula) {
   EXPECT_EQ(csv_cell("=1+cmd|'/c calc'!A0"), "'=1+cmd|'/c calc'!A0");
   EXPECT_EQ(csv_cell("@sum"), "'@sum");

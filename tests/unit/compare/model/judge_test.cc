@@ -102,7 +102,8 @@ TEST_F(JudgeModels, AModelAppearsOnce) {
 }
 
 TEST_F(JudgeModels, TheResponseModelIsOneOfThem) {
-  Contenders all = contenders(sides_.scene, {}, {"response"}, folder_.path());
+  sides_.scene.fast.store = folder_.path();
+  Contenders all = contenders(sides_.scene, {}, {"response"});
   EXPECT_EQ(std::ranges::count(all.models, "response", &ModelEntry::key), 1);
   std::erase_if(all.models, [](const ModelEntry& entry) { return entry.family != ModelFamily::response; });
   const JudgedModel model = judge(all).front();

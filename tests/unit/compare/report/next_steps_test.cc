@@ -48,6 +48,16 @@ TEST(NextSteps, CommandsCanBeTypedAsTheyStand) {
             "--minutes 20 --quiet");
 }
 
+TEST(NextSteps, CommandsRepeatEveryOption) {
+  Call call{.scene_file = "a.toml"};
+  call.reference = {.error = 0.02, .memory_gib = 4.0, .volume = true};
+  call.compare = {.parameters = "tuned ball.toml", .models = {"compliance-1", "compliance-2"}, .plots = true};
+  EXPECT_EQ(
+      command_text(call, ""),
+      "touchstone compare a.toml --parameters 'tuned ball.toml' --model compliance-1 --model compliance-2 --plots "
+      "--error 0.02 --memory-gib 4 --volume");
+}
+
 TEST(NextSteps, OfferTheAreaAwareLawWhereItIsNearerAndSayByHowMuch) {
   const testing::Sides sides = really_run();
   const NextStep step = find(steps_of(sides), "area-aware law");
@@ -134,7 +144,7 @@ TEST(NextSteps, NameTheStudyThatTrainsOnTheScene) {
   EXPECT_THAT(find(steps_of(sides), "Tune").why, HasSubstr("a study of this scene"));
   sides.call.scene_file = source_folder() + "/meshes/scenes/ball-on-cube-press.toml";
   EXPECT_THAT(find(steps_of(sides), "Tune").command, ::testing::EndsWith("/meshes/studies/ball-on-cube.toml"));
-  sides.call.parameters = "tuned.toml";
+  sides.call.compare.parameters = "tuned.toml";
   EXPECT_EQ(find(steps_of(sides), "Tune").why, "");
 }
 

@@ -23,7 +23,8 @@ TEST(PlotFiles, EveryPlotOfTheReportIsSavedWhenAsked) {
   const testing::TemporaryFolder folder;
   (void)write_comparison(folder.path(), sides.scene, sides.run, sides.result, sides.manifest, {});
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "plots"));
-  (void)write_comparison(folder.path(), sides.scene, sides.run, sides.result, sides.manifest, {}, {}, true);
+  (void)write_comparison(folder.path(), sides.scene, sides.run, sides.result, sides.manifest, {},
+                         {.compare = {.plots = true}});
   std::set<std::string> svg, pdf;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "plots")) {
     const std::string text = scene::read_file(entry.path()).value();
@@ -48,7 +49,8 @@ TEST(PlotFiles, OldOnesGoAndOtherFilesStay) {
   std::filesystem::create_directories(plots);
   for (const char* name : {"friction.svg", "friction.pdf", "my-own.svg"}) scene::write_file(plots / name, "old");
   const testing::Sides sides = testing::pressed(4, 200);
-  (void)write_comparison(folder.path(), sides.scene, sides.run, sides.result, sides.manifest, {}, {}, true);
+  (void)write_comparison(folder.path(), sides.scene, sides.run, sides.result, sides.manifest, {},
+                         {.compare = {.plots = true}});
   EXPECT_FALSE(std::filesystem::exists(plots / "friction.svg"));
   EXPECT_FALSE(std::filesystem::exists(plots / "friction.pdf"));
   EXPECT_TRUE(std::filesystem::exists(plots / "force-over-depth.svg"));

@@ -9,6 +9,7 @@
 #include "reference/solver.h"
 
 #include "scene/shape/surface.h"
+#include "support/ball_on_ball.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,27 +30,11 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A ball pressed on a ball: axisymmetric.
-scene::Scene ball_on_ball() {
-  scene::Scene scene;
-  scene.name = "ball-on-ball";
-  scene.body.shape = scene::BodyShape::sphere;
-  scene.body.radius_m = 0.03;
-  scene.body.support_height_m = 0.006;
-  scene.body.material = {3e6, 0.5};
-  scene.tool.radius_m = 0.01;
-  scene.track = {{0.0, {{0.0, 0.0, 0.0702}, Eigen::Quaterniond::Identity()}},
-                 {1.0, {{0.0, 0.0, 0.0662}, Eigen::Quaterniond::Identity()}}};
-  scene.compare.instants = 6;
-  scene.reference.element_size_m = 0.003;
-  return scene;
-}
-
 class RefinementTest : public testing::Test {
  protected:
   RefinementTest()
       : root_(std::filesystem::temp_directory_path() / ("touchstone-refinement-" + std::to_string(::getpid()))),
-        scene_(ball_on_ball()),
+        scene_(ball_on_ball_scene({{0.0, 0.0702}, {1.0, 0.0662}}, 6, 0.5)),
         surface_(scene::tessellate(*scene::body_shape(scene_.body), 128)) {}
   ~RefinementTest() override { std::filesystem::remove_all(root_); }
 

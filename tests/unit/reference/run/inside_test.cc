@@ -4,6 +4,7 @@
 #include "reference/solver.h"
 #include "scene/base/error.h"
 #include "scene/shape/surface.h"
+#include "support/ball_on_ball.h"
 
 #include <gtest/gtest.h>
 
@@ -17,15 +18,7 @@ namespace {
 class InsideTest : public testing::Test {
  protected:
   InsideTest() : root_(std::filesystem::temp_directory_path() / ("touchstone-inside-" + std::to_string(::getpid()))) {
-    scene_.body.shape = scene::BodyShape::sphere;
-    scene_.body.radius_m = 0.03;
-    scene_.body.support_height_m = 0.006;
-    scene_.body.material = {3e6, 0.45};
-    scene_.tool.radius_m = 0.01;
-    scene_.track = {{0.0, {{0.0, 0.0, 0.0705}, Eigen::Quaterniond::Identity()}},
-                    {1.0, {{0.0, 0.0, 0.0680}, Eigen::Quaterniond::Identity()}}};
-    scene_.compare.instants = 3;
-    scene_.reference.element_size_m = 0.003;
+    scene_ = ball_on_ball_scene({{0.0, 0.0705}, {1.0, 0.0680}}, 3);
     scene_.reference.levels = 3;
     points_m_ = scene::tessellate(*scene::body_shape(scene_.body), 64).points_m;
   }

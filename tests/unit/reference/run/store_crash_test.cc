@@ -5,6 +5,7 @@
 #include "reference/solver.h"
 #include "scene/base/files.h"
 #include "scene/shape/surface.h"
+#include "support/ball_on_ball.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,25 +27,6 @@ namespace touchstone::reference {
 namespace {
 
 using testing::HasSubstr;
-
-/// A ball pressed on a ball and taken off again: small, and axisymmetric.
-scene::Scene press_and_release() {
-  scene::Scene scene;
-  scene.name = "ball-on-ball";
-  scene.body.shape = scene::BodyShape::sphere;
-  scene.body.radius_m = 0.03;
-  scene.body.support_height_m = 0.006;
-  scene.body.material = {3e6, 0.45};
-  scene.tool.radius_m = 0.01;
-  const auto at = [](double time_s, double z_m) {
-    return scene::Waypoint{time_s, {{0.0, 0.0, z_m}, Eigen::Quaterniond::Identity()}};
-  };
-  scene.track = {at(0.0, 0.0705), at(1.0, 0.0665), at(2.0, 0.0705)};
-  scene.compare.instants = 9;
-  scene.reference.levels = 2;
-  scene.reference.element_size_m = 0.003;
-  return scene;
-}
 
 void never() { FAIL() << "the lock should be free"; }
 
