@@ -13,6 +13,8 @@
 #include <initializer_list>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace touchstone::fast {
 namespace {
@@ -97,6 +99,17 @@ std::string one_region_text(const scene::Tool& tool) {
   return touch + fmt::format("; the tool's mesh has no concavity deeper than {:.2g} mm", dent_m * 1e3);
 }
 
+/// "2 balls of 2.5 and 3 mm radius".
+std::string tips_text(const std::vector<scene::ToolTip>& tips) {
+  if (!tips.front().ball()) return fmt::format("a flat tip of {:.4g} mm radius", tips.front().reach_m() * 1e3);
+  if (tips.size() == 1) return fmt::format("a ball of {:.4g} mm radius", tips.front().radius_m * 1e3);
+  std::string radii;
+  for (std::size_t i = 0; i < tips.size(); ++i) {
+    radii += fmt::format("{}{:.4g}", i == 0 ? "" : i + 1 < tips.size() ? ", " : " and ", tips[i].radius_m * 1e3);
+  }
+  return fmt::format("{} balls of {} mm radius", tips.size(), radii);
+}
+
 /// A plan as it is written.
 struct Lines {
   scene::Plan plan;
@@ -121,15 +134,20 @@ scene::Plan response_plan(const scene::Scene& scene) {
   }
   const Measured measured = engine ? measure(scene, *engine) : Measured{};
   const auto cost = [&](std::initializer_list<Stage> stages) { return engine ? measured.cost(stages) : ""; };
-  const scene::ToolTip tip = scene::tool_tip(scene).tip.value();
+  const std::vector<scene::ToolTip> tips = scene::tool_tips(scene).tips;
   const scene::LoadGrid grid = scene::load_grid(scene).grid.value();
   Lines lines;
-  lines.models("contact detection",
-               tip.ball()
-                   ? fmt::format("a ball of {:.4g} mm radius against the exact rest shape", tip.radius_m * 1e3)
-                   : fmt::format("a flat tip of {:.4g} mm radius against the exact rest shape", tip.reach_m() * 1e3),
-               cost({Stage::detection}));
-  lines.leaves_out("several regions", one_region_text(scene.tool));
+  lines.models("contact detection", tips_text(tips) + " against the exact rest shape", cost({Stage::detection}));
+  if (tips.size() > 1) {
+    lines.models("several regions",
+                 fmt::format("{} parts of the tool touch on this track{}; each lowers the body under the others, and "
+                             "their forces are found together",
+                             tips.size(), engine ? fmt::format(", {} at its instants", measured.regions) : ""),
+                 cost({Stage::regions}));
+  } else {
+    lines.leaves_out("several regions",
+                     scene.tool.convex() ? one_region_text(scene.tool) : "one part of the tool touches on this track");
+  }
   lines.models(
       "contact force",
       "of a linear half space under the tool's true surface, tabulated over the depth, times a factor of finite "
