@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <utility>
 
 namespace touchstone::fast {
@@ -31,6 +33,40 @@ TipLaw tip_law(const scene::Body& body, const scene::Shape& shape, const scene::
     out.tables.emplace_back(tip, out.local[static_cast<std::size_t>(k)], body.material.contact_modulus_pa(), strain);
   }
   return out;
+}
+
+/// From a point of the surface to the nearest edge of its face, along its tangent plane [m]; far beyond the body where
+/// the face has none.
+double to_edge_m(const scene::Shape& body, const Vec3& point_m, const Vec3& normal, double size_m) {
+  const int face = body.face_of(body.query(point_m).patch);
+  const Vec3 first = normal.unitOrthogonal(), second = normal.cross(first);
+  double nearest_m = 100.0 * size_m;
+  constexpr int directions = 64;
+  for (int d = 0; d < directions; ++d) {
+    const double angle = 2.0 * std::numbers::pi * d / directions;
+    const Vec3 along = std::cos(angle) * first + std::sin(angle) * second;
+    // Down to the surface, or nothing beside the body.
+    const auto below = [&](double r_m) -> std::optional<scene::SurfaceQuery> {
+      const Vec3 from_m = point_m + r_m * along + 2.0 * size_m * normal;
+      const scene::Crossing inside = body.crossing(from_m, from_m - 4.0 * size_m * normal);
+      if (inside.empty()) return std::nullopt;
+      return body.query(from_m - inside.enter_m * normal);
+    };
+    const auto on_face = [&](double r_m) {
+      const std::optional<scene::SurfaceQuery> at = below(r_m);
+      return at && body.face_of(at->patch) == face;
+    };
+    double low_m = 0.0, high_m = 4.0 * size_m;
+    for (int k = 0; k < 40; ++k) {
+      const double middle_m = 0.5 * (low_m + high_m);
+      (on_face(middle_m) ? low_m : high_m) = middle_m;
+    }
+    // Where the surface has turned away by as much as the line, this is its outline and no edge.
+    const std::optional<scene::SurfaceQuery> last = below(low_m);
+    constexpr double outline = 0.01;  // cosine
+    if (last && last->normal.dot(normal) > outline) nearest_m = std::min(nearest_m, low_m);
+  }
+  return nearest_m;
 }
 
 /// Corners of the triangle of a surface that holds a point of it, and their shares.
@@ -100,6 +136,8 @@ ResponseModel::ResponseModel(const scene::Scene& scene, scene::Surface at_rest, 
       normals(normal_stencils(surface)) {
   const scene::LoadGrid& grid = response.grid;
   const int n = grid.count();
+  body_size_m = scene::body_size_m(scene.body);
+  edge_distance_m.resize(n);
   own_compliance.resize(n);
   sway.resize(3, n);
   tilt.resize(3, n);
@@ -109,6 +147,7 @@ ResponseModel::ResponseModel(const scene::Scene& scene, scene::Surface at_rest, 
     sway.col(k) = own - own.dot(normal) * normal;
     const Vec3 slope = grid.axes.leftCols<2>() * response.tilt_per_n.col(k);
     tilt.col(k) = slope - slope.dot(normal) * normal;
+    edge_distance_m[k] = to_edge_m(*body, grid.points_m.col(k), normal, body_size_m);
   }
   for (const scene::ToolTip& tip : scene::tool_tips(scene).tips) {
     tips.push_back(tip_law(scene.body, *body, grid, tip));
@@ -134,7 +173,7 @@ ResponseModel::ResponseModel(const scene::Scene& scene, scene::Surface at_rest, 
 std::size_t ResponseModel::memory_bytes() const noexcept {
   std::size_t bytes = (rest_m[0].size() * 6 + free.size()) * sizeof(float) + normals.memory_bytes() +
                       static_cast<std::size_t>(response.smooth_m_per_n.size()) * sizeof(float) +
-                      static_cast<std::size_t>(own_compliance.size()) * (1 + 6 + 9) * sizeof(double) +
+                      static_cast<std::size_t>(own_compliance.size()) * (2 + 6 + 9) * sizeof(double) +
                       static_cast<std::size_t>(cross_compliance.size()) * sizeof(double);
   for (const TipLaw& law : tips) {
     bytes += law.local.size() * sizeof(LocalShape);

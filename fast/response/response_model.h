@@ -59,6 +59,8 @@ struct ResponseModel {
   std::vector<float> free;         ///< 0 where the surface is held, else 1
   Eigen::VectorXd own_compliance;  ///< C at the grid's points [m/N]
   Eigen::Matrix3Xd sway, tilt;     ///< s [m/N] and the slope's direction b [1/N] there, world
+  double body_size_m;
+  Eigen::VectorXd edge_distance_m;  ///< from the grid's points to the nearest edge; infinite where there is none
   // Only with several tips:
   Eigen::MatrixXd
       cross_compliance;  ///< C_ij between grid points without the half space's part; its diagonal is C [m/N]

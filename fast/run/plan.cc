@@ -1,3 +1,4 @@
+#include "fast/response/checked_range.h"
 #include "fast/response/response_engine.h"
 #include "fast/run/make_engine.h"
 #include "fast/run/run.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -22,6 +24,7 @@ namespace {
 /// Measured time of a tick at the deepest instant of the track.
 struct Measured {
   std::array<double, stage_count> stage_us{};  ///< medians
+  StepStatus status = StepStatus::ok;          ///< of all instants
   double step_us = 0.0;
   int regions = 0;
   bool contact = false;
@@ -42,7 +45,7 @@ Measured measure(const scene::Scene& scene, Engine& engine) {
   Measured measured;
   for (const double time_s : times_s) {
     const scene::Pose pose = scene::pose_at(scene.track, time_s);
-    engine.step(pose);
+    measured.status |= engine.step(pose);
     measured.regions = std::max(measured.regions, engine.region_count());
     if (const double here_m = depth.depth_m(pose); here_m > measured.deepest_m) {
       measured.deepest_m = here_m;
@@ -110,6 +113,19 @@ std::string tips_text(const std::vector<scene::ToolTip>& tips) {
   return fmt::format("{} balls of {} mm radius", tips.size(), radii);
 }
 
+/// What the response model was compared with the reference for, and what the track has beyond that.
+std::string checked_text(const std::vector<scene::ToolTip>& tips, StepStatus status) {
+  std::string text = fmt::format(
+      "compared with the reference for depths up to {} of the tip's radius, contacts of a radius up to {} of the "
+      "body's size, {} contact radii and more from an edge",
+      CheckedRange::depth_over_radius, CheckedRange::size_rel, CheckedRange::edge_over_radius);
+  if (tips.size() > 1) text += fmt::format(", {} times the radii and more apart", CheckedRange::apart_over_radii);
+  constexpr auto unchecked = static_cast<std::uint32_t>(StepStatus::depth_unchecked | StepStatus::size_unchecked |
+                                                        StepStatus::edge_unchecked | StepStatus::regions_unchecked);
+  const std::uint32_t beyond = static_cast<std::uint32_t>(status) & unchecked;
+  return beyond == 0 ? text : text + "; THE TRACK GOES BEYOND: " + status_text(beyond);
+}
+
 /// A plan as it is written.
 struct Lines {
   scene::Plan plan;
@@ -173,6 +189,7 @@ scene::Plan response_plan(const scene::Scene& scene) {
                cost({Stage::interpolation}));
   lines.models("local surface", "points under the tool lie on it", cost({Stage::local_factor}));
   lines.models("normals", "of the deformed surface", cost({Stage::normals}));
+  lines.models("checked range", checked_text(tips, engine ? measured.status : StepStatus::ok));
   if (engine) lines.whole(measured, *engine);
   lines.leaves_out("time dependence", "the force is static; the track's speed does not enter");
   return lines.plan;

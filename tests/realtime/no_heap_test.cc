@@ -74,7 +74,7 @@ TEST(NoHeap, BelowAStepOfTheResponseModelWithSeveralTips) {
   ResponseState state(model);
   int together = 0;
   for (int i = -20; i < 100; ++i) {
-    const scene::Pose pose = test::both_pressed(2e-5 * i, 1e-5 * i, 0.0, 1e-3 * i);
+    const scene::Pose pose = test::both_pressed(2e-5 * i, 1e-5 * i, 0.0, 2e-4 * i);
     const test::NoHeap guard;
     (void)response_step(model, pose, state);
     together += state.contacts[0].touches() && state.contacts[1].touches() ? 1 : 0;

@@ -10,7 +10,7 @@
 namespace touchstone::test {
 
 /// Radii and centres, in the tool's frame: the lowest points are at one height.
-inline constexpr double left_m = 0.004, right_m = 0.003, apart_m = 0.020;
+inline constexpr double left_m = 0.004, right_m = 0.003, apart_m = 0.030;
 
 /// @param left_first  which piece comes first in the mesh
 inline scene::Tool two_balls(bool left_first = true) {
@@ -48,7 +48,7 @@ inline scene::Scene two_balls_on_cube(bool left_first = true) {
   scene.tool = two_balls(left_first);
   scene.track = {{0.0, both_pressed(-0.001, -0.002, -0.002, -0.05)},
                  {0.5, both_pressed(0.002, -0.002, -0.002)},
-                 {1.0, both_pressed(0.002, 0.002, 0.002, 0.05)}};
+                 {1.0, both_pressed(0.0015, 0.002, 0.002, 0.05)}};
   scene.fast.triangles = 1200;
   return scene;
 }

@@ -35,7 +35,7 @@ class SeveralTips : public ::testing::Test {
   scene::Scene scene_ = test::two_balls_on_cube();
   scene::Surface surface_ = scene::tessellate(*scene::body_shape(scene_.body), scene_.fast.triangles);
   const std::array<scene::Pose, 4> poses_{test::both_pressed(0.002), test::both_pressed(0.0015, 0.001, -0.001, 0.04),
-                                          test::both_pressed(0.0010, -0.002, 0.002, -0.04), test::both_pressed(1e-4)};
+                                          test::both_pressed(0.0010, -0.002, 0.002, -0.02), test::both_pressed(1e-4)};
 };
 
 TEST_F(SeveralTips, EachIsInEquilibriumWithTheOthersLoads) {

@@ -27,8 +27,8 @@ TEST(MeshTips, AreTheBallsThatTouch) {
     EXPECT_NEAR(left.radius_m, test::left_m, 0.003 * test::left_m);
     EXPECT_LT(left.radius_m, test::left_m);
     EXPECT_NEAR(right.radius_m, test::right_m, 0.003 * test::right_m);
-    EXPECT_LT((left.center_T_m - Vec3(-0.010, 0.0, -0.006)).norm(), 2e-5);
-    EXPECT_LT((right.center_T_m - Vec3(0.010, 0.0, -0.007)).norm(), 2e-5);
+    EXPECT_LT((left.center_T_m - Vec3(-0.015, 0.0, -0.006)).norm(), 2e-5);
+    EXPECT_LT((right.center_T_m - Vec3(0.015, 0.0, -0.007)).norm(), 2e-5);
     EXPECT_TRUE(left.ball());
   }
   // One that never touches is none.
@@ -46,7 +46,7 @@ TEST(MeshTips, OneBallThatRollsIsOneTip) {
                  {1.0, test::both_pressed(-0.0002, 0.0, 0.0, -0.06)}};
   const Eigen::Quaterniond first = scene.track[0].pose.orientation;
   // About the left ball's centre by more than the contact is wide.
-  const Vec3 left_m(-0.010, 0.0, -0.006);
+  const Vec3 left_m(-0.015, 0.0, -0.006);
   Pose& turned = scene.track[1].pose;
   const Vec3 center_m = first * left_m + turned.position_m;
   turned.orientation = Eigen::AngleAxisd(-1.2, Vec3::UnitY()) * first;
