@@ -126,9 +126,25 @@ TEST_F(SeveralTips, ForcesAndTorqueHaveOnePotential) {
                   3e-5 * wrench.force_n.norm() * test::apart_m)
           << axis;
     }
-    // By the slope that the other load gives the surface.
+    // By the slope that the body has there.
     EXPECT_GT(std::abs(state.contacts[0].wrench.force_n.x()), 1e-4 * wrench.force_n.norm());
   }
+}
+
+TEST_F(SeveralTips, OnAHalfSpaceTheyPullTowardsEachOther) {
+  const ResponseModel model = this->model(true, 0.0);
+  ResponseState state(model);
+  (void)response_force(model, poses_.front(), state);
+  const ResponseContact &left = state.contacts[0], &right = state.contacts[1];
+  // Each slides down the dent of the other, whose slope is (1 - nu^2) F / (pi E r^2).
+  const scene::Material& material = scene_.body.material;
+  const double nu = material.poissons_ratio;
+  const double r_m = (left.at.point_m - right.at.point_m).norm();
+  const double slope_per_n = (1.0 - nu * nu) / (std::numbers::pi * material.youngs_modulus_pa * r_m * r_m);
+  const double pull_n = slope_per_n * left.load.force_n * right.load.force_n;
+  EXPECT_GT(pull_n, 1e-3);
+  EXPECT_NEAR(left.wrench.force_n.x(), pull_n, 1e-6 * pull_n);
+  EXPECT_NEAR(right.wrench.force_n.x(), -pull_n, 1e-6 * pull_n);
 }
 
 TEST_F(SeveralTips, OneThatIsApartChangesNothing) {
