@@ -49,7 +49,7 @@ TEST(MeshTips, OneBallThatRollsIsOneTip) {
   const Vec3 left_m(-0.015, 0.0, -0.006);
   Pose& turned = scene.track[1].pose;
   const Vec3 center_m = first * left_m + turned.position_m;
-  turned.orientation = Eigen::AngleAxisd(-1.2, Vec3::UnitY()) * first;
+  turned.orientation = Eigen::AngleAxisd(-2.0, Vec3::UnitY()) * first;
   turned.position_m = center_m - turned.orientation * left_m;
   scene.compare.instants = 2;
   EXPECT_EQ(tool_tips(scene).why, "");
