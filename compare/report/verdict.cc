@@ -175,6 +175,11 @@ std::vector<Reason> status_paragraphs(const scene::Scene& scene, const fast::Run
       "The load left the part of the surface for which the body's response is known. Its nearest place was used.");
   add(fast::StepStatus::tip_exceeded, "The tool is deeper than its tip is high. The model sees only the tip.");
   add(fast::StepStatus::tilted, "A flat tip is tilted. The model takes it to lie flat.");
+  const std::string unchecked = " than any contact for which the model was compared with the reference.";
+  add(fast::StepStatus::depth_unchecked, "The tool is deeper, over its tip's radius," + unchecked);
+  add(fast::StepStatus::size_unchecked, "The contact is larger, over the body's size," + unchecked);
+  add(fast::StepStatus::edge_unchecked, "The contact is nearer to an edge, over its radius," + unchecked);
+  add(fast::StepStatus::regions_unchecked, "Two contacts are nearer to each other, over their radii," + unchecked);
   return out;
 }
 

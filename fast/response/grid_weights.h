@@ -48,6 +48,7 @@ struct GridWeights {
   int count = 0;
   bool inside = true;
 
+  GridWeights() noexcept = default;
   GridWeights(const scene::LoadGrid& grid, const Eigen::Vector2d& place) noexcept {
     constexpr double negligible = 1e-7;
     const LineWeights a(place[0], grid.counts[0]), b(place[1], grid.counts[1]);

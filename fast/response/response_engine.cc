@@ -15,12 +15,12 @@ using scene::Vec3;
 
 /// Traction on the body at a point under the tool. Pressure along the tool's normal is force along the load per area
 /// across it, and so is the normal traction on a surface of any slope. Shear is along the tool's surface.
-Vec3 traction_pa(const ResponseModel& model, const ResponseContact& contact, const Vec3& x_m, const Vec3& axis) {
+Vec3 traction_pa(const scene::ToolTip& tip, const ResponseContact& contact, const Vec3& x_m, const Vec3& axis) {
   const double pressure_pa = spread_pressure_pa(contact.load, x_m - contact.stretch_m);
   if (pressure_pa == 0.0) return Vec3::Zero();
   const Vec3 from_axis_m = x_m - contact.at.point_m, across_m = from_axis_m - from_axis_m.dot(axis) * axis;
   const double r_m = across_m.norm();
-  const double slope = model.tip.slope(std::min(r_m, 0.99 * model.tip.reach_m()));
+  const double slope = tip.slope(std::min(r_m, 0.99 * tip.reach_m()));
   const Vec3 out = (r_m > 0.0 ? Vec3(axis + slope / r_m * across_m) : axis).normalized();
   const Vec3 shear_pa = spread_shear_pa(contact.load, x_m - contact.stretch_m);
   return pressure_pa * out + shear_pa - shear_pa.dot(out) * out;
@@ -62,23 +62,28 @@ scene::InstantRecord ResponseEngine::record(double time_s, const scene::Pose& to
   record.depth_m = depth_m;
   record.displacement_m = matrix_of(state_.field.displacement_m);
   record.traction_pa.setZero(3, record.displacement_m.cols());
-  if (!in_contact()) return record;
-  const ResponseContact& contact = state_.contact;
-  const Vec3 axis = model_.tip.ball() ? -contact.at.normal : Vec3(tool.orientation * model_.tip.axis_T);
-  for (Eigen::Index i = 0; i < record.traction_pa.cols(); ++i) {
-    if (model_.surface.normals.col(i).dot(contact.load.normal) <= 0.0) continue;
-    const Vec3 x_m = model_.surface.points_m.col(i) + record.displacement_m.col(i);
-    record.traction_pa.col(i) = traction_pa(model_, contact, x_m, axis);
-  }
-  record.pressure_peak_pa = spread_pressure_pa(contact.load, contact.load.center_m);
   record.support_force_n = state_.wrench.force_n;
-  const double radius_m = contact.load.widening * contact.load.radius_m;
-  record.regions.push_back({.depth_m = depth_m,
-                            .force_n = state_.wrench.force_n,
-                            .torque_nm = state_.wrench.torque_nm,
-                            .area_m2 = std::numbers::pi * radius_m * radius_m,
-                            .friction_n = contact.friction_n,
-                            .sliding = state_.slip && state_.slip->sliding});
+  for (std::size_t k = 0; k < model_.tips.size(); ++k) {
+    const ResponseContact& contact = state_.contacts[k];
+    if (!contact.touches()) continue;
+    const scene::ToolTip& tip = model_.tips[k].tip;
+    const Vec3 axis = tip.ball() ? -contact.at.normal : Vec3(tool.orientation * tip.axis_T);
+    for (Eigen::Index i = 0; i < record.traction_pa.cols(); ++i) {
+      if (model_.surface.normals.col(i).dot(contact.load.normal) <= 0.0) continue;
+      const Vec3 x_m = model_.surface.points_m.col(i) + record.displacement_m.col(i);
+      record.traction_pa.col(i) += traction_pa(tip, contact, x_m, axis);
+    }
+    record.pressure_peak_pa =
+        std::max(record.pressure_peak_pa, spread_pressure_pa(contact.load, contact.load.center_m));
+    const double radius_m = contact.load.widening * contact.load.radius_m;
+    record.regions.push_back({.depth_m = contact.depth_m,
+                              .force_n = contact.wrench.force_n,
+                              .torque_nm = contact.wrench.torque_nm,
+                              .area_m2 = std::numbers::pi * radius_m * radius_m,
+                              .id = static_cast<int>(k),
+                              .friction_n = contact.friction_n,
+                              .sliding = state_.slip && state_.slip->sliding});
+  }
   return record;
 }
 

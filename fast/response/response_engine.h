@@ -4,6 +4,9 @@
 #include "fast/response/response_model.h"
 #include "fast/step/engine.h"
 
+#include <algorithm>
+#include <span>
+
 namespace touchstone::fast {
 
 /// Reads the response's file in the scene's store. @throws scene::InputError where it is not there, or not as it should
@@ -16,10 +19,13 @@ class ResponseEngine final : public Engine {
   ResponseEngine(const scene::Scene& scene, scene::Surface surface, scene::Response response);
 
   [[nodiscard]] scene::Wrench wrench() const noexcept override { return state_.wrench; }
-  [[nodiscard]] bool in_contact() const noexcept override { return state_.contact.load.force_n > 0.0; }
-  [[nodiscard]] int region_count() const noexcept override { return in_contact() ? 1 : 0; }
+  [[nodiscard]] bool in_contact() const noexcept override { return region_count() > 0; }
+  [[nodiscard]] int region_count() const noexcept override {
+    return static_cast<int>(std::ranges::count_if(state_.contacts, &ResponseContact::touches));
+  }
   [[nodiscard]] const SurfaceField& field() const noexcept override { return state_.field; }
-  /// With the traction on the deformed surface: the load's pressure, along the tool's normal.
+  /// With the traction on the deformed surface: the loads' pressure, along the tool's normal. A region's
+  /// number is its tip's.
   [[nodiscard]] scene::InstantRecord record(double time_s, const scene::Pose& tool, double depth_m) const override;
   [[nodiscard]] const scene::Shape& body() const noexcept override { return *model_.body; }
   [[nodiscard]] const scene::Surface& surface() const noexcept override { return model_.surface; }
@@ -29,7 +35,8 @@ class ResponseEngine final : public Engine {
   }
 
   [[nodiscard]] const ResponseModel& model() const noexcept { return model_; }
-  [[nodiscard]] const ResponseContact& contact() const noexcept { return state_.contact; }
+  /// Of the tips.
+  [[nodiscard]] std::span<const ResponseContact> contacts() const noexcept { return state_.contacts; }
 
  private:
   StepStatus force(const scene::Pose& pose) noexcept override;

@@ -2,12 +2,16 @@
 
 #include "fast/realtime/flush_tiny_numbers.h"
 #include "fast/realtime/wide_loops.h"
+#include "fast/response/checked_range.h"
 #include "fast/response/grid_weights.h"
+
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 namespace touchstone::fast {
 namespace {
@@ -17,12 +21,6 @@ using scene::Vec3;
 /// Gauss-Legendre with three points on [0, 1]: exact for the cubic C(p) along the load's way.
 constexpr std::array<double, 3> gauss_x{0.1127016653792583, 0.5, 0.8872983346207417};
 constexpr std::array<double, 3> gauss_weight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-
-/// How the load moves with the force, in the grid's coordinates.
-struct LoadPath {
-  Eigen::Vector2d start;  ///< at no force, in steps
-  Eigen::Vector2d per_n;  ///< steps per newton
-};
 
 double compliance_m_per_n(const ResponseModel& model, const Eigen::Vector2d& place) noexcept {
   return GridWeights(model.response.grid, place).sum<double>([&](int k) { return model.own_compliance[k]; });
@@ -38,12 +36,12 @@ double body_energy_j(const ResponseModel& model, const LoadPath& path, double fo
   return sum * force_n;
 }
 
-LocalContact local_contact(const ResponseModel& model, const GridWeights& weights, double indentation_m) noexcept {
-  if (model.tables.size() == 1) return model.tables.front().at(indentation_m);
+LocalContact local_contact(const TipLaw& tip, const GridWeights& weights, double indentation_m) noexcept {
+  if (tip.tables.size() == 1) return tip.tables.front().at(indentation_m);
   LocalContact out{.widening = 0.0};
   for (int k = 0; k < weights.count; ++k) {
     const auto [point, weight] = weights.terms[static_cast<std::size_t>(k)];
-    const LocalContact one = model.tables[static_cast<std::size_t>(point)].at(indentation_m);
+    const LocalContact one = tip.tables[static_cast<std::size_t>(point)].at(indentation_m);
     out.force_n += weight * one.force_n;
     out.stiffness_n_per_m += weight * one.stiffness_n_per_m;
     out.radius_m += weight * one.radius_m;
@@ -54,9 +52,9 @@ LocalContact local_contact(const ResponseModel& model, const GridWeights& weight
   return out;
 }
 
-double local_energy_j(const ResponseModel& model, const GridWeights& weights, double indentation_m) noexcept {
-  if (model.tables.size() == 1) return model.tables.front().energy_j(indentation_m);
-  return weights.sum<double>([&](int k) { return model.tables[static_cast<std::size_t>(k)].energy_j(indentation_m); });
+double local_energy_j(const TipLaw& tip, const GridWeights& weights, double indentation_m) noexcept {
+  if (tip.tables.size() == 1) return tip.tables.front().energy_j(indentation_m);
+  return weights.sum<double>([&](int k) { return tip.tables[static_cast<std::size_t>(k)].energy_j(indentation_m); });
 }
 
 /// Adds the smooth part of one column, or sets it.
@@ -68,6 +66,17 @@ void add_column(const float* column, float weight, Columns3& out_m) noexcept {
     float* const to = out_m[axis].data();
 #pragma GCC ivdep
     for (std::size_t i = 0; i < count; ++i) to[i] += weight * from[i];
+  }
+}
+
+TOUCHSTONE_WIDE_LOOPS
+void add(const Columns3& columns, Columns3& out_m) noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float* const from = columns[axis].data();
+    float* const to = out_m[axis].data();
+    const std::size_t count = columns[axis].size();
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < count; ++i) to[i] += from[i];
   }
 }
 
@@ -94,16 +103,16 @@ void set(Columns3& columns, std::int32_t i, const Vec3& value) noexcept {
 }
 
 /// Friction of the tick: its part of the load and of the wrench.
-void add_friction(const ResponseModel& model, const scene::Pose& pose, const GridWeights& weights,
-                  const LocalContact& law, const Vec3& sway_m_per_n, ResponseState& state) noexcept {
-  ResponseContact& contact = state.contact;
+void add_friction(const ResponseModel& model, const scene::Pose& pose, ResponseState& state) noexcept {
+  ResponseContact& contact = state.contacts.front();
+  const scene::ToolTip& tip = model.tips.front().tip;
+  const LocalContact& law = contact.law;
   SlipState& slips = *state.slip;
   const Vec3 n = contact.at.normal;
   // It acts as high over the tip's lowest point as the pressure in the mean.
   const double r2_over_a2 = 0.4 + law.flat * (2.0 / 3.0 - 0.4);
-  const double height_m = model.tip.height_m(law.radius_m * std::sqrt(r2_over_a2));
-  const Vec3 arm_m =
-      pose.orientation * model.tip.center_T_m + (height_m - (model.tip.ball() ? model.tip.radius_m : 0.0)) * n;
+  const double height_m = tip.height_m(law.radius_m * std::sqrt(r2_over_a2));
+  const Vec3 arm_m = pose.orientation * tip.center_T_m + (height_m - (tip.ball() ? tip.radius_m : 0.0)) * n;
   const scene::Pose before = slips.before;
   slips.before = pose;
   Eigen::Vector2d step_m = Eigen::Vector2d::Zero();
@@ -111,52 +120,217 @@ void add_friction(const ResponseModel& model, const scene::Pose& pose, const Gri
     const Vec3 arm_before_m = before.orientation * (pose.orientation.conjugate() * arm_m);
     step_m = slips.frame.transpose() * (pose.position_m + arm_m - before.position_m - arm_before_m);
   }
-  const Eigen::Matrix3d C = weights.sum<Eigen::Matrix3d>(
+  const Eigen::Matrix3d C = contact.weights.sum<Eigen::Matrix3d>(
       [&](int k) -> const Eigen::Matrix3d& { return model.shear_compliance[static_cast<std::size_t>(k)]; });
   const Eigen::Matrix2d compliance_m_per_n = slips.frame.transpose() * C * slips.frame;
   const Slip slipped = slip(*model.springs, law, contact.indentation_m, compliance_m_per_n,
-                            law.force_n * (slips.frame.transpose() * sway_m_per_n), step_m, slips);
+                            law.force_n * (slips.frame.transpose() * contact.sway_m_per_n), step_m, slips);
   contact.stretch_m = slips.frame * (slipped.displacement_m + compliance_m_per_n * slipped.force_n);
   contact.friction_n = -(slips.frame * slipped.force_n);
   // Of the two distributions with this moment.
   const Vec3 moment_n = slips.frame * slipped.moment_n_m2 / (law.radius_m * law.radius_m);
   contact.load.punch_shear_n = (moment_n + contact.friction_n / 5.0) / (1.0 / 3.0 - 1.0 / 5.0);
   contact.load.ball_shear_n = -contact.friction_n - contact.load.punch_shear_n;
-  state.wrench.force_n += contact.friction_n;
-  state.wrench.torque_nm += arm_m.cross(contact.friction_n);
+  contact.wrench.force_n += contact.friction_n;
+  contact.wrench.torque_nm += arm_m.cross(contact.friction_n);
 }
 
 /// Points under the tool lie on it. A point belongs to the contact where it is within the contact's radius, with a
 /// little to spare, and the tool is below the free surface there.
-void follow_tool(const ResponseModel& model, const ResponseContact& contact, std::int32_t near_count,
-                 ResponseState& state) noexcept {
+void follow_tool(const ResponseModel& model, const scene::ToolTip& tip, const ResponseContact& contact,
+                 std::span<const std::int32_t> near, SurfaceField& field) noexcept {
   constexpr double rim = 1.15;   // of the radius: finite strain widens the linear contact
   constexpr double slide = 0.2;  // outward, of depth times slope in the middle; chosen, as in reports/response.md
   const Vec3 p0 = contact.at.point_m, n = contact.at.normal;
   const double a_m = contact.load.radius_m;
-  for (std::int32_t k = 0; k < near_count; ++k) {
-    const std::int32_t i = state.near[static_cast<std::size_t>(k)];
+  for (const std::int32_t i : near) {
     if (model.free[static_cast<std::size_t>(i)] == 0.0f) continue;
     const Vec3 d_m = at(model.rest_m, i) - contact.load.center_m;
     const double r_m = (d_m - d_m.dot(n) * n).norm();
     if (r_m > rim * a_m || d_m.dot(n) < -2.0 * a_m) continue;
-    Vec3 u_m = at(state.field.displacement_m, i);
+    Vec3 u_m = at(field.displacement_m, i);
     const Vec3 from_axis_m = at(model.rest_m, i) + u_m - p0;
     Vec3 across_m = from_axis_m - from_axis_m.dot(n) * n;
     const double below_m = -(at(model.rest_m, i) - p0).dot(n);  // of the rest point, under the tangent plane
-    const double inward_m = contact.depth_m - model.tip.height_m(across_m.norm()) - below_m;
+    const double inward_m = contact.depth_m - tip.height_m(across_m.norm()) - below_m;
     if (r_m > a_m && inward_m <= -u_m.dot(n)) continue;
     const double inside = std::max(1.0 - r_m * r_m / (a_m * a_m), 0.0);
     const double radius_m = across_m.norm();
     Vec3 slid_m = Vec3::Zero();
     if (radius_m > 0.0) {
-      slid_m = slide * inward_m * model.tip.slope(std::min(radius_m, 0.9 * model.tip.reach_m())) * inside / radius_m *
-               across_m;
+      slid_m = slide * inward_m * tip.slope(std::min(radius_m, 0.9 * tip.reach_m())) * inside / radius_m * across_m;
     }
-    const double new_inward_m = contact.depth_m - model.tip.height_m((across_m + slid_m).norm()) - below_m;
+    const double new_inward_m = contact.depth_m - tip.height_m((across_m + slid_m).norm()) - below_m;
     u_m += slid_m - (u_m.dot(n) + new_inward_m) * n;
-    set(state.field.displacement_m, i, u_m);
+    set(field.displacement_m, i, u_m);
   }
+}
+
+/// The rest of a tip's approach to the body, before any force.
+void approach(const ResponseModel& model, const TipLaw& tip, ResponseContact& contact) noexcept {
+  const scene::LoadGrid& grid = model.response.grid;
+  contact.path = {grid.place(contact.at.point_m), Eigen::Vector2d::Zero()};
+  const GridWeights& weights = contact.weights = GridWeights(grid, contact.path.start);
+  contact.sway_m_per_n = weights.sum<Vec3>([&](int k) -> Vec3 { return model.sway.col(k); });
+  contact.tilt_per_n = weights.sum<Vec3>([&](int k) -> Vec3 { return model.tilt.col(k); });
+  contact.curvature_per_m =
+      weights.sum<double>([&](int k) { return tip.local[static_cast<std::size_t>(k)].curvature_per_m(); });
+}
+
+/// Force, load shift and the body's compliance at an indentation, which is at most 0 where the tip does not touch.
+void press(const ResponseModel& model, const TipLaw& tip, double indentation_m, ResponseContact& contact) noexcept {
+  contact.indentation_m = indentation_m;
+  contact.law = local_contact(tip, contact.weights, indentation_m);
+  const LocalContact& law = contact.law;
+  if (!(indentation_m > 0.0)) return;
+  // Radius that a ball of the same eccentricity has: of a punch 2 a^2 / (3 D).
+  const double radius_m = tip.tip.ball() ? 1.0 / (1.0 / tip.tip.radius_m + contact.curvature_per_m)
+                                         : 2.0 * law.radius_m * law.radius_m / (3.0 * indentation_m);
+  const scene::LoadGrid& grid = model.response.grid;
+  contact.shift_m_per_n = radius_m * contact.tilt_per_n - contact.sway_m_per_n;
+  contact.path.per_n = {contact.shift_m_per_n.dot(grid.axes.col(0)) / grid.spacing_m[0],
+                        contact.shift_m_per_n.dot(grid.axes.col(1)) / grid.spacing_m[1]};
+  contact.compliance_m_per_n = compliance_m_per_n(model, contact.path.start + law.force_n * contact.path.per_n);
+}
+
+/// Newton's method on the indentation of one tip; the law is convex or nearly so, and D itself is never too small a
+/// start.
+void press_alone(const ResponseModel& model, const TipLaw& tip, double pulled_m, ResponseContact& contact) noexcept {
+  double indentation_m = contact.depth_m;
+  for (int iteration = 0; iteration < 12; ++iteration) {
+    press(model, tip, indentation_m, contact);
+    const double C = contact.compliance_m_per_n;
+    const double open_m = indentation_m + C * contact.law.force_n + pulled_m - contact.depth_m;
+    const double step_m = open_m / (1.0 + C * contact.law.stiffness_n_per_m);
+    indentation_m = std::max(indentation_m - step_m, 1e-3 * indentation_m);
+    if (std::abs(step_m) < 1e-13 * contact.depth_m) break;
+  }
+  contact.indentation_m = indentation_m;
+  contact.law = local_contact(tip, contact.weights, indentation_m);
+}
+
+/// C_ij: how far a unit force of one tip lowers the place of another [m/N].
+double cross_compliance_m_per_n(const ResponseModel& model, const GridWeights& weights, const Vec3& p_m,
+                                const ResponseContact& other) noexcept {
+  constexpr double least_m = 1e-6;
+  double sum = model.half_space.surface_m2_per_n() / std::max((p_m - other.at.point_m).norm(), least_m);
+  for (int j = 0; j < other.weights.count; ++j) {
+    const auto [point, weight] = other.weights.terms[static_cast<std::size_t>(j)];
+    sum += weight * weights.sum<double>([&, at = point](int k) { return model.cross_compliance(k, at); });
+  }
+  return sum;
+}
+
+/// Tips that touch, or nearly, numbered from 0.
+struct Together {
+  static constexpr Eigen::Index most = scene::tips_max;
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1>;
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most, most>;
+  std::array<std::size_t, scene::tips_max> tip{};
+  Eigen::Index count = 0;
+};
+
+/// Newton's method on the indentations of all tips together. A tip that does not touch has its gap as a negative
+/// indentation and no force, so the equations are the same for all. Starts from tips that are pressed in alone.
+void press_together(const ResponseModel& model, const Together& all, double deepest_m, ResponseState& state) noexcept {
+  const auto contact = [&](Eigen::Index i) -> ResponseContact& {
+    return state.contacts[all.tip[static_cast<std::size_t>(i)]];
+  };
+  const Eigen::Index n = all.count;
+  Together::Square C(n, n), slope(n, n);
+  Together::Vector now_m(n), open_m(n), step_m(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    C(i, i) = 0.0;
+    now_m[i] = contact(i).indentation_m;
+    for (Eigen::Index j = 0; j < i; ++j) {
+      C(i, j) = C(j, i) = cross_compliance_m_per_n(model, contact(i).weights, contact(i).at.point_m, contact(j));
+    }
+  }
+  const auto press_all = [&](const Together::Vector& indentation_m) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      press(model, model.tips[all.tip[static_cast<std::size_t>(i)]], indentation_m[i], contact(i));
+    }
+    for (Eigen::Index i = 0; i < n; ++i) {
+      open_m[i] = indentation_m[i] + contact(i).compliance_m_per_n * contact(i).law.force_n - contact(i).depth_m;
+      for (Eigen::Index j = 0; j < n; ++j) open_m[i] += C(i, j) * contact(j).law.force_n;
+    }
+    return open_m.cwiseAbs().maxCoeff();
+  };
+  double off_m = press_all(now_m);
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const double stiffness = contact(j).law.stiffness_n_per_m;
+      slope.col(j) = stiffness * C.col(j);
+      slope(j, j) = 1.0 + contact(j).compliance_m_per_n * stiffness;
+    }
+    step_m = slope.partialPivLu().solve(open_m);
+    const bool last = step_m.cwiseAbs().maxCoeff() < 1e-14 * deepest_m;
+    // A shorter step where a tip comes or goes on the way.
+    double share = 1.0;
+    Together::Vector next_m = now_m - step_m;
+    double next_off_m = press_all(next_m);
+    while (!last && next_off_m > off_m && share > 0.02) {
+      share *= 0.5;
+      next_m = now_m - share * step_m;
+      next_off_m = press_all(next_m);
+    }
+    now_m = next_m;
+    off_m = next_off_m;
+    if (last) break;
+  }
+}
+
+/// How the energy of the body's part changes from place to place at these forces, along the surface [N].
+Vec3 lateral_n(const ResponseModel& model, const ResponseState& state, const ResponseContact& contact) noexcept {
+  constexpr double e = 0.02;  // steps of the grid
+  const scene::LoadGrid& grid = model.response.grid;
+  const double force_n = contact.law.force_n;
+  Eigen::Vector2d slope_j;  // per step
+  for (Eigen::Index axis = 0; axis < 2; ++axis) {
+    LoadPath low = contact.path, high = contact.path;
+    low.start[axis] -= e;
+    high.start[axis] += e;
+    slope_j[axis] = (body_energy_j(model, high, force_n) - body_energy_j(model, low, force_n)) / (2.0 * e);
+    if (state.contacts.size() == 1) continue;
+    const GridWeights below(grid, low.start), above(grid, high.start);
+    for (const ResponseContact& other : state.contacts) {
+      if (&other == &contact || !other.touches()) continue;
+      const Vec3& p_m = contact.at.point_m;
+      slope_j[axis] +=
+          force_n * other.law.force_n *
+          (cross_compliance_m_per_n(model, above, p_m, other) - cross_compliance_m_per_n(model, below, p_m, other)) /
+          (2.0 * e);
+    }
+  }
+  Vec3 sum_n = slope_j[0] / grid.spacing_m[0] * grid.axes.col(0) + slope_j[1] / grid.spacing_m[1] * grid.axes.col(1);
+  for (const ResponseContact& other : state.contacts) {
+    if (&other == &contact || !other.touches()) continue;
+    const Vec3 apart_m = contact.at.point_m - other.at.point_m;
+    const double distance_m = apart_m.norm();
+    sum_n -= force_n * other.law.force_n * model.half_space.surface_m2_per_n() /
+             (distance_m * distance_m * distance_m) * apart_m;
+  }
+  return sum_n - sum_n.dot(contact.at.normal) * contact.at.normal;
+}
+
+/// The wrench of a tip that touches without friction, and its part of the energy.
+void finish_contact(const ResponseModel& model, const TipLaw& tip, const scene::Pose& pose, ResponseContact& contact,
+                    ResponseState& state) noexcept {
+  const double force_n = contact.law.force_n;
+  Vec3 along_n = lateral_n(model, state, contact);
+  // The foot of a ball moves less than its centre over a round body.
+  if (tip.tip.ball()) along_n /= 1.0 + contact.curvature_per_m * (tip.tip.radius_m - contact.depth_m);
+  state.energy_j += local_energy_j(tip, contact.weights, contact.indentation_m) + contact.depth_m * force_n -
+                    contact.indentation_m * force_n - body_energy_j(model, contact.path, force_n);
+  for (const ResponseContact& other : state.contacts) {
+    if (&other == &contact || !other.touches()) continue;
+    state.energy_j -=
+        0.5 * force_n * other.law.force_n * cross_compliance_m_per_n(model, contact.weights, contact.at.point_m, other);
+  }
+  const Vec3 sum_n = force_n * contact.at.normal + along_n;
+  const Vec3 center_m = pose.orientation * tip.tip.center_T_m;
+  const Vec3 arm_m = tip.tip.ball() ? center_m : Vec3(center_m + force_n * contact.shift_m_per_n);
+  contact.wrench = {sum_n, arm_m.cross(sum_n)};
 }
 
 }  // namespace
@@ -168,126 +342,137 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
   scene::Pose pose = given;
   pose.orientation.normalize();
   StepStatus status = StepStatus::ok;
-  ResponseContact& contact = state.contact;
-  contact = {};
   state.wrench = {};
-  contact.at = scene::touch(*model.body, model.tip, pose);
+  state.energy_j = 0.0;
+  double deepest_m = 0.0;
+  for (std::size_t i = 0; i < model.tips.size(); ++i) {
+    ResponseContact& contact = state.contacts[i];
+    contact = {};
+    contact.at = scene::touch(*model.body, model.tips[i].tip, pose);
+    contact.depth_m = contact.at.depth_m;
+    contact.load.center_m = contact.at.point_m;
+    contact.load.normal = contact.at.normal;
+    deepest_m = std::max(deepest_m, contact.depth_m);
+  }
   state.lap(Stage::detection);
-  const Vec3 n = contact.at.normal;
-  contact.depth_m = contact.at.depth_m;
-  contact.load.center_m = contact.at.point_m;
-  contact.load.normal = n;
-  if (!(contact.depth_m > 0.0)) {
-    contact.depth_m = 0.0;
+  if (!(deepest_m > 0.0)) {
+    for (ResponseContact& contact : state.contacts) contact.depth_m = 0.0;
     if (state.slip) *state.slip = {};
     return status;
   }
-  if (contact.at.tilt > scene::tilt_max) status |= StepStatus::tilted;
-  const double deepest_m = model.tip.ball() ? model.tip.radius_m : model.tables.front().largest_indentation_m();
-  if (contact.depth_m > deepest_m) status |= StepStatus::tip_exceeded;
-
-  const scene::LoadGrid& grid = model.response.grid;
-  LoadPath path{grid.place(contact.at.point_m), Eigen::Vector2d::Zero()};
-  const GridWeights weights(grid, path.start);
-  if (!weights.inside) status |= StepStatus::outside_grid;
-  const Vec3 sway = weights.sum<Vec3>([&](int k) -> Vec3 { return model.sway.col(k); });
-  const Vec3 tilt = weights.sum<Vec3>([&](int k) -> Vec3 { return model.tilt.col(k); });
-  const double curvature_per_m =
-      weights.sum<double>([&](int k) { return model.local[static_cast<std::size_t>(k)].curvature_per_m(); });
-
-  // Friction sways the surface down or up, as the load sways it sideways: that of the last tick.
-  const double pulled_m = state.slip ? sway.dot(state.slip->force_n()) : 0.0;
-
-  // Newton's method on the indentation; the law is convex or nearly so, and D itself is never too small a start.
-  double indentation_m = contact.depth_m;
-  LocalContact law;
-  Vec3 shift_m_per_n = Vec3::Zero();
-  for (int iteration = 0; iteration < 12; ++iteration) {
-    law = local_contact(model, weights, indentation_m);
-    // Radius that a ball of the same eccentricity has: of a punch 2 a^2 / (3 D).
-    const double radius_m = model.tip.ball() ? 1.0 / (1.0 / model.tip.radius_m + curvature_per_m)
-                                             : 2.0 * law.radius_m * law.radius_m / (3.0 * indentation_m);
-    shift_m_per_n = radius_m * tilt - sway;
-    path.per_n = {shift_m_per_n.dot(grid.axes.col(0)) / grid.spacing_m[0],
-                  shift_m_per_n.dot(grid.axes.col(1)) / grid.spacing_m[1]};
-    const double C = compliance_m_per_n(model, path.start + law.force_n * path.per_n);
-    const double open_m = indentation_m + C * law.force_n + pulled_m - contact.depth_m;
-    const double step_m = open_m / (1.0 + C * law.stiffness_n_per_m);
-    indentation_m = std::max(indentation_m - step_m, 1e-3 * indentation_m);
-    if (std::abs(step_m) < 1e-13 * contact.depth_m) break;
+  // The body bulges beside a load by less than this share of the depth.
+  constexpr double bulge = 0.25;
+  Together together;
+  for (std::size_t i = 0; i < model.tips.size(); ++i) {
+    ResponseContact& contact = state.contacts[i];
+    if (contact.depth_m <= -bulge * deepest_m) continue;
+    together.tip[static_cast<std::size_t>(together.count++)] = i;
+    approach(model, model.tips[i], contact);
+    // Friction sways the surface down or up, as the load sways it sideways: that of the last tick.
+    const double pulled_m = state.slip ? contact.sway_m_per_n.dot(state.slip->force_n()) : 0.0;
+    if (contact.depth_m > 0.0) {
+      press_alone(model, model.tips[i], pulled_m, contact);
+    } else {
+      press(model, model.tips[i], contact.depth_m, contact);
+    }
   }
-  law = local_contact(model, weights, indentation_m);
-  contact.indentation_m = indentation_m;
-
-  // The lateral part of the same potential: how the body's share changes from place to place at this force.
-  constexpr double e = 0.02;  // steps of the grid
-  Eigen::Vector2d slope_j;    // per step
-  for (Eigen::Index axis = 0; axis < 2; ++axis) {
-    LoadPath low = path, high = path;
-    low.start[axis] -= e;
-    high.start[axis] += e;
-    slope_j[axis] = (body_energy_j(model, high, law.force_n) - body_energy_j(model, low, law.force_n)) / (2.0 * e);
+  if (together.count > 1) {
+    state.lap(Stage::force);
+    press_together(model, together, deepest_m, state);
+    state.lap(Stage::regions);
   }
-  Vec3 lateral_n =
-      slope_j[0] / grid.spacing_m[0] * grid.axes.col(0) + slope_j[1] / grid.spacing_m[1] * grid.axes.col(1);
-  lateral_n -= lateral_n.dot(n) * n;
-  // The foot of a ball moves less than its centre over a round body.
-  if (model.tip.ball()) lateral_n /= 1.0 + curvature_per_m * (model.tip.radius_m - contact.depth_m);
-
-  contact.load = {contact.at.point_m, n, law.force_n, law.radius_m, law.flat, law.widening, law.peaked};
-  contact.energy_j = local_energy_j(model, weights, indentation_m) + contact.depth_m * law.force_n -
-                     indentation_m * law.force_n - body_energy_j(model, path, law.force_n);
-  state.wrench.force_n = law.force_n * n + lateral_n;
-  const Vec3 center_m = pose.orientation * model.tip.center_T_m;
-  const Vec3 arm_m = model.tip.ball() ? center_m : Vec3(center_m + law.force_n * shift_m_per_n);
-  state.wrench.torque_nm = arm_m.cross(state.wrench.force_n);
+  for (ResponseContact& contact : state.contacts) {
+    const LocalContact& law = contact.law;
+    if (!(law.force_n > 0.0)) {
+      contact.depth_m = contact.indentation_m = 0.0;
+      continue;
+    }
+    contact.load = {contact.at.point_m, contact.at.normal, law.force_n, law.radius_m,
+                    law.flat,           law.widening,      law.peaked};
+  }
+  for (std::size_t i = 0; i < model.tips.size(); ++i) {
+    ResponseContact& contact = state.contacts[i];
+    if (!contact.touches()) continue;
+    const TipLaw& tip = model.tips[i];
+    if (contact.at.tilt > scene::tilt_max) status |= StepStatus::tilted;
+    const double high_m = tip.tip.ball() ? tip.tip.radius_m : tip.tables.front().largest_indentation_m();
+    if (contact.depth_m > high_m) status |= StepStatus::tip_exceeded;
+    if (!contact.weights.inside) status |= StepStatus::outside_grid;
+    status |= beyond(contact_range(model, state, contact, tip.tip));
+    finish_contact(model, tip, pose, contact, state);
+  }
   state.lap(Stage::force);
   if (state.slip) {
-    add_friction(model, pose, weights, law, sway, state);
+    add_friction(model, pose, state);
     state.lap(Stage::friction);
   }
-  const Eigen::Vector2d moved = law.force_n * path.per_n;
-  const scene::SurfaceQuery loaded =
-      model.body->query(contact.at.point_m - contact.stretch_m + moved[0] * grid.spacing_m[0] * grid.axes.col(0) +
-                        moved[1] * grid.spacing_m[1] * grid.axes.col(1));
-  contact.load.center_m = loaded.point_m;
-  contact.load.normal = loaded.normal;
+  for (const ResponseContact& contact : state.contacts) {
+    state.wrench.force_n += contact.wrench.force_n;
+    state.wrench.torque_nm += contact.wrench.torque_nm;
+  }
+  const scene::LoadGrid& grid = model.response.grid;
+  for (ResponseContact& contact : state.contacts) {
+    if (!contact.touches()) continue;
+    const Eigen::Vector2d moved = contact.law.force_n * contact.path.per_n;
+    const scene::SurfaceQuery loaded =
+        model.body->query(contact.at.point_m - contact.stretch_m + moved[0] * grid.spacing_m[0] * grid.axes.col(0) +
+                          moved[1] * grid.spacing_m[1] * grid.axes.col(1));
+    contact.load.center_m = loaded.point_m;
+    contact.load.normal = loaded.normal;
+  }
   return status;
 }
 
 void response_shape(const ResponseModel& model, ResponseState& state) noexcept {
   const FlushTinyNumbers flush;
-  const ResponseContact& contact = state.contact;
-  if (!(contact.load.force_n > 0.0)) {
+  Columns3& shape_m = state.field.displacement_m;
+  const std::size_t vertices = shape_m[0].size();
+  const auto near = [&](std::size_t i) {
+    return std::span(state.near).subspan(i * vertices, static_cast<std::size_t>(state.near_count[i]));
+  };
+  bool touches = false;
+  for (std::size_t i = 0; i < state.contacts.size(); ++i) {
+    const ResponseContact& contact = state.contacts[i];
+    if (!contact.touches()) continue;
+    Columns3& out_m = touches ? state.other_m : shape_m;
+    state.near_count[i] =
+        spread_displacements_m(contact.load, model.half_space, model.rest_m, out_m, state.near.data() + i * vertices);
+    for (const std::int32_t v : near(i)) {
+      set(out_m, v, spread_displacement_m(contact.load, model.half_space, at(model.rest_m, v)));
+    }
+    if (touches) add(out_m, shape_m);
+    touches = true;
+  }
+  if (!touches) {
     if (state.deformed) state.field.reset(model.rest_normal);
     state.deformed = false;
     return;
   }
   state.deformed = true;
-  const std::int32_t near_count = spread_displacements_m(contact.load, model.half_space, model.rest_m,
-                                                         state.field.displacement_m, state.near.data());
-  for (std::int32_t k = 0; k < near_count; ++k) {
-    const std::int32_t i = state.near[static_cast<std::size_t>(k)];
-    set(state.field.displacement_m, i, spread_displacement_m(contact.load, model.half_space, at(model.rest_m, i)));
-  }
   const scene::LoadGrid& grid = model.response.grid;
-  // The body carries the load where the tool is.
-  const GridWeights weights(grid, grid.place(contact.load.center_m + contact.stretch_m));
-  const Vec3 lateral_n = state.wrench.force_n - state.wrench.force_n.dot(contact.at.normal) * contact.at.normal;
-  for (int k = 0; k < weights.count; ++k) {
-    const auto [point, weight] = weights.terms[static_cast<std::size_t>(k)];
-    add_column(model.response.smooth_m_per_n.col(point).data(), static_cast<float>(weight * contact.load.force_n),
-               state.field.displacement_m);
-    if (!state.slip) continue;
-    const Eigen::Vector2d along_n = weight * grid.along(point).transpose() * -lateral_n;
-    for (int axis = 0; axis < 2; ++axis) {
-      add_column(model.response.smooth_m_per_n.col(grid.count() + 2 * point + axis).data(),
-                 static_cast<float>(along_n[axis]), state.field.displacement_m);
+  for (const ResponseContact& contact : state.contacts) {
+    if (!contact.touches()) continue;
+    // The body carries the load where the tool is.
+    const GridWeights weights(grid, grid.place(contact.load.center_m + contact.stretch_m));
+    const Vec3& force_n = contact.wrench.force_n;
+    const Vec3 lateral_n = force_n - force_n.dot(contact.at.normal) * contact.at.normal;
+    for (int k = 0; k < weights.count; ++k) {
+      const auto [point, weight] = weights.terms[static_cast<std::size_t>(k)];
+      add_column(model.response.smooth_m_per_n.col(point).data(), static_cast<float>(weight * contact.load.force_n),
+                 shape_m);
+      if (!state.slip) continue;
+      const Eigen::Vector2d along_n = weight * grid.along(point).transpose() * -lateral_n;
+      for (int axis = 0; axis < 2; ++axis) {
+        add_column(model.response.smooth_m_per_n.col(grid.count() + 2 * point + axis).data(),
+                   static_cast<float>(along_n[axis]), shape_m);
+      }
     }
   }
-  hold(model.free, state.field.displacement_m);
+  hold(model.free, shape_m);
   state.lap(Stage::interpolation);
-  follow_tool(model, contact, near_count, state);
+  for (std::size_t i = 0; i < state.contacts.size(); ++i) {
+    if (state.contacts[i].touches()) follow_tool(model, model.tips[i].tip, state.contacts[i], near(i), state.field);
+  }
   state.lap(Stage::local_factor);
   update_normals(model.normals, state.field);
   state.lap(Stage::normals);

@@ -39,6 +39,8 @@ struct HalfSpace {
   explicit HalfSpace(const scene::Material& material);
   double scale_m2_per_n;  ///< 1 / (4 pi G)
   double nu;
+  /// Normal displacement of the surface by a point load, times the distance: (1 - nu^2) / (pi E).
+  [[nodiscard]] double surface_m2_per_n() const noexcept { return 2.0 * (1.0 - nu) * scale_m2_per_n; }
 };
 
 /// At one point, by the closed forms [m].

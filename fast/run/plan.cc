@@ -1,3 +1,4 @@
+#include "fast/response/checked_range.h"
 #include "fast/response/response_engine.h"
 #include "fast/run/make_engine.h"
 #include "fast/run/run.h"
@@ -11,9 +12,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace touchstone::fast {
 namespace {
@@ -21,6 +25,7 @@ namespace {
 /// Measured time of a tick at the deepest instant of the track.
 struct Measured {
   std::array<double, stage_count> stage_us{};  ///< medians
+  StepStatus status = StepStatus::ok;          ///< of all instants
   double step_us = 0.0;
   int regions = 0;
   bool contact = false;
@@ -41,7 +46,7 @@ Measured measure(const scene::Scene& scene, Engine& engine) {
   Measured measured;
   for (const double time_s : times_s) {
     const scene::Pose pose = scene::pose_at(scene.track, time_s);
-    engine.step(pose);
+    measured.status |= engine.step(pose);
     measured.regions = std::max(measured.regions, engine.region_count());
     if (const double here_m = depth.depth_m(pose); here_m > measured.deepest_m) {
       measured.deepest_m = here_m;
@@ -98,6 +103,30 @@ std::string one_region_text(const scene::Tool& tool) {
   return touch + fmt::format("; the tool's mesh has no concavity deeper than {:.2g} mm", dent_m * 1e3);
 }
 
+/// "2 balls of 2.5 and 3 mm radius".
+std::string tips_text(const std::vector<scene::ToolTip>& tips) {
+  if (!tips.front().ball()) return fmt::format("a flat tip of {:.4g} mm radius", tips.front().reach_m() * 1e3);
+  if (tips.size() == 1) return fmt::format("a ball of {:.4g} mm radius", tips.front().radius_m * 1e3);
+  std::string radii;
+  for (std::size_t i = 0; i < tips.size(); ++i) {
+    radii += fmt::format("{}{:.4g}", i == 0 ? "" : i + 1 < tips.size() ? ", " : " and ", tips[i].radius_m * 1e3);
+  }
+  return fmt::format("{} balls of {} mm radius", tips.size(), radii);
+}
+
+/// What the response model was compared with the reference for, and what the track has beyond that.
+std::string checked_text(const std::vector<scene::ToolTip>& tips, StepStatus status) {
+  std::string text = fmt::format(
+      "compared with the reference for depths up to {} of the tip's radius, contacts of a radius up to {} of the "
+      "body's size, {} contact radii and more from an edge",
+      CheckedRange::depth_over_radius, CheckedRange::size_rel, CheckedRange::edge_over_radius);
+  if (tips.size() > 1) text += fmt::format(", {} times the radii and more apart", CheckedRange::apart_over_radii);
+  constexpr auto unchecked = static_cast<std::uint32_t>(StepStatus::depth_unchecked | StepStatus::size_unchecked |
+                                                        StepStatus::edge_unchecked | StepStatus::regions_unchecked);
+  const std::uint32_t beyond = static_cast<std::uint32_t>(status) & unchecked;
+  return beyond == 0 ? text : text + "; THE TRACK GOES BEYOND: " + status_text(beyond);
+}
+
 /// A plan as it is written.
 struct Lines {
   scene::Plan plan;
@@ -122,15 +151,20 @@ scene::Plan response_plan(const scene::Scene& scene) {
   }
   const Measured measured = engine ? measure(scene, *engine) : Measured{};
   const auto cost = [&](std::initializer_list<Stage> stages) { return engine ? measured.cost(stages) : ""; };
-  const scene::ToolTip tip = scene::tool_tip(scene).tip.value();
+  const std::vector<scene::ToolTip> tips = scene::tool_tips(scene).tips;
   const scene::LoadGrid grid = scene::load_grid(scene).grid.value();
   Lines lines;
-  lines.models("contact detection",
-               tip.ball()
-                   ? fmt::format("a ball of {:.4g} mm radius against the exact rest shape", tip.radius_m * 1e3)
-                   : fmt::format("a flat tip of {:.4g} mm radius against the exact rest shape", tip.reach_m() * 1e3),
-               cost({Stage::detection}));
-  lines.leaves_out("several regions", one_region_text(scene.tool));
+  lines.models("contact detection", tips_text(tips) + " against the exact rest shape", cost({Stage::detection}));
+  if (tips.size() > 1) {
+    lines.models("several regions",
+                 fmt::format("{} parts of the tool touch on this track{}; each lowers the body under the others, and "
+                             "their forces are found together",
+                             tips.size(), engine ? fmt::format(", {} at its instants", measured.regions) : ""),
+                 cost({Stage::regions}));
+  } else {
+    lines.leaves_out("several regions",
+                     scene.tool.convex() ? one_region_text(scene.tool) : "one part of the tool touches on this track");
+  }
   lines.models(
       "contact force",
       "of a linear half space under the tool's true surface, tabulated over the depth, times a factor of finite "
@@ -156,6 +190,7 @@ scene::Plan response_plan(const scene::Scene& scene) {
                cost({Stage::interpolation}));
   lines.models("local surface", "points under the tool lie on it", cost({Stage::local_factor}));
   lines.models("normals", "of the deformed surface", cost({Stage::normals}));
+  lines.models("checked range", checked_text(tips, engine ? measured.status : StepStatus::ok));
   if (engine) lines.whole(measured, *engine);
   lines.leaves_out("time dependence", "the force is static; the track's speed does not enter");
   return lines.plan;

@@ -18,6 +18,11 @@ std::string status_text(std::uint32_t status) {
   add(StepStatus::outside_grid, "outside the grid of the response");
   add(StepStatus::tip_exceeded, "deeper than the tool's tip is high");
   add(StepStatus::tilted, "a flat tip that does not lie flat");
+  add(StepStatus::depth_unchecked, "deeper, over the tip's radius, than was compared with the reference");
+  add(StepStatus::size_unchecked, "a larger contact, over the body's size, than was compared with the reference");
+  add(StepStatus::edge_unchecked, "nearer to an edge, over the contact's radius, than was compared with the reference");
+  add(StepStatus::regions_unchecked,
+      "two contacts nearer to each other, over their radii, than were compared with the reference");
   return text.empty() ? "ok" : text;
 }
 

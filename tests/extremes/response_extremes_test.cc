@@ -28,7 +28,7 @@ void expect_sound(const ResponseEngine& engine) {
   EXPECT_TRUE(engine.wrench().force_n.allFinite() && engine.wrench().torque_nm.allFinite());
   EXPECT_TRUE(matrix_of(engine.field().displacement_m).allFinite());
   EXPECT_LT((matrix_of(engine.field().normal).colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-4);
-  const ResponseContact& contact = engine.contact();
+  const ResponseContact& contact = engine.contacts()[0];
   EXPECT_GE((engine.wrench().force_n - contact.friction_n).dot(contact.at.normal), 0.0);
 }
 
@@ -134,7 +134,7 @@ TEST(ResponseExtremes, FrictionOverAllCoefficients) {
         expect_sound(engine);
         if (!engine.in_contact()) continue;
         const scene::RegionRecord region = engine.record(0.0, pose, depth_m).regions.front();
-        const double normal_n = engine.contact().load.force_n;
+        const double normal_n = engine.contacts()[0].load.force_n;
         EXPECT_LE(region.friction_n.norm(), mu * normal_n * (1.0 + 1e-9)) << mu << ' ' << i;
         largest_n = std::max(largest_n, region.friction_n.norm());
       }

@@ -8,6 +8,7 @@
 #include "support/press.h"
 #include "support/shipped_scenes.h"
 #include "support/synthetic_response.h"
+#include "support/two_balls.h"
 
 #include <gtest/gtest.h>
 
@@ -57,7 +58,7 @@ void run_response_without_heap(const scene::Scene& scene) {
     largest_n = std::max(largest_n, state.wrench.force_n.norm());
   }
   EXPECT_GT(largest_n, 100.0);
-  EXPECT_EQ(state.contact.friction_n.norm() > 10.0, scene.contact.friction.has_value());
+  EXPECT_EQ(state.contacts[0].friction_n.norm() > 10.0, scene.contact.friction.has_value());
 }
 
 TEST(NoHeap, BelowAStepOfTheResponseModel) {
@@ -65,6 +66,21 @@ TEST(NoHeap, BelowAStepOfTheResponseModel) {
   run_response_without_heap(scene);
   scene.contact.friction = scene::Friction{.K = 1.0, .beta = 0.75, .mu_D = 0.3};
   run_response_without_heap(scene);
+}
+
+TEST(NoHeap, BelowAStepOfTheResponseModelWithSeveralTips) {
+  const scene::Scene scene = test::two_balls_on_cube();
+  const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
+  const ResponseModel model(scene, surface, test::synthetic_response(scene, surface));
+  ResponseState state(model);
+  int together = 0;
+  for (int i = -20; i < 100; ++i) {
+    const scene::Pose pose = test::both_pressed(2e-5 * i, 1e-5 * i, 0.0, 2e-4 * i);
+    const test::NoHeap guard;
+    (void)response_step(model, pose, state);
+    together += state.contacts[0].touches() && state.contacts[1].touches() ? 1 : 0;
+  }
+  EXPECT_GT(together, 20);
 }
 
 TEST(NoHeap, BelowAStepOnABox) {

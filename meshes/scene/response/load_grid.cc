@@ -29,16 +29,18 @@ std::optional<SurfaceQuery> below(const Shape& body, const Vec3& p_m, const Vec3
 }  // namespace
 
 FoundGrid load_grid(const Scene& scene) {
-  const FoundTip found = tool_tip(scene);
-  if (!found.tip) return {{}, found.why};
+  const FoundTips found = tool_tips(scene);
+  if (!found.why.empty()) return {{}, found.why};
   const auto body = body_shape(scene.body);
   const double size_m = body_size_m(scene.body);
   std::vector<Touch> touches;
   for (const double time_s : looked_at_s(scene)) {
-    const Touch at = touch(*body, *found.tip, pose_at(scene.track, time_s));
-    if (at.depth_m > 0.0) touches.push_back(at);
+    for (const ToolTip& tip : found.tips) {
+      const Touch at = touch(*body, tip, pose_at(scene.track, time_s));
+      if (at.depth_m > 0.0) touches.push_back(at);
+    }
   }
-  if (touches.empty()) return {{}, "the tool never touches the body"};
+  if (touches.empty()) return {{}, "the tool touches the body"};
 
   Vec3 normal = Vec3::Zero(), middle_m = Vec3::Zero();
   for (const Touch& at : touches) normal += at.normal;

@@ -2,7 +2,6 @@
 
 #include "scene/base/hash.h"
 #include "scene/model/body_text.h"
-#include "scene/response/tool_tip.h"
 
 #include <iomanip>
 #include <sstream>
@@ -21,11 +20,7 @@ std::string hash_of(const Matrix& matrix) {
 
 }  // namespace
 
-std::string response_needs(const Scene& scene) {
-  if (!scene.tool.convex()) return "the tool is convex: it has one contact region";
-  if (const FoundTip tip = tool_tip(scene); !tip.tip) return tip.why;
-  return load_grid(scene).why;
-}
+std::string response_needs(const Scene& scene) { return load_grid(scene).why; }
 
 std::string response_identity(const Body& body, const LoadGrid& grid, const Surface& surface, bool friction) {
   std::ostringstream text;

@@ -1,5 +1,9 @@
 #include "scene/response/tool_tip.h"
 
+#include "scene/response/mesh_tips.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -38,12 +42,22 @@ std::vector<double> looked_at_s(const Scene& scene) {
   return times_s;
 }
 
-FoundTip tool_tip(const Scene& scene) {
+FoundTips tool_tips(const Scene& scene) {
   const Tool& tool = scene.tool;
+  if (tool.shape == ToolShape::mesh) {
+    FoundTips found = mesh_tips(scene, looked_at_s(scene));
+    if (!found.why.empty()) return found;
+    if (found.tips.empty()) return {{}, "the tool touches the body"};
+    if (found.tips.size() > tips_max) return {{}, fmt::format("at most {} parts of the tool touch", tips_max)};
+    if (found.tips.size() > 1 && scene.contact.friction) {
+      return {{}, fmt::format("one part of the tool touches where there is friction, and not {}", found.tips.size())};
+    }
+    return found;
+  }
   const Vec3 shift_m = -tool.mass_center_m.value_or(Vec3::Zero());  // of the shape's centre in frame T
-  if (tool.shape == ToolShape::sphere) return {ToolTip{.center_T_m = shift_m, .radius_m = tool.radius_m}, ""};
+  if (tool.shape == ToolShape::sphere) return {{ToolTip{.center_T_m = shift_m, .radius_m = tool.radius_m}}, ""};
   if (tool.shape != ToolShape::capsule && tool.shape != ToolShape::cylinder) {
-    return {{}, "its tool is a ball, or a capsule or cylinder that stands on its end"};
+    return {{}, "its tool is a ball, a capsule or cylinder that stands on its end, or a mesh"};
   }
   const bool capsule = tool.shape == ToolShape::capsule;
   if (!capsule && !(tool.edge_radius_m > 0.0)) return {{}, "a cylinder needs a rounded rim"};
@@ -74,7 +88,7 @@ FoundTip tool_tip(const Scene& scene) {
     const double tilt = std::acos(std::clamp(-(pose.orientation * out).dot(at.normal), -1.0, 1.0));
     if (tilt > (capsule ? capsule_tilt_max : tilt_max)) return {{}, "its tool stands on its end, upright"};
   }
-  return {best, ""};
+  return {{best}, ""};
 }
 
 }  // namespace touchstone::scene

@@ -1,9 +1,9 @@
-// The end of a tool that touches a body, where it is a surface of revolution about the surface's normal.
+// The ends of a tool that touch a body, where they are surfaces of revolution about the surface's normal.
 #pragma once
 
 #include "scene/model/scene.h"
 
-#include <optional>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -40,11 +40,15 @@ inline constexpr double tilt_max = 0.02;
 /// Times of a track at which its contacts are looked at: the recorded instants and the waypoints.
 [[nodiscard]] std::vector<double> looked_at_s(const Scene& scene);
 
-/// The tip that touches the body on the scene's track, or in words why there is none of the kinds above.
-struct FoundTip {
-  std::optional<ToolTip> tip;
+/// Tips at most.
+inline constexpr std::size_t tips_max = 10;
+
+/// The tips that touch the body on the scene's track, or in words why they are not of the kinds above, completing "the
+/// response model needs that ...".
+struct FoundTips {
+  std::vector<ToolTip> tips;  ///< at least one where there is no reason
   std::string why;
 };
-[[nodiscard]] FoundTip tool_tip(const Scene& scene);
+[[nodiscard]] FoundTips tool_tips(const Scene& scene);
 
 }  // namespace touchstone::scene

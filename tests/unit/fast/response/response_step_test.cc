@@ -36,12 +36,12 @@ TEST_F(ResponseStep, WithoutABodyItIsTheHalfSpace) {
   ResponseState state(model);
   for (const double depth_m : {0.0005, 0.002, 0.005}) {
     EXPECT_EQ(response_step(model, test::pressed(depth_m), state), StepStatus::ok);
-    const LocalContact law = model.tables.front().at(depth_m);
-    EXPECT_NEAR(state.contact.indentation_m, depth_m, 1e-15);
+    const LocalContact law = model.tips[0].tables.front().at(depth_m);
+    EXPECT_NEAR(state.contacts[0].indentation_m, depth_m, 1e-15);
     EXPECT_NEAR(state.wrench.force_n.z(), law.force_n, 1e-12 * law.force_n);
     EXPECT_NEAR(state.wrench.force_n.head<2>().norm(), 0.0, 1e-9);
     EXPECT_NEAR(state.wrench.torque_nm.norm(), 0.0, 1e-12);
-    EXPECT_NEAR(state.contact.energy_j, model.tables.front().energy_j(depth_m), 1e-12);
+    EXPECT_NEAR(state.energy_j, model.tips[0].tables.front().energy_j(depth_m), 1e-12);
   }
 }
 
@@ -50,11 +50,11 @@ TEST_F(ResponseStep, IndentationAndTheBodyAreInSeries) {
   ResponseState state(model);
   const double depth_m = 0.004, x_m = 0.003;
   (void)response_step(model, test::pressed(depth_m, x_m), state);
-  const double F = state.contact.load.force_n, moved_m = state.contact.load.center_m.x() - x_m,
-               moved_y_m = state.contact.load.center_m.y(), x = x_m + moved_m;
+  const double F = state.contacts[0].load.force_n, moved_m = state.contacts[0].load.center_m.x() - x_m,
+               moved_y_m = state.contacts[0].load.center_m.y(), x = x_m + moved_m;
   const double C = 2e-5 * (1.0 + 40.0 * x + 900.0 * x * x - 15.0 * moved_y_m);
-  EXPECT_NEAR(state.contact.indentation_m + C * F, depth_m, 1e-9);
-  EXPECT_NEAR(model.tables.front().at(state.contact.indentation_m).force_n, F, 1e-9 * F);
+  EXPECT_NEAR(state.contacts[0].indentation_m + C * F, depth_m, 1e-9);
+  EXPECT_NEAR(model.tips[0].tables.front().at(state.contacts[0].indentation_m).force_n, F, 1e-9 * F);
   // The load moves towards where the surface rises, and against its sway.
   EXPECT_NEAR(moved_m, F * 2e-5 * (0.010 * -60.0 - 0.3), 1e-9);
   EXPECT_NEAR(moved_y_m, F * 2e-5 * (0.010 * 25.0 + 0.2), 1e-9);
@@ -70,7 +70,7 @@ TEST_F(ResponseStep, ForceAndLateralForceHaveOnePotential) {
       scene::Pose pose;
       pose.position_m = center_m;
       (void)response_force(model, pose, state);
-      return state.contact.energy_j;
+      return state.energy_j;
     };
     for (const double depth_m : {0.0008, 0.003, 0.0055}) {
       const scene::Vec3 center_m(0.002, -0.001, 0.06 + radius_m - depth_m);
@@ -130,35 +130,35 @@ TEST_F(ResponseFriction, DragsTheSurfaceAlongUpToTheLimit) {
   const ResponseModel model = this->model();
   ResponseState state(model);
   (void)response_step(model, test::pressed(0.003, -0.004), state);
-  scene::Vec3 last_n = state.contact.friction_n;
+  scene::Vec3 last_n = state.contacts[0].friction_n;
   const double step_m = 2e-5;
   int stuck = 0;
   for (int i = 1; i <= 400; ++i) {
     (void)response_step(model, test::pressed(0.003, -0.004 + i * step_m), state);
     // It grows smoothly, at most as the stuck contact's stiffness allows.
-    const double stiffness = model.springs->shear_ratio() * model.tables.front().at(0.003).stiffness_n_per_m;
-    EXPECT_LT((state.contact.friction_n - last_n).norm(), stiffness * step_m) << i;
-    last_n = state.contact.friction_n;
+    const double stiffness = model.springs->shear_ratio() * model.tips[0].tables.front().at(0.003).stiffness_n_per_m;
+    EXPECT_LT((state.contacts[0].friction_n - last_n).norm(), stiffness * step_m) << i;
+    last_n = state.contacts[0].friction_n;
     stuck += state.slip->sliding ? 0 : 1;
   }
   EXPECT_GT(stuck, 20);
   EXPECT_LT(stuck, 300);
-  const double F = state.contact.load.force_n;
-  EXPECT_NEAR(state.contact.friction_n.x(), -mu * F, 1e-6 * F);
-  EXPECT_NEAR(state.contact.load.shear_n().x(), mu * F, 1e-6 * F);
+  const double F = state.contacts[0].load.force_n;
+  EXPECT_NEAR(state.contacts[0].friction_n.x(), -mu * F, 1e-6 * F);
+  EXPECT_NEAR(state.contacts[0].load.shear_n().x(), mu * F, 1e-6 * F);
   // The point of the surface that it loads is behind the tool by the body's and the contact's displacement.
   const double x_m = 0.004, C_t = 1.5 * 2e-5 * (1.0 + 40.0 * x_m + 900.0 * x_m * x_m);
-  const double local_m = mu * state.contact.indentation_m / model.springs->shear_ratio();
-  EXPECT_NEAR(state.contact.stretch_m.x(), C_t * mu * F + local_m, 0.03 * (C_t * mu * F + local_m));
+  const double local_m = mu * state.contacts[0].indentation_m / model.springs->shear_ratio();
+  EXPECT_NEAR(state.contacts[0].stretch_m.x(), C_t * mu * F + local_m, 0.03 * (C_t * mu * F + local_m));
   // At the height of the pressure's mean, below the ball's centre.
   const double arm_m = -state.wrench.torque_nm.y() / (mu * F);
   EXPECT_GT(arm_m, -0.0098);
   EXPECT_LT(arm_m, -0.0090);
   // The shape follows: the middle of the patch moved along by as much.
   Eigen::Index nearest = 0;
-  (model.surface.points_m.colwise() - state.contact.load.center_m).colwise().norm().minCoeff(&nearest);
-  EXPECT_NEAR(state.field.displacement_m[0][static_cast<std::size_t>(nearest)], state.contact.stretch_m.x(),
-              0.3 * state.contact.stretch_m.x());
+  (model.surface.points_m.colwise() - state.contacts[0].load.center_m).colwise().norm().minCoeff(&nearest);
+  EXPECT_NEAR(state.field.displacement_m[0][static_cast<std::size_t>(nearest)], state.contacts[0].stretch_m.x(),
+              0.3 * state.contacts[0].stretch_m.x());
 }
 
 TEST_F(ResponseFriction, WithoutACoefficientItIsTheFrictionlessContact) {
@@ -173,7 +173,7 @@ TEST_F(ResponseFriction, WithoutACoefficientItIsTheFrictionlessContact) {
     (void)response_step(model, pose, state);
     (void)response_step(frictionless, pose, other);
     EXPECT_EQ(state.wrench.force_n, other.wrench.force_n);
-    EXPECT_EQ(state.contact.load.center_m, other.contact.load.center_m);
+    EXPECT_EQ(state.contacts[0].load.center_m, other.contacts[0].load.center_m);
     // The shape has the columns for the pressure's part along the surface, too.
     const Eigen::Matrix3Xd shape_m = matrix_of(state.field.displacement_m);
     EXPECT_LT((shape_m - matrix_of(other.field.displacement_m)).norm(), 0.05 * shape_m.norm());
@@ -191,7 +191,7 @@ TEST_F(ResponseFriction, ARollingBallDoesNotRub) {
       scene::Pose pose = test::pressed(0.001, 1e-5 * i);
       pose.orientation = Eigen::AngleAxisd(rolls * 1e-5 * i / 0.0098, scene::Vec3::UnitY());
       (void)response_step(model, pose, state);
-      largest = std::max(largest, state.contact.friction_n.norm() / state.contact.load.force_n);
+      largest = std::max(largest, state.contacts[0].friction_n.norm() / state.contacts[0].load.force_n);
     }
     if (rolls == 1.0) {
       EXPECT_LT(largest, 0.1 * mu);
@@ -205,7 +205,7 @@ TEST_F(ResponseFriction, ForgetsWhenItLeaves) {
   const ResponseModel model = this->model();
   ResponseState once(model), again(model);
   for (int i = 0; i < 50; ++i) (void)response_step(model, test::pressed(0.002, 1e-4 * i), again);
-  EXPECT_GT(again.contact.friction_n.norm(), 1.0);
+  EXPECT_GT(again.contacts[0].friction_n.norm(), 1.0);
   (void)response_step(model, test::pressed(-0.001), again);
   EXPECT_EQ(again.wrench.force_n, scene::Vec3::Zero());
   for (ResponseState* state : {&once, &again}) {
@@ -257,7 +257,7 @@ TEST_F(ResponseStep, SaysWhenItDoesNotHold) {
   EXPECT_EQ(state.wrench.force_n, force_n);
   EXPECT_EQ(state.field.displacement_m, shape_m);
   EXPECT_EQ(response_step(model, test::pressed(0.003, 0.02), state), StepStatus::outside_grid);
-  EXPECT_EQ(response_step(model, test::pressed(0.011), state), StepStatus::tip_exceeded);
+  EXPECT_EQ(response_step(model, test::pressed(0.011), state), StepStatus::tip_exceeded | StepStatus::depth_unchecked);
   EXPECT_EQ(response_step(model, test::pressed(-0.001), state), StepStatus::ok);
   EXPECT_EQ(state.wrench.force_n, scene::Vec3::Zero());
   for (const std::vector<float>& column : state.field.displacement_m) {
@@ -268,8 +268,9 @@ TEST_F(ResponseStep, SaysWhenItDoesNotHold) {
 TEST_F(ResponseStep, SaysWhatItNeeds) {
   EXPECT_EQ(scene::response_needs(scene_), "");
   scene::Scene other = scene_;
-  other.tool.shape = scene::ToolShape::mesh;
-  EXPECT_THAT(scene::response_needs(other), HasSubstr("one contact region"));
+  other.tool.shape = scene::ToolShape::box;
+  other.tool.size_m = scene::Vec3(0.02, 0.02, 0.02);
+  EXPECT_THAT(scene::response_needs(other), HasSubstr("its tool is a ball"));
   other = scene_;
   other.tool.shape = scene::ToolShape::capsule;
   other.tool.length_m = 0.02;

@@ -129,7 +129,7 @@ TEST(LoadGrid, SaysWhyThereIsNone) {
   scene.track = {{0.0, test::pressed(0.003, 0.028)}, {1.0, test::pressed(0.003, 0.029)}};
   EXPECT_THAT(load_grid(scene).why, HasSubstr("from the edges"));
   scene.track = {{0.0, test::pressed(-0.003)}, {1.0, test::pressed(-0.002)}};
-  EXPECT_THAT(load_grid(scene).why, HasSubstr("never touches"));
+  EXPECT_THAT(load_grid(scene).why, HasSubstr("the tool touches the body"));
   scene = test::ball_on_cube();
   scene.tool.shape = ToolShape::box;
   scene.tool.size_m = Vec3(0.02, 0.02, 0.02);
