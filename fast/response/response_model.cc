@@ -1,5 +1,6 @@
 #include "fast/response/response_model.h"
 
+#include "scene/response/find_tips.h"
 #include "scene/response/point_load.h"
 
 #include <algorithm>

@@ -7,6 +7,7 @@
 #include "scene/base/error.h"
 #include "scene/base/index.h"
 #include "scene/model/rest_depth.h"
+#include "scene/response/find_tips.h"
 
 #include <fmt/format.h>
 

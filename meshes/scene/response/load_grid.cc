@@ -1,6 +1,6 @@
 #include "scene/response/load_grid.h"
 
-#include "scene/response/tool_tip.h"
+#include "scene/response/find_tips.h"
 
 #include <fmt/format.h>
 

@@ -37,9 +37,6 @@ struct Touch {
 /// The largest tilt at which a disc counts as lying flat [rad].
 inline constexpr double tilt_max = 0.02;
 
-/// Times of a track at which its contacts are looked at: the recorded instants and the waypoints.
-[[nodiscard]] std::vector<double> looked_at_s(const Scene& scene);
-
 /// Tips at most.
 inline constexpr std::size_t tips_max = 10;
 
@@ -49,6 +46,5 @@ struct FoundTips {
   std::vector<ToolTip> tips;  ///< at least one where there is no reason
   std::string why;
 };
-[[nodiscard]] FoundTips tool_tips(const Scene& scene);
 
 }  // namespace touchstone::scene

@@ -1,6 +1,7 @@
 // Balls in the meshes of tools.
 #include "scene/response/mesh_tips.h"
 
+#include "scene/response/find_tips.h"
 #include "scene/response/response.h"
 #include "support/shipped_scenes.h"
 #include "support/two_balls.h"
