@@ -50,7 +50,7 @@ std::vector<double> region_depths_m(const Scene& scene, const scene::Shape& body
 /// A region's centre moves no farther than the tool there, and a little.
 /// @param before  the tool's place at the instant before, or nullptr
 void add_regions(const Scene& scene, const scene::Shape& body, const std::vector<ContactRegion>& regions,
-                 const scene::Pose* before, RegionIds& ids, scene::InstantRecord& record) {
+                 const scene::Pose* before, RegionIds& ids, scene::ReferenceInstant& record) {
   double reach_m = scene.contact.r_th_m;
   if (before) {
     double lever_m = 0.0;
@@ -65,6 +65,7 @@ void add_regions(const Scene& scene, const scene::Shape& body, const std::vector
     const ContactRegion& region = regions[place.region];
     record.regions.push_back({depths_m[place.region], region.force_n, region.torque_nm, region.area_m2, place.id,
                               region.friction_n, scene.contact.friction && region.stuck_share == 0.0});
+    record.region_middles_m.push_back(region.center_m);
   }
   // The tool may dip in between the nodes.
   if (regions.empty() && record.depth_m > 0.0) record.regions.push_back({.depth_m = record.depth_m});
@@ -87,7 +88,6 @@ void fill_records(const Scene& scene, const std::vector<double>& times_s, const 
     record.support_force_n = seen.support_force_n;
     record.displacement_m = shapes[instant];
     add_regions(scene, *body, seen.regions, instant > 0 ? &result.instants.back().tool : nullptr, ids, record);
-    for (const ContactRegion& region : seen.regions) record.region_middles_m.push_back(region.center_m);
     record.residual_penetration_m = seen.node_penetration_m;
     record.between_nodes_penetration_m = seen.between_nodes_penetration_m;
     record.equilibrium_rel = seen.equilibrium_rel;
