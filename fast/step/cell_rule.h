@@ -9,8 +9,8 @@
 namespace touchstone::fast {
 
 /// The largest change_rel that is fine enough: cells are of second order, so the limit is a third of it further away,
-/// 1 % in all.
-inline constexpr double cell_tolerance_rel = 0.0075;
+/// 1.2 % in all.
+inline constexpr double cell_tolerance_rel = 0.009;
 
 /// The fewest points whose load is as good as that, or the most there are. The load is that of a unit law, linear and
 /// cubic, without friction, so that the answer does not depend on constants that are fitted.
