@@ -15,8 +15,9 @@ namespace touchstone::fast {
 
 /// How the tool's cells become points.
 struct CellRule {
-  int points = 48;  ///< fewer cells than these inside are too few; the default is for a device that leaves the track,
-                    ///< see SlidingOverAnEdgeTurnsTheForceGradually
+  /// Fewer cells than these inside are too few. A device leaves the track, so a scene has no fewer than the default,
+  /// see SlidingOverAnEdgeTurnsTheForceGradually.
+  int points = 48;
   int halvings = 0;  ///< of all of them beyond that
   int room = 1024;   ///< halved cells that find_cells() makes in a tick, at most
 };

@@ -51,6 +51,14 @@ double SkeletonEngine::tool_reach_m() const noexcept {
   return reach_m;
 }
 
+void SkeletonEngine::set_constants(const scene::Scene& scene) {
+  const bool other_regions = model_.clusters && model_.clusters->r_th_m != scene.contact.r_th_m;
+  model_.set_constants(scene);
+  if (!other_regions || !model_.cells) return;
+  model_.cells = choose_cells(scene.track, model_);
+  restart();
+}
+
 void SkeletonEngine::restart(int max_regions) {
   state_ = FastState(model_, max_regions);
   restart_hash();

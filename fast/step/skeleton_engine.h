@@ -24,8 +24,9 @@ class SkeletonEngine final : public Engine {
     return model_.memory_bytes() + state_.memory_bytes();
   }
 
-  /// Takes over constants, see FastModel::set_constants(); the state stays as it is.
-  void set_constants(const scene::Scene& scene) { model_.set_constants(scene); }
+  /// Takes over constants, see FastModel::set_constants(); the state stays as it is. With another distance between
+  /// regions the cells are chosen anew, and the engine begins anew.
+  void set_constants(const scene::Scene& scene);
   /// Back to before the first step. @param max_regions as of FastState
   void restart(int max_regions);
   void restart() { restart(model_.max_regions); }

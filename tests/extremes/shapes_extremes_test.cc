@@ -143,6 +143,7 @@ scene::Scene scaled(scene::Scene scene, double s) {
   scene.fast.r_R_m *= s;
   scene.fast.C_r_m *= s;
   scene.fast.s_c_m2 *= s * s;
+  for (scene::Waypoint& waypoint : scene.track) waypoint.pose.position_m *= s;
   return scene;
 }
 

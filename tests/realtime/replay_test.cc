@@ -66,7 +66,7 @@ TEST(Replay, HashSeesEveryPhysicalChange) {
       {"C_r", [](scene::Scene& s) { s.fast.C_r_m *= 1.01; }},
       {"r_R", [](scene::Scene& s) { s.fast.r_R_m *= 1.01; }},
       {"s_c", [](scene::Scene& s) { s.fast.s_c_m2 *= 1.01; }},
-      {"samples", [](scene::Scene& s) { s.fast.tool_samples *= 2; }},
+      {"samples", [](scene::Scene& s) { s.fast.tool_samples /= 2; }},
       {"formulation", [](scene::Scene& s) { s.fast.formulation = Formulation::published; }},
   };
   for (const auto& [name, change] : changes) {

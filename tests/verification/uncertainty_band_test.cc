@@ -28,6 +28,7 @@ class UncertaintyBand : public testing::Test {
   UncertaintyBand()
       : root_(std::filesystem::temp_directory_path() / ("touchstone-band-" + std::to_string(::getpid()))) {
     scene_ = ball_on_ball_scene({{0.0, 0.0702}, {1.0, 0.0662}}, 6, 0.5);
+    scene_.reference = {};
   }
   ~UncertaintyBand() override { std::filesystem::remove_all(root_); }
 
