@@ -76,8 +76,8 @@ class CellScratch {
 };
 
 /// Fills `points` with what lies inside the rest surface of the tool's cells, one point for each at the middle of that
-/// part and with its area. Where too few cells are near the body, all of them are halved, and again, as far as there is
-/// room.
+/// part and with its area. Where too few cells are inside, all that are near the body are halved, and again, as far as
+/// there is room.
 /// @param margin_m what lies outside, but for less than that, are points too, of negative depth
 using FindCells = InsideSummary (*)(const scene::Shape&, const ToolSamples&, const Placement&, const CellRule&,
                                     double margin_m, RegionPoints&, CellScratch&) noexcept;

@@ -8,8 +8,8 @@
 
 namespace touchstone::fast {
 
-/// The largest change_rel that is fine enough: cells are of second order, so the limit is a third of it further away,
-/// 1.2 % in all.
+/// The largest change_rel that is fine enough. Where the load converges with second order, its limit is a third of the
+/// change further away, 1.2 % in all; over edges and corners it may be further.
 inline constexpr double cell_tolerance_rel = 0.009;
 
 /// The fewest points whose load is as good as that, or the most there are. The load is that of a unit law, linear and

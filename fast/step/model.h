@@ -55,8 +55,8 @@ struct FastModel {
   std::unique_ptr<const scene::Shape> body;  ///< rest shape
   Detection detection;
   ToolSamples tool;
-  std::optional<ContactCells>
-      cells;  ///< of the tool, become points: see model_of(); without, its samples are the points
+  /// Parts of the tool's surface that become contact points, see model_of(); without them its samples do.
+  std::optional<ContactCells> cells;
   ContactLaw law;
   std::optional<FrictionLaw> friction;
   std::unique_ptr<const AnchorPoints> anchors;
