@@ -1,5 +1,6 @@
 #include "fast/contact/contact_detection.h"
 
+#include "fast/contact/body_edges.h"
 #include "fast/contact/point_loops.h"
 #include "fast/contact/rest_distance.h"
 #include "scene/base/index.h"
@@ -69,7 +70,7 @@ void set_rises(const Body& body, const WayOut&, const Mat3& R_WT, const Vec3& d,
     // The closest surface may be another side.
     if (-Vec3(points.rest_nx_W[i], points.rest_ny_W[i], points.rest_nz_W[i]).dot(d) > 0.5) continue;
     const Vec3 exit_W_m = points.p_W_m(i) - points.depth_m[i] * d;
-    const Vec3 slope_T = depth_slope_T(R_WT, d, rest_distance(body, exit_W_m).normal);
+    const Vec3 slope_T = depth_slope_T(R_WT, d, rest_distance(body, exit_W_m).normal, grazes_curved);
     const Spread spread_T_m = points.spread_T_m(i);
     points.rise1_m[i] = slope_T.dot(spread_T_m[0]);
     points.rise2_m[i] = slope_T.dot(spread_T_m[1]);
@@ -79,6 +80,22 @@ template <>
 void set_rises(const scene::Box&, const scene::BoxExit& way_out, const Mat3& R_WT, const Vec3& d,
                RegionPoints& points) noexcept {
   set_rises(way_out, R_WT, d, points);
+}
+
+template <class WayOut>
+void set_rises(const scene::Revolution& body, const WayOut&, const Mat3& R_WT, const Vec3& d,
+               RegionPoints& points) noexcept {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
+    const auto [first, second] = nearest_faces(body, points.p_W_m(i) - points.depth_m[i] * d);
+    const Spread spread_T_m = points.spread_T_m(i);
+    const auto rise = [&](const NearFace& face) -> Rise {
+      const Vec3 slope_T = depth_slope_T(R_WT, d, face.normal, grazes_plane);
+      return {slope_T.dot(spread_T_m[0]), slope_T.dot(spread_T_m[1])};
+    };
+    const double against = second.normal.dot(d);
+    const Rise here = rise(first);
+    set_over_edge(here, against < 0.0 ? rise(second) : here, against < 0.0 ? second.above_m / against : 0.0, points, i);
+  }
 }
 
 template <class Body>

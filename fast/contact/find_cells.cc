@@ -1,5 +1,6 @@
 #include "fast/contact/find_cells.h"
 
+#include "fast/contact/body_edges.h"
 #include "fast/contact/cell_batch.h"
 #include "fast/contact/rest_distance.h"
 #include "fast/contact/tool_samples.h"
@@ -81,29 +82,32 @@ void cut(const scene::Revolution& body, const Mat3& R_WT, const PlacedCell& at, 
   }
 }
 
-/// Mean of the rest surface's normal at the closest points of a piece of surface.
+/// Mean of the rest surface's normal at the closest points of a piece of surface, each by its depth.
 template <class Body>
 Vec3 mean_normal(const Body&, const Mat3&, const Vec3&, const RestDistance& rest, const Spread&) noexcept {
   return rest.normal;
 }
 
-/// Of a piece that is nearer to one face in one part and to another in the rest.
+/// Of a piece that is nearer to one face in one part and to another in the rest: the mean of depth times normal, over
+/// the depth of its middle.
 Vec3 mean_normal_at_edge(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
                          const Spread& spread_T_m) noexcept {
   const Vec3 local = p_W - box.center_m(), above_m = local.cwiseAbs() - box.half_m();
   Mat3 normal = Mat3::Zero();
   for (int axis = 0; axis < 3; ++axis) normal(axis, axis) = std::copysign(1.0, local[axis]);
   const Vec3 e1_m = normal * (R_WT * spread_T_m[0]), e2_m = normal * (R_WT * spread_T_m[1]);
-  // Share of the piece that is nearer to face a than to face b.
-  const auto nearer = [&](int a, int b) {
-    const double half_m = std::numbers::sqrt3 * std::hypot(e1_m[a] - e1_m[b], e2_m[a] - e2_m[b]);
-    const double by_m = above_m[a] - above_m[b];
-    return half_m > std::abs(by_m) ? 0.5 + 0.5 * by_m / half_m : (by_m > 0.0 ? 1.0 : (by_m < 0.0 ? 0.0 : 0.5));
+  const auto pair = [&](int a, int b) {
+    return edge_share(above_m[a] - above_m[b], {e1_m[a], e2_m[a]}, {e1_m[b], e2_m[b]});
   };
-  const double xy = nearer(0, 1), yz = nearer(1, 2), zx = nearer(2, 0);
-  const Vec3 share(xy * (1.0 - zx), yz * (1.0 - xy), zx * (1.0 - yz));
-  const double sum = share.sum();
-  return sum > 0.0 ? Vec3(normal * share / sum) : rest.normal;
+  const EdgeShare xy = pair(0, 1), yz = pair(1, 2), zx = pair(2, 0);
+  Vec3 share(xy.share * (1.0 - zx.share), yz.share * (1.0 - xy.share), zx.share * (1.0 - yz.share));
+  const double sum = share.sum(), depth_m = -rest.signed_distance_m;
+  if (!(sum > 0.0) || !(depth_m > 0.0)) return rest.normal;
+  share /= sum;
+  Vec3 depths_m = -share.cwiseProduct(above_m);
+  depths_m += (1.0 - share.z()) * Vec3(-xy.a_m, xy.b_m, 0.0) + (1.0 - share.x()) * Vec3(0.0, -yz.a_m, yz.b_m) +
+              (1.0 - share.y()) * Vec3(zx.b_m, 0.0, -zx.a_m);
+  return normal * depths_m.cwiseMax(0.0) / depth_m;
 }
 
 Vec3 mean_normal(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
@@ -115,6 +119,20 @@ Vec3 mean_normal(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const
   const double second_m = (x_m + y_m) + z_m - std::max(std::max(x_m, y_m), z_m);
   if (second_m * second_m > 6.0 * (spread_T_m[0].squaredNorm() + spread_T_m[1].squaredNorm())) return rest.normal;
   return mean_normal_at_edge(box, R_WT, p_W, rest, spread_T_m);
+}
+
+Vec3 mean_normal(const scene::Revolution& body, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
+                 const Spread& spread_T_m) noexcept {
+  const auto [a, b] = nearest_faces(body, p_W);
+  const double by_m = a.above_m - b.above_m, depth_m = -rest.signed_distance_m;
+  // No change of two heights is larger than twice the spread.
+  if (by_m * by_m > 12.0 * (spread_T_m[0].squaredNorm() + spread_T_m[1].squaredNorm()) || !(depth_m > 0.0))
+    return rest.normal;
+  const Vec3 e1_m = R_WT * spread_T_m[0], e2_m = R_WT * spread_T_m[1];
+  const EdgeShare edge =
+      edge_share(by_m, {a.normal.dot(e1_m), a.normal.dot(e2_m)}, {b.normal.dot(e1_m), b.normal.dot(e2_m)});
+  const double a_m = -edge.share * a.above_m - edge.a_m, b_m = -(1.0 - edge.share) * b.above_m + edge.b_m;
+  return (std::max(0.0, a_m) * a.normal + std::max(0.0, b_m) * b.normal) / depth_m;
 }
 
 /// Where a direction's error moves the line through a far mass centre by more than this share of the contact's radius
@@ -130,19 +148,20 @@ void steady_direction(const ToolSamples& tool, const Mat3& R_WT, const RegionPoi
   if (tool.mean_curvature_per_m.empty() || points.count == 0) return;
   const double mean = inside.normal_sum.norm() / inside.weight_sum;
   const double differ = std::sqrt(std::max(0.0, 1.0 - mean * mean)), far_m = points.p_T_m(0).norm();
-  if (!(differ * far_m > 0.0)) return;
+  const auto count = static_cast<std::size_t>(points.count);
   double area_m2 = 0.0;
+  for (std::size_t i = 0; i < count; ++i) area_m2 += points.depth_m[i] > 0.0 ? points.area_m2[i] : 0.0;
+  const double lever = differ * far_m / std::sqrt(area_m2 / std::numbers::pi);
+  if (!(lever > lever_from)) return;
   Vec3 sum_T = Vec3::Zero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const double depth_m = points.depth_m[i];
     if (!(depth_m > 0.0)) continue;
     const Vec3 n_T(points.nx_T[i], points.ny_T[i], points.nz_T[i]);
     const Vec3 n_W(points.rest_nx_W[i], points.rest_ny_W[i], points.rest_nz_W[i]);
-    area_m2 += points.area_m2[i];
     sum_T += points.area_m2[i] * depth_m *
              (n_W.dot(R_WT * n_T) - depth_m * nth(tool.mean_curvature_per_m, points.sample[i])) * n_T;
   }
-  const double lever = differ * far_m / std::sqrt(area_m2 / std::numbers::pi);
   const double x = std::clamp((lever - lever_from) / (lever_to - lever_from), 0.0, 1.0);
   inside.normal_sum += x * x * (3.0 - 2.0 * x) * (R_WT * sum_T - inside.normal_sum);
 }
@@ -208,8 +227,8 @@ class CellFinder {
         const PlacedCell& here = *parts[k].at;
         switch (parts[k].kind) {
           case CellPart::Kind::inside:
-            put(here.p_W, here.cell->center_T_m, *here.cell, here.cell->area_m2, here.rest, here.cell->spread_m,
-                here.cell);
+            put(here.p_W, here.cell->center_T_m, here.cell->normal_T, here.cell->sample, here.cell->area_m2, here.rest,
+                here.cell->spread_m, here.cell->turn, here.cell);
             break;
           case CellPart::Kind::rim:
             put_rim(parts[k], rim++);
@@ -296,16 +315,17 @@ class CellFinder {
 
   /// A cell's spread in two vectors, of which one is level and the other shows how the surface rises.
   struct Slope {
-    double rise_m;  ///< over the tangent plane of the rest surface, along `up_m`
+    double rise_m;    ///< over the tangent plane of the rest surface, along `up_m`
+    double up1, up2;  ///< `up_m` is up1 and up2 times the cell's two
     Vec3 up_m, level_m;
   };
   [[nodiscard]] static Slope slope(const PlacedCell& here) noexcept {
     const Spread& spread_m = here.cell->spread_m;
     const double rise1_m = here.normal_T.dot(spread_m[0]), rise2_m = here.normal_T.dot(spread_m[1]);
     const double rise_m = std::sqrt(rise1_m * rise1_m + rise2_m * rise2_m);
-    if (!(rise_m > 0.0)) return {0.0, spread_m[0], spread_m[1]};
-    return {rise_m, (rise1_m * spread_m[0] + rise2_m * spread_m[1]) / rise_m,
-            (rise1_m * spread_m[1] - rise2_m * spread_m[0]) / rise_m};
+    if (!(rise_m > 0.0)) return {0.0, 1.0, 0.0, spread_m[0], spread_m[1]};
+    const double up1 = rise1_m / rise_m, up2 = rise2_m / rise_m;
+    return {rise_m, up1, up2, up1 * spread_m[0] + up2 * spread_m[1], up1 * spread_m[1] - up2 * spread_m[0]};
   }
 
   [[nodiscard]] static double lowest_of_group_m(const PlacedCell& here, const Slope& slope) noexcept {
@@ -398,19 +418,25 @@ class CellFinder {
     // A curved surface may pass beneath the middle of the part under its tangent plane.
     const RestDistance rest{std::min(batch_.distance_m[lane], -std::numeric_limits<double>::min()),
                             Vec3(batch_.nx[lane], batch_.ny[lane], batch_.nz[lane])};
-    put(Vec3(batch_.x_m[lane], batch_.y_m[lane], batch_.z_m[lane]), cell.center_T_m + part.off_m, cell,
-        part.share * cell.area_m2, rest, {part.share * slope.up_m, slope.level_m}, nullptr);
+    const Vec3 area_m2 = part_area_m2(cell, part.share, part.off_m);
+    const double projected_m2 = area_m2.norm();
+    put(Vec3(batch_.x_m[lane], batch_.y_m[lane], batch_.z_m[lane]), cell.center_T_m + part.off_m,
+        projected_m2 > 0.0 ? Vec3(area_m2 / projected_m2) : cell.normal_T, cell.sample, projected_m2, rest,
+        {part.share * slope.up_m, slope.level_m},
+        {part.share * (slope.up1 * cell.turn[0] + slope.up2 * cell.turn[1]),
+         slope.up1 * cell.turn[1] - slope.up2 * cell.turn[0]},
+        nullptr);
     if (part.share < 1.0)
       put_outside(here, -part.share / (1.0 - part.share) * part.off_m, (1.0 - part.share) * cell.area_m2);
   }
 
   /// @param whole  the cell, if all of it is the point
-  void put(const Vec3& p_W, const Vec3& p_T, const SurfaceCell& cell, double area_m2, const RestDistance& rest,
-           const Spread& spread_m, const SurfaceCell* whole) noexcept {
+  void put(const Vec3& p_W, const Vec3& p_T, const Vec3& normal_T, std::int32_t sample, double area_m2,
+           const RestDistance& rest, const Spread& spread_m, const Turn& turn, const SurfaceCell* whole) noexcept {
     summary_.add(mean_normal(body_, at_.R_WT, p_W, rest, spread_m), -rest.signed_distance_m, area_m2);
     if (points_.count == points_.capacity) return;
-    points_.set(points_.count, p_W, p_T, cell.normal_T, area_m2, rest.signed_distance_m, cell.sample);
-    points_.set_spread(points_.count++, rest.normal, spread_m, whole);
+    points_.set(points_.count, p_W, p_T, normal_T, area_m2, rest.signed_distance_m, sample);
+    points_.set_spread(points_.count++, rest.normal, spread_m, turn, whole);
   }
 
   void put_outside(const PlacedCell& here, const Vec3& off_m, double area_m2) noexcept {
@@ -420,7 +446,7 @@ class CellFinder {
     if (!(rest.signed_distance_m < margin_m_)) return;
     points_.set(points_.count, p_W, here.cell->center_T_m + off_m, here.cell->normal_T, area_m2,
                 std::max(0.0, rest.signed_distance_m), here.cell->sample);
-    points_.set_spread(points_.count++, rest.normal, here.cell->spread_m, nullptr);
+    points_.set_spread(points_.count++, rest.normal, here.cell->spread_m, here.cell->turn, nullptr);
   }
 
   const Body& body_;

@@ -21,19 +21,21 @@ struct Numbers {
 };
 TOUCHSTONE_INLINE Numbers numbers(const Vec3& v) noexcept { return {v.x(), v.y(), v.z()}; }
 
-/// The rises of one point, from the normal of the plane that d leads to.
+/// Of one point, from the normal of the plane that d leads to.
 struct Rises {
-  explicit Rises(const Mat3& R_WT, const Vec3& direction) noexcept : R(R_WT), d(numbers(direction)) {}
-  TOUCHSTONE_INLINE void set(double nx, double ny, double nz, const RegionPoints& p, std::size_t i) const noexcept {
-    const double against = smaller(nx * d.x + ny * d.y + nz * d.z, -0.3);
+  Rises(const Mat3& R_WT, const Vec3& direction, double least_cosine) noexcept
+      : R(R_WT), d(numbers(direction)), least(least_cosine) {}
+  TOUCHSTONE_INLINE Rise of(double nx, double ny, double nz, const RegionPoints& p, std::size_t i) const noexcept {
+    const double against = smaller(nx * d.x + ny * d.y + nz * d.z, -least);
     const double x = nx / against, y = ny / against, z = nz / against;
     const double sx = R(0, 0) * x + R(1, 0) * y + R(2, 0) * z, sy = R(0, 1) * x + R(1, 1) * y + R(2, 1) * z,
                  sz = R(0, 2) * x + R(1, 2) * y + R(2, 2) * z;
-    p.rise1_m[i] = sx * p.e1x_T_m[i] + sy * p.e1y_T_m[i] + sz * p.e1z_T_m[i];
-    p.rise2_m[i] = sx * p.e2x_T_m[i] + sy * p.e2y_T_m[i] + sz * p.e2z_T_m[i];
+    return {sx * p.e1x_T_m[i] + sy * p.e1y_T_m[i] + sz * p.e1z_T_m[i],
+            sx * p.e2x_T_m[i] + sy * p.e2y_T_m[i] + sz * p.e2z_T_m[i]};
   }
   Mat3 R;
   Numbers d;
+  double least;
 };
 
 }  // namespace
@@ -82,21 +84,27 @@ void set_depths(const scene::EllipsoidExit& way_out_m, RegionPoints& p) noexcept
 
 TOUCHSTONE_WIDE_LOOPS
 void set_rises(const Mat3& R_WT, const Vec3& d, RegionPoints& p) noexcept {
-  const Rises rises(R_WT, d);
+  const Rises rises(R_WT, d, grazes_curved);
   const auto count = static_cast<std::size_t>(p.count);
 #pragma GCC ivdep
-  for (std::size_t i = 0; i < count; ++i) rises.set(p.rest_nx_W[i], p.rest_ny_W[i], p.rest_nz_W[i], p, i);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Rise rise = rises.of(p.rest_nx_W[i], p.rest_ny_W[i], p.rest_nz_W[i], p, i);
+    p.rise1_m[i] = rise.along1_m;
+    p.rise2_m[i] = rise.along2_m;
+  }
 }
 
 TOUCHSTONE_WIDE_LOOPS
 void set_rises(const scene::BoxExit& given, const Mat3& R_WT, const Vec3& d, RegionPoints& p) noexcept {
-  const Rises rises(R_WT, d);
+  const Rises rises(R_WT, d, grazes_plane);
   const scene::BoxExit way_out = given;
   const auto count = static_cast<std::size_t>(p.count);
 #pragma GCC ivdep
   for (std::size_t i = 0; i < count; ++i) {
-    const scene::BoxExit::Face face = way_out.face(p.x_W_m[i], p.y_W_m[i], p.z_W_m[i]);
-    rises.set(face.nx, face.ny, face.nz, p, i);
+    const scene::BoxExit::TwoFaces met = way_out.two_faces(p.x_W_m[i], p.y_W_m[i], p.z_W_m[i]);
+    const Rise first = rises.of(met.first.nx, met.first.ny, met.first.nz, p, i),
+               second = rises.of(met.second.nx, met.second.ny, met.second.nz, p, i);
+    set_over_edge(first, second, met.between_m, p, i);
   }
 }
 
@@ -129,6 +137,9 @@ bool reaches_limit(double limit_m, const RegionPoints& points) noexcept {
   return beyond;
 }
 
+/// Below it, the first terms of the normal's change say little.
+constexpr double least_cosine = 0.3;
+
 TOUCHSTONE_WIDE_LOOPS
 void set_shares(const Vec3& d_T, RegionPoints& p) noexcept {
   const Numbers d = numbers(d_T);
@@ -151,8 +162,13 @@ void set_shares(const Vec3& d_T, RegionPoints& p) noexcept {
     const double inverse_per_m2 = 1.0 / (near ? 1.0 : r2_m2);
     const double across_m2 = 3.0 * (along1_m2 * along1_m2 + along2_m2 * along2_m2) * inverse_per_m2 - variance_m2;
     const double over_m = area_m2 * std::sqrt(inverse_per_m2) * (1.0 + 0.5 * across_m2 * inverse_per_m2);
+    // Where more of the part is seen along d, it counts more; a part seen from its edge has no such place.
+    const double cosine = larger(p.cos_theta[i], least_cosine);
     const double shift_m = (p.rise1_m[i] * along1_m2 + p.rise2_m[i] * along2_m2) /
-                           larger(larger(r2_m2, variance_m2), std::numeric_limits<double>::min());
+                               larger(larger(r2_m2, variance_m2), std::numeric_limits<double>::min()) -
+                           (p.rise1_m[i] * (p.t1x_T[i] * d.x + p.t1y_T[i] * d.y + p.t1z_T[i] * d.z) +
+                            p.rise2_m[i] * (p.t2x_T[i] * d.x + p.t2y_T[i] * d.y + p.t2z_T[i] * d.z)) /
+                               cosine;
     const bool covers = area_m2 > 0.0;
     const double depth_m = p.depth_m[i];
     p.share[i] = covers ? (near ? near_the_line : over_m) : 0.0;

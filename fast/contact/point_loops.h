@@ -26,15 +26,38 @@ void set_depths(const scene::EllipsoidExit& way_out_m, RegionPoints& points) noe
 
 /// How the depth changes along a way in the tool's surface, which d leads from to a tangent plane of the rest surface.
 /// @param exit_normal of that plane, outward
+/// @param least_cosine a way that grazes a surface more ends soon
 [[nodiscard]] inline scene::Vec3 depth_slope_T(const scene::Mat3& R_WT, const scene::Vec3& d,
-                                               const scene::Vec3& exit_normal) noexcept {
-  // A way that grazes the surface ends soon.
-  return R_WT.transpose() * (exit_normal / std::min(exit_normal.dot(d), -0.3));
+                                               const scene::Vec3& exit_normal, double least_cosine) noexcept {
+  return R_WT.transpose() * (exit_normal / std::min(exit_normal.dot(d), -least_cosine));
 }
+/// Of a surface that curves away, and of planes that meet at an edge.
+inline constexpr double grazes_curved = 0.3, grazes_plane = 0.02;
+
+/// How the depth changes along the two vectors of a point's spread.
+struct Rise {
+  double along1_m, along2_m;
+};
+/// Sets the rises of a piece from whose middle d leads to one face, and lowers its depth if d leads from a part of it
+/// to a second one: to the mean over the piece. That is so if the ways to both differ by less than they change over it.
+/// @param between_m  from the first one's plane to the second one's, along d. Over the piece it is taken to vary
+/// evenly.
+TOUCHSTONE_INLINE void set_over_edge(const Rise& first, const Rise& second, double between_m, RegionPoints& p,
+                                     std::size_t i) noexcept {
+  const double change1_m = first.along1_m - second.along1_m, change2_m = first.along2_m - second.along2_m;
+  const double most_m = std::sqrt(3.0 * (change1_m * change1_m + change2_m * change2_m)), over_m = most_m - between_m;
+  const double share = over_m > 0.0 ? 0.5 * over_m / most_m : 0.0;
+  const double depth_m = p.depth_m[i] - (over_m > 0.0 ? 0.5 * over_m * share : 0.0);
+  p.depth_m[i] = depth_m > 0.0 ? depth_m : 0.0;
+  p.rise1_m[i] = first.along1_m - share * change1_m;
+  p.rise2_m[i] = first.along2_m - share * change2_m;
+}
+
 /// Sets how the depths change along the two vectors of the points' spread, where d leads to the plane of the closest
 /// point.
 void set_rises(const scene::Mat3& R_WT, const scene::Vec3& d, RegionPoints& points) noexcept;
-/// The same where it leads to a face of the box.
+/// The same where it leads to a face of the box. Over its edges it also lowers the depths of pieces from whose parts d
+/// leads to different faces, to the mean over the piece.
 void set_rises(const scene::BoxExit& way_out, const scene::Mat3& R_WT, const scene::Vec3& d,
                RegionPoints& points) noexcept;
 
@@ -45,7 +68,7 @@ void set_rises(const scene::BoxExit& way_out, const scene::Mat3& R_WT, const sce
 /// series.
 inline constexpr double near_the_line = -1.0;
 /// Sets every share to the integral of 1 / r over the point's part of the surface, or to near_the_line, and takes from
-/// the depth what its change over that part and that of 1 / r make together.
+/// the depth what its change over that part makes together with that of 1 / r and of the normal.
 void set_shares(const scene::Vec3& d_T, RegionPoints& points) noexcept;
 
 /// F_i and d_i of the points [begin, begin + count). @tparam spread RegionPoints::spread

@@ -10,19 +10,20 @@
 namespace touchstone::fast {
 namespace {
 
-constexpr int columns = 24;  // of doubles
+constexpr int columns = 30;  // of doubles
 
 /// Columns that lie a power of two apart would share a few lines of the cache.
 std::size_t stride(std::size_t capacity) noexcept { return (capacity / 8 | 1) * 8 + 16; }
 
-constexpr std::size_t of_a_sample = 11, of_a_piece = 20;
+constexpr std::size_t of_a_sample = 11, of_a_piece = 26;
 
 /// First those that detection fills for every point, then those that it fills for a piece of surface.
 std::array<double**, columns> columns_of(RegionPoints& p) noexcept {
-  return {&p.x_W_m,     &p.y_W_m,     &p.z_W_m,     &p.x_T_m,   &p.y_T_m,     &p.z_T_m,   &p.nx_T,
+  return {&p.x_W_m,     &p.y_W_m,     &p.z_W_m,     &p.x_T_m,     &p.y_T_m,   &p.z_T_m,   &p.nx_T,
           &p.ny_T,      &p.nz_T,      &p.area_m2,   &p.depth_m,  //
-          &p.rest_nx_W, &p.rest_ny_W, &p.rest_nz_W, &p.e1x_T_m, &p.e1y_T_m,   &p.e1z_T_m, &p.e2x_T_m,
-          &p.e2y_T_m,   &p.e2z_T_m,   &p.rise1_m,   &p.rise2_m, &p.cos_theta, &p.share};
+          &p.rest_nx_W, &p.rest_ny_W, &p.rest_nz_W, &p.e1x_T_m,   &p.e1y_T_m, &p.e1z_T_m, &p.e2x_T_m,
+          &p.e2y_T_m,   &p.e2z_T_m,   &p.t1x_T,     &p.t1y_T,     &p.t1z_T,   &p.t2x_T,   &p.t2y_T,
+          &p.t2z_T,     &p.rise1_m,   &p.rise2_m,   &p.cos_theta, &p.share};
 }
 
 }  // namespace
@@ -33,7 +34,8 @@ void RegionPoints::move(int from, int to) noexcept {
     column[k] = column[i];
   sample[k] = sample[i];
   if (!spread) return;
-  for (double* column : {rest_nx_W, rest_ny_W, rest_nz_W, e1x_T_m, e1y_T_m, e1z_T_m, e2x_T_m, e2y_T_m, e2z_T_m})
+  for (double* column : {rest_nx_W, rest_ny_W, rest_nz_W, e1x_T_m, e1y_T_m, e1z_T_m, e2x_T_m, e2y_T_m, e2z_T_m, t1x_T,
+                         t1y_T, t1z_T, t2x_T, t2y_T, t2z_T})
     column[k] = column[i];
   cell[k] = cell[i];
 }

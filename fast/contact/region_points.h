@@ -32,6 +32,8 @@ struct RegionPoints {
   double* cos_theta = nullptr;                                        ///< n_i . d, >= 0
   double *e1x_T_m = nullptr, *e1y_T_m = nullptr, *e1z_T_m = nullptr;  ///< Spread of A_i, first vector; of cells
   double *e2x_T_m = nullptr, *e2y_T_m = nullptr, *e2z_T_m = nullptr;  ///< second
+  double *t1x_T = nullptr, *t1y_T = nullptr, *t1z_T = nullptr;        ///< Turn of n_i along the first
+  double *t2x_T = nullptr, *t2y_T = nullptr, *t2z_T = nullptr;        ///< along the second
   double* depth_m = nullptr;                      ///< d_i, along d from the rest surface; as found: to it
   double *rise1_m = nullptr, *rise2_m = nullptr;  ///< of the depth along the two vectors; where `spread`
   double* share = nullptr;                        ///< m_i / m
@@ -55,7 +57,7 @@ struct RegionPoints {
     rest_nz_W[k] = rest_normal_W.z();
   }
   /// More of a piece of surface. @param whole  the cell, if all of it is the point
-  void set_spread(int k, const scene::Vec3& rest_normal_W, const Spread& spread_T_m,
+  void set_spread(int k, const scene::Vec3& rest_normal_W, const Spread& spread_T_m, const Turn& turn_T,
                   const SurfaceCell* whole) noexcept {
     set_rest_normal(k, rest_normal_W);
     cell[k] = whole;
@@ -65,6 +67,12 @@ struct RegionPoints {
     e2x_T_m[k] = spread_T_m[1].x();
     e2y_T_m[k] = spread_T_m[1].y();
     e2z_T_m[k] = spread_T_m[1].z();
+    t1x_T[k] = turn_T[0].x();
+    t1y_T[k] = turn_T[0].y();
+    t1z_T[k] = turn_T[0].z();
+    t2x_T[k] = turn_T[1].x();
+    t2y_T[k] = turn_T[1].y();
+    t2z_T[k] = turn_T[1].z();
   }
   /// Fills place k as detection does. @param distance_m signed, to the rest surface
   void set(int k, const scene::Vec3& at_W_m, const scene::Vec3& at_T_m, const scene::Vec3& normal_T, double part_m2,

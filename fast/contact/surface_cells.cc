@@ -19,9 +19,9 @@ Vec3 turned(const Band& band, const Vector2d& rz_m, const Vector2d& azimuth) noe
 
 double sinc(double x) noexcept { return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x; }
 
-/// Integrals of r, r^2 and r z along the meridian's part, by its length.
+/// Integrals of r, r^2, r z and r n_r along the meridian's part, by its length.
 struct MeridianMoments {
-  double r_m2, r2_m3, rz_m3;
+  double r_m2, r2_m3, rz_m3, r_out_m2;
 };
 
 MeridianMoments meridian_moments(const Band& band) noexcept {
@@ -29,13 +29,15 @@ MeridianMoments meridian_moments(const Band& band) noexcept {
   const double r0 = band.start_m.x(), z0 = band.start_m.y(), r1 = band.end_m.x(), z1 = band.end_m.y();
   Vector2d middle = 0.5 * (band.start_m + band.end_m);
   double length_m = (band.end_m - band.start_m).norm();
+  const Vector2d normal = (band.start_normal + band.end_normal).normalized();
   if (band.arc_radius_m > 0.0) {
-    middle = band.arc_center_m + band.arc_radius_m * (band.start_normal + band.end_normal).normalized();
+    middle = band.arc_center_m + band.arc_radius_m * normal;
     length_m = band.arc_radius_m * band.arc_angle;
   }
   const double r = middle.x(), z = middle.y(), part_m = length_m / 6.0;
   return {part_m * (r0 + 4.0 * r + r1), part_m * (r0 * r0 + 4.0 * r * r + r1 * r1),
-          part_m * (r0 * z0 + 4.0 * r * z + r1 * z1)};
+          part_m * (r0 * z0 + 4.0 * r * z + r1 * z1),
+          part_m * (r0 * band.start_normal.x() + 4.0 * r * normal.x() + r1 * band.end_normal.x())};
 }
 
 /// Integral of r along the meridian's part: exact.
@@ -158,11 +160,14 @@ SurfaceCell band_cell(const Band& band) noexcept {
   cell.band = band;
   cell.curved = true;
   const MeridianMoments moments = meridian_moments(band);
-  cell.area_m2 = band.turn * area_per_turn_m2(band, moments);
   const Vector2d azimuth = (band.start_azimuth + band.end_azimuth).normalized();
   const double r_m = moments.r2_m3 / moments.r_m2 * sinc(0.5 * band.turn), z_m = moments.rz_m3 / moments.r_m2;
   cell.center_T_m = turned(band, {r_m, z_m}, azimuth);
-  const Vector2d normal = (band.start_normal + band.end_normal).normalized();
+  // The integral of the normal: r n_z ds is -r dr.
+  const double out_m2 = moments.r_out_m2 * band.turn * sinc(0.5 * band.turn),
+               up_m2 = 0.5 * band.turn * (band.start_m.x() * band.start_m.x() - band.end_m.x() * band.end_m.x());
+  cell.area_m2 = std::sqrt(out_m2 * out_m2 + up_m2 * up_m2);
+  const Vector2d normal = Vector2d(out_m2, up_m2) / cell.area_m2;
   cell.normal_T = Vec3(normal.x() * azimuth.x(), normal.x() * azimuth.y(), normal.y());
   cell.corner_m = {turned(band, band.start_m, band.start_azimuth), turned(band, band.start_m, band.end_azimuth),
                    turned(band, band.end_m, band.end_azimuth), turned(band, band.end_m, band.start_azimuth)};
@@ -177,7 +182,30 @@ SurfaceCell band_cell(const Band& band) noexcept {
   cell.polygon_m2 = polygon.area_m2;
   cell.polygon_center_m = polygon.center_m;
   cell.spread_m = quadrilateral_spread(cell.corner_m);
+  // Curvatures along the meridian and around the axis.
+  const Vec3 along(-normal.y() * azimuth.x(), -normal.y() * azimuth.y(), normal.x()),
+      around(-azimuth.y(), azimuth.x(), 0.0);
+  const double along_per_m = band.arc_radius_m > 0.0 ? 1.0 / band.arc_radius_m : 0.0, around_per_m = normal.x() / r_m;
+  for (std::size_t k = 0; k < 2; ++k)
+    cell.turn[k] =
+        along_per_m * along.dot(cell.spread_m[k]) * along + around_per_m * around.dot(cell.spread_m[k]) * around;
   return cell;
+}
+
+double band_area_m2(const Band& band) noexcept { return band.turn * area_per_turn_m2(band, meridian_moments(band)); }
+
+Vec3 part_area_m2(const SurfaceCell& cell, double share, const Vec3& off_m) noexcept {
+  Vec3 normal = cell.normal_T;
+  if (cell.curved || cell.group >= 0) {
+    // off_m in the two vectors of the spread.
+    const Vec3 &a = cell.spread_m[0], &b = cell.spread_m[1];
+    const double aa = a.squaredNorm(), ab = a.dot(b), bb = b.squaredNorm(), det = aa * bb - ab * ab;
+    if (det > 1e-9 * aa * bb) {
+      const double oa = off_m.dot(a), ob = off_m.dot(b);
+      normal += ((oa * bb - ob * ab) * cell.turn[0] + (ob * aa - oa * ab) * cell.turn[1]) / det;
+    }
+  }
+  return share * cell.area_m2 * normal;
 }
 
 Outline outline(const SurfaceCell& cell) noexcept {
@@ -215,16 +243,23 @@ SurfaceCell CellGroups::around(std::span<const std::int32_t> triangles) const {
   const double surface_m2 = cell.area_m2;
   cell.area_m2 = normal_sum.norm();
   cell.normal_T = normal_sum.normalized();
-  scene::Mat3 second_m2 = scene::Mat3::Zero();
+  scene::Mat3 second_m2 = scene::Mat3::Zero(), normal_by_place_m = scene::Mat3::Zero();
   for (const std::int32_t i : triangles) {
     const SurfaceCell part = flat_cell(nth(triangles_T_m, i));
     const Vec3 off_m = part.center_T_m - cell.center_T_m;
+    normal_by_place_m += part.area_m2 / cell.area_m2 * part.normal_T * off_m.transpose();
     second_m2 += part.area_m2 / surface_m2 *
                  (off_m * off_m.transpose() + part.spread_m[0] * part.spread_m[0].transpose() +
                   part.spread_m[1] * part.spread_m[1].transpose());
   }
   cell.spread_m = spread_of(second_m2);
   const Eigen::SelfAdjointEigenSolver<scene::Mat3> axes(second_m2);
+  // The normal's linear change that has the same moment.
+  for (Eigen::Index k = 1; k < 3; ++k) {
+    const Vec3 axis = axes.eigenvectors().col(k), change_m = normal_by_place_m * axis;
+    if (!(axes.eigenvalues()[k] > 0.0)) continue;
+    for (std::size_t j = 0; j < 2; ++j) cell.turn[j] += axis.dot(cell.spread_m[j]) / axes.eigenvalues()[k] * change_m;
+  }
   const Vec3 u = axes.eigenvectors().col(2), v = cell.normal_T.cross(u).normalized(), w = u.cross(v);
   Vec3 half_m = Vec3::Zero();
   for (const std::int32_t i : triangles) {

@@ -30,14 +30,17 @@ struct Band {
 /// How a surface is spread about its middle: the mean of x x^T over it is the sum of a a^T over these two vectors, x
 /// from the middle.
 using Spread = std::array<scene::Vec3, 2>;
+/// How the normal changes along each of those, to first order.
+using Turn = std::array<scene::Vec3, 2>;
 
 /// Frame T. A cell that is too far away asks for the first line of the cache only, one that is wholly inside for two.
 struct alignas(64) SurfaceCell {
   scene::Vec3 center_T_m;  ///< mean of its surface, so a little below a curved one
-  scene::Vec3 normal_T;    ///< outward, mean
-  double area_m2 = 0.0;    ///< of triangles that look different ways: projected along their normal_T
+  scene::Vec3 normal_T;    ///< outward, mean over its surface
+  double area_m2 = 0.0;    ///< projected along normal_T, so that a direction sees the whole cell's projection
   double radius_m = 0.0;   ///< about the centre, of a ball with all of it
   Spread spread_m;
+  Turn turn{scene::Vec3::Zero(), scene::Vec3::Zero()};
   std::int32_t sample = 0;              ///< of ToolSamples, whose cell this is or was cut from
   std::int32_t group = -1;              ///< of CellGroups: neighbouring triangles of a fine mesh
   std::int8_t corners = 4;              ///< 3 or 4
@@ -53,6 +56,13 @@ struct alignas(64) SurfaceCell {
 /// Flat cell. @param corners_T_m three or four, counterclockwise from outside
 [[nodiscard]] SurfaceCell flat_cell(std::span<const scene::Vec3> corners_T_m) noexcept;
 [[nodiscard]] SurfaceCell band_cell(const Band& band) noexcept;
+/// Of the surface itself.
+[[nodiscard]] double band_area_m2(const Band& band) noexcept;
+
+/// A part of a cell as a vector: its outward normal times its area, projected along that normal. The normal changes
+/// linearly over the cell, so that parts sum up to the whole. @param share of the cell's area
+/// @param off_m  from the cell's centre to the middle of the part
+[[nodiscard]] scene::Vec3 part_area_m2(const SurfaceCell& cell, double share, const scene::Vec3& off_m) noexcept;
 
 /// A cell's border, but of a group, as a polygon that follows wide arcs closely, in order.
 struct Outline {

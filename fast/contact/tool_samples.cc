@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace touchstone::fast {
@@ -76,11 +77,12 @@ struct Cloud {
   std::vector<Vec3> points_m, normals;
   std::vector<double> area_m2;
   std::vector<SurfaceCell> cells;
+  std::vector<double> mean_curvature_per_m;  ///< as in ToolSamples
   CellGroups groups;
   void add(const Vec3& point_m, const Vec3& normal, const SurfaceCell& cell) {
     points_m.push_back(point_m);
     normals.push_back(normal);
-    area_m2.push_back(cell.area_m2);
+    area_m2.push_back(cell.curved ? band_area_m2(cell.band) : cell.area_m2);
     cells.push_back(cell);
   }
 };
@@ -91,6 +93,7 @@ ToolSamples in_tree_order(Cloud&& cloud, double surface_m2) {
   for (const std::int32_t i : builder.order()) {
     if (!cloud.cells.empty()) samples.cell.push_back(nth(cloud.cells, i));
     if (!cloud.cells.empty()) samples.cell.back().sample = static_cast<std::int32_t>(samples.cell.size()) - 1;
+    if (!cloud.mean_curvature_per_m.empty()) samples.mean_curvature_per_m.push_back(nth(cloud.mean_curvature_per_m, i));
     const Vec3 &p = nth(cloud.points_m, i), &n = nth(cloud.normals, i);
     samples.x_T_m.push_back(p.x());
     samples.y_T_m.push_back(p.y());
@@ -219,6 +222,43 @@ ToolSamples sample_revolution(const scene::Revolution& tool, int count) {
   return in_tree_order(std::move(cloud), tool.area_m2());
 }
 
+/// Facets that meet at a wider angle are an edge of the tool, not a curved surface [rad].
+constexpr double widest_facet_angle = 0.5;
+
+/// Mean curvature of each triangle of a convex mesh, the turn at its sides spread over it; empty if the mesh has edges.
+std::vector<double> mean_curvatures_per_m(const scene::TriangleMesh& mesh) {
+  const std::size_t count = mesh.triangles.size();
+  struct Side {
+    std::int32_t from, to;
+    std::size_t triangle;
+  };
+  std::vector<Side> sides;
+  std::vector<SurfaceCell> flat;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& corner = mesh.triangles[i];
+    flat.push_back(flat_cell(
+        std::array<Vec3, 3>{mesh.points_m.col(corner[0]), mesh.points_m.col(corner[1]), mesh.points_m.col(corner[2])}));
+    for (std::size_t k = 0; k < 3; ++k)
+      sides.push_back({std::min(corner[k], corner[(k + 1) % 3]), std::max(corner[k], corner[(k + 1) % 3]), i});
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.from, a.to, a.triangle) < std::tie(b.from, b.to, b.triangle);
+  });
+  std::vector<double> curvature_per_m(count, 0.0);
+  // The mesh is closed: each side has two triangles.
+  for (std::size_t k = 0; k + 1 < sides.size(); k += 2) {
+    const Side &one = sides[k], &other = sides[k + 1];
+    const Vec3 &n1 = flat[one.triangle].normal_T, &n2 = flat[other.triangle].normal_T;
+    const double angle = std::atan2(n1.cross(n2).norm(), n1.dot(n2));
+    if (angle > widest_facet_angle) return {};
+    const double length_m = (mesh.points_m.col(one.from) - mesh.points_m.col(one.to)).norm();
+    for (const std::size_t triangle : {one.triangle, other.triangle}) {
+      if (flat[triangle].area_m2 > 0.0) curvature_per_m[triangle] += 0.25 * angle * length_m / flat[triangle].area_m2;
+    }
+  }
+  return curvature_per_m;
+}
+
 /// @param halvings_left  an end whatever the numbers are; a tool's largest triangle needs 20 for the most samples
 void halve_until(double limit_m2, const SurfaceCell& triangle, Cloud& cloud, int halvings_left = 24) {
   if (!(triangle.area_m2 > limit_m2) || halvings_left == 0) {
@@ -278,6 +318,11 @@ class Grouping {
       }
       coarse_.add(fine_.points_m[nearest], normal_sum.normalized(), coarse_.groups.cell(tree_of(begin, end)));
       coarse_.area_m2.back() = area_m2;
+      if (fine_.mean_curvature_per_m.empty()) return;
+      double sum_m = 0.0;
+      for (std::size_t k = begin; k < end; ++k)
+        sum_m += fine_.area_m2[order_[k]] * fine_.mean_curvature_per_m[order_[k]];
+      coarse_.mean_curvature_per_m.push_back(sum_m / area_m2);
       return;
     }
     const auto first = order_.begin();
@@ -342,11 +387,15 @@ ToolSamples sample_mesh(const scene::TriangleMesh& mesh, int count, bool even) {
   const double surface_m2 = mesh.area_m2(), limit_m2 = surface_m2 / count;
   constexpr double parts_per_sample = 8.0;
   Cloud cloud;
-  for (const auto& triangle : mesh.triangles)
+  const std::vector<double> curvature_per_m = mesh.convex ? mean_curvatures_per_m(mesh) : std::vector<double>();
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& triangle = mesh.triangles[i];
     halve_until(even && mesh.convex ? limit_m2 / parts_per_sample : limit_m2,
                 flat_cell(std::array<Vec3, 3>{mesh.points_m.col(triangle[0]), mesh.points_m.col(triangle[1]),
                                               mesh.points_m.col(triangle[2])}),
                 cloud);
+    if (!curvature_per_m.empty()) cloud.mean_curvature_per_m.resize(cloud.points_m.size(), curvature_per_m[i]);
+  }
   if (cloud.points_m.size() > 2 * static_cast<std::size_t>(count))
     cloud = Grouping(cloud, limit_m2, mesh.convex).take();
   return in_tree_order(std::move(cloud), surface_m2);

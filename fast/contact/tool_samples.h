@@ -33,7 +33,8 @@ struct ToolSamples {
   std::vector<double> area_m2;    ///< A_i; sums to the surface
   std::vector<SurfaceCell> cell;  ///< of each sample, together the surface; only of cell_tool()
   CellGroups groups;              ///< of a fine mesh
-  /// Of each cell, half the sum of both curvatures of a tool without edges: a ball or capsule. Otherwise empty.
+  /// Of each cell, half the sum of both curvatures of a tool without edges: a ball, a capsule, or a convex mesh whose
+  /// neighbouring facets turn by little. Otherwise empty.
   std::vector<double> mean_curvature_per_m;
   double spacing_m = 0.0;        ///< sqrt(surface / count)
   std::vector<SampleBall> tree;  ///< root first

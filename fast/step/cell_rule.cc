@@ -10,7 +10,9 @@
 namespace touchstone::fast {
 namespace {
 
-constexpr std::array points_tried{CellRule{}.points, 64, 96, 128, 192, 256, 384, 512};
+constexpr std::array points_tried{CellRule{}.points, 64, 96, 128, 192, 256, 384, 512, 768, 1024};
+/// The load of so many, each in quarters, is taken for the limit.
+constexpr int points_of_limit = 512;
 /// Poses of the track, evenly spaced in time, and those in contact that are then looked at, at most.
 constexpr int poses_tried = 64;
 constexpr std::size_t poses_kept = 8;
@@ -97,14 +99,14 @@ std::vector<scene::Pose> poses_in_contact(const std::vector<scene::Waypoint>& tr
   return kept;
 }
 
-double change_rel(const std::vector<Load>& coarse, const std::vector<Load>& fine) {
+double error_rel(const std::vector<Load>& loads, const std::vector<Load>& limit) {
   double most_m = 0.0, most_m3 = 0.0, most = 0.0;
-  for (const Load& load : fine) {
+  for (const Load& load : limit) {
     most_m = std::max(most_m, load.linear_m);
     most_m3 = std::max(most_m3, load.cubic_m3);
   }
-  for (std::size_t i = 0; i < fine.size(); ++i) {
-    const Load &a = coarse[i], &b = fine[i];
+  for (std::size_t i = 0; i < limit.size(); ++i) {
+    const Load &a = loads[i], &b = limit[i];
     const double floor_m = std::max(b.linear_m, small_load_rel * most_m),
                  floor_m3 = std::max(b.cubic_m3, small_load_rel * most_m3);
     if (floor_m > 0.0) most = std::max(most, std::abs(a.linear_m - b.linear_m) / floor_m);
@@ -121,10 +123,11 @@ ContactCells choose_cells(const std::vector<scene::Waypoint>& track, FastModel& 
   const std::vector<scene::Pose> poses = poses_in_contact(track, softened);
   ContactCells chosen{rule_of(points_tried[0], 0), 0.0};
   if (poses.empty()) return chosen;
+  const std::vector<Load> limit = softened.loads(rule_of(points_of_limit, 2), poses);
   for (const int points : points_tried) {
     chosen.rule = rule_of(points, 0);
-    chosen.change_rel = change_rel(softened.loads(chosen.rule, poses), softened.loads(rule_of(points, 2), poses));
-    if (chosen.change_rel <= cell_tolerance_rel) break;
+    chosen.error_rel = error_rel(softened.loads(chosen.rule, poses), limit);
+    if (chosen.error_rel <= cell_tolerance_rel) break;
   }
   return chosen;
 }

@@ -27,9 +27,9 @@ namespace touchstone::fast {
 /// Cells of a scene's contact.
 struct ContactCells {
   CellRule rule;
-  /// Largest change of the load by cells of a quarter of the size, over the track, relative to the load or, where that
-  /// is less, a fifth of the track's largest; 0 where that is not known.
-  double change_rel = 0.0;
+  /// How far the load is from its limit of ever smaller cells, at most over the track, relative to that limit or, where
+  /// that is less, a fifth of the track's largest; 0 where that is not known.
+  double error_rel = 0.0;
 };
 
 /// The stages in which the published and the corrected formulation differ, chosen when the model is built.

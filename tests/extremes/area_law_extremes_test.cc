@@ -47,6 +47,7 @@ TEST(AreaLawExtremes, LengthsOverThreeDecades) {
       scene.body.size_m *= factor;
       scene.tool.radius_m *= factor;
       for (double* length_m : {&scene.contact.r_th_m, &scene.fast.r_R_m, &scene.fast.C_r_m}) *length_m *= factor;
+      for (scene::Waypoint& at : scene.track) at.pose.position_m *= factor;
       scene::Pose pose = test::pressed(0.00307);
       pose.position_m *= factor;
       EXPECT_NEAR(force_n(with_area_law(scene), pose) / usual_n, factor * factor, 1e-9 * factor * factor) << factor;

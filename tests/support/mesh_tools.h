@@ -7,7 +7,7 @@
 
 #include <memory>
 
-namespace touchstone::reference {
+namespace touchstone::test {
 
 inline Eigen::Quaterniond turned(double angle, const scene::Vec3& axis) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized()));
@@ -35,4 +35,4 @@ inline scene::Tool mesh_tool(const scene::Shape& shape, int triangles) {
   return tool;
 }
 
-}  // namespace touchstone::reference
+}  // namespace touchstone::test

@@ -18,6 +18,10 @@
 namespace touchstone::reference {
 namespace {
 
+using test::mesh_of;
+using test::mesh_tool;
+using test::turned;
+
 using scene::ToolShape;
 using scene::Vec3;
 

@@ -31,10 +31,20 @@ class BoxExit {
   struct Face {
     double nx, ny, nz;
   };
-  [[nodiscard]] TOUCHSTONE_INLINE Face face(double x_m, double y_m, double z_m) const noexcept {
+  /// The face that is met, and the one that would be met next.
+  struct TwoFaces {
+    Face first, second;
+    double between_m;  ///< way from the first one's plane to the second one's
+  };
+  [[nodiscard]] TOUCHSTONE_INLINE TwoFaces two_faces(double x_m, double y_m, double z_m) const noexcept {
     const Ways way = ways_m(x_m, y_m, z_m);
-    const bool x = (way.x <= way.y) & (way.x <= way.z), y = !x & (way.y <= way.z);
-    return {x ? sign_.x() : 0.0, y ? sign_.y() : 0.0, (x | y) ? 0.0 : sign_.z()};
+    const bool x = (way.x <= way.y) & (way.x <= way.z), y = !x & (way.y <= way.z), z = !(x | y);
+    const bool x2 = !x & (y ? way.x <= way.z : way.x <= way.y), y2 = !y & !x2 & (x ? way.y <= way.z : true),
+               z2 = !(x2 | y2);
+    const double first_m = x ? way.x : (y ? way.y : way.z), second_m = x2 ? way.x : (y2 ? way.y : way.z);
+    return {{x ? sign_.x() : 0.0, y ? sign_.y() : 0.0, z ? sign_.z() : 0.0},
+            {x2 ? sign_.x() : 0.0, y2 ? sign_.y() : 0.0, z2 ? sign_.z() : 0.0},
+            second_m - first_m};
   }
 
  private:

@@ -16,6 +16,8 @@
 namespace touchstone::compare {
 namespace {
 
+using test::mesh_tool;
+
 using scene::Vec3;
 using testing::set_force;
 using testing::Sides;
@@ -104,7 +106,7 @@ TEST(Errors, EveryRegionHasALocalRadiusOfItsOwn) {
 TEST(Errors, AMeshToolTouchesWhereItsShapeDoes) {
   Sides sides = testing::pressed(3, 2000);
   const Errors exact = errors_of(sides);
-  sides.scene.tool = reference::mesh_tool(scene::Sphere(Vec3::Zero(), sides.scene.tool.radius_m), 5120);
+  sides.scene.tool = mesh_tool(scene::Sphere(Vec3::Zero(), sides.scene.tool.radius_m), 5120);
   const Errors e = errors_of(sides);
   ASSERT_GT(exact.instants[2].penetration_fast_m, 0.0);
   EXPECT_NEAR(e.instants[2].penetration_fast_m / exact.instants[2].penetration_fast_m, 1.0, 0.05);

@@ -1,11 +1,12 @@
 #include "fast/contact/surface_cells.h"
 
+#include "fast/contact/point_loops.h"
 #include "fast/contact/tool_samples.h"
 #include "fast/step/cell_rule.h"
 #include "fast/step/stages.h"
 #include "fast/step/step.h"
-#include "scene/shape/surface.h"
 #include "support/press.h"
+#include "support/tools.h"
 
 #include <gtest/gtest.h>
 
@@ -13,47 +14,15 @@
 #include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
 
 namespace touchstone::fast {
 namespace {
 
 using scene::Vec3;
 
-struct NamedTool {
-  std::string name;
-  scene::Tool tool;
-  std::shared_ptr<const scene::Shape> shape;  ///< of a mesh, what it was made from
-};
-void PrintTo(const NamedTool& tool, std::ostream* out) { *out << tool.name; }
-
-/// Tools whose smallest radius is about this.
-std::vector<NamedTool> tools(double radius_m) {
-  scene::Tool capsule, cylinder, box, mesh, fine;
-  capsule.shape = scene::ToolShape::capsule;
-  cylinder.shape = scene::ToolShape::cylinder;
-  box.shape = scene::ToolShape::box;
-  capsule.radius_m = cylinder.radius_m = radius_m;
-  capsule.length_m = cylinder.length_m = 3.0 * radius_m;
-  box.size_m = radius_m * Vec3(2.0, 1.4, 3.0);
-  const auto egg = std::make_shared<scene::Ellipsoid>(Vec3::Zero(), radius_m * Vec3(1.0, 0.7, 1.5));
-  const auto of = [&](int triangles) {
-    const scene::Surface surface = scene::tessellate(*egg, triangles);
-    auto made = std::make_shared<scene::TriangleMesh>();
-    made->points_m = surface.points_m;
-    made->triangles = surface.triangles;
-    made->convex = true;
-    return made;
-  };
-  mesh.shape = fine.shape = scene::ToolShape::mesh;
-  mesh.mesh = of(500);
-  fine.mesh = of(10000);
-  return {{"Sphere", test::ball(radius_m), nullptr},
-          {"Capsule", capsule, nullptr},
-          {"Cylinder", cylinder, nullptr},
-          {"Box", box, nullptr},
-          {"Mesh", mesh, egg},
-          {"FineMesh", fine, egg}};
-}
+using test::NamedTool;
+using test::tools;
 
 class CellsOf : public testing::TestWithParam<NamedTool> {};
 
@@ -71,11 +40,7 @@ TEST_P(CellsOf, AreTheSurfaceHoweverOftenTheyAreHalved) {
       for (const SurfaceCell& part : parts) {
         const auto two = halves(part, samples.groups);
         const Vec3 both_m2 = two[0].area_m2 * two[0].normal_T + two[1].area_m2 * two[1].normal_T;
-        if (part.group >= 0) {
-          EXPECT_LT((both_m2 - part.area_m2 * part.normal_T).norm(), 1e-12 * part.area_m2);
-        } else {
-          EXPECT_NEAR(two[0].area_m2 + two[1].area_m2, part.area_m2, 2e-3 * part.area_m2);
-        }
+        EXPECT_LT((both_m2 - part.area_m2 * part.normal_T).norm(), (part.curved ? 1e-3 : 1e-12) * part.area_m2);
         for (const SurfaceCell& half : two) {
           EXPECT_EQ(half.sample, static_cast<int>(i));
           EXPECT_LE((half.center_T_m - part.center_T_m).norm(), part.radius_m);
@@ -90,8 +55,8 @@ TEST_P(CellsOf, AreTheSurfaceHoweverOftenTheyAreHalved) {
       projected_m2 += part.area_m2 * part.normal_T;
     }
   }
-  // A group that six halvings have not taken apart is seen from the way it looks.
-  EXPECT_NEAR(area_m2, sampled_m2, (groups ? 1e-5 : 1e-9) * sampled_m2);
+  // A small cell is almost flat.
+  EXPECT_NEAR(area_m2, sampled_m2, (groups ? 1e-5 : 1e-3) * sampled_m2);
   EXPECT_LT(projected_m2.norm(), 1e-6 * sampled_m2) << "a closed surface";
 }
 INSTANTIATE_TEST_SUITE_P(Tools, CellsOf, testing::ValuesIn(tools(0.01)),
@@ -124,6 +89,69 @@ TEST(CellsOfABall, AreCutWhereItsSurfaceIsNotAtTheirChords) {
     const double area_m2 = std::numbers::pi * depth_m * (2.0 * scene.tool.radius_m - depth_m);
     EXPECT_NEAR(state.regions[0].extent.area_m2, area_m2, 4e-3 * area_m2) << depth_m;
   }
+}
+
+/// The area of a part, and where it looks, follow from those of the whole cell.
+TEST_P(CellsOf, HalvesHaveTheAreaOfPartsOfTheWhole) {
+  const ToolSamples samples = cell_tool(GetParam().tool, 300);
+  for (const SurfaceCell& whole : samples.cell) {
+    for (const SurfaceCell& half : halves(whole, samples.groups)) {
+      const Vec3 half_m2 = half.area_m2 * half.normal_T;
+      // A fine mesh's triangles are not a smooth surface.
+      if (whole.group >= 0 && half.group < 0) continue;
+      const Vec3 part_m2 =
+          part_area_m2(whole, half_m2.dot(whole.normal_T) / whole.area_m2, half.center_T_m - whole.center_T_m);
+      EXPECT_LT((part_m2 - half_m2).norm(), (whole.group >= 0 ? 0.05 : 0.01) * half.area_m2);
+    }
+  }
+}
+
+/// d leads from a part of a piece of surface to one face of the box and from the rest to another: the depth is the mean
+/// over the piece.
+TEST(PiecesOverAnEdge, HaveTheMeanDepth) {
+  const scene::Box box(Vec3::Zero(), Vec3::Constant(0.06));
+  const Vec3 d = Vec3(-0.8, 0.1, -0.6).normalized();
+  const scene::BoxExit way_out = box.exit_along(-d);
+  const Vec3 along_m(0.001, 0.0004, -0.0012), across_m(0.0003, 0.0015, 0.0);
+  PointStore store(1);
+  for (const double x_m : {0.0265, 0.0275, 0.0285, 0.029, 0.0293}) {
+    const Vec3 middle_m(x_m, 0.0, 0.0284);
+    RegionPoints points = store.window();
+    points.count = 1;
+    points.set(0, middle_m, middle_m, Vec3::UnitX(), 1e-6, -0.001, 0);
+    points.set_spread(0, Vec3::UnitX(), {along_m / std::sqrt(12.0), across_m / std::sqrt(12.0)},
+                      {Vec3::Zero(), Vec3::Zero()}, nullptr);
+    set_depths(way_out, points);
+    set_rises(way_out, scene::Mat3::Identity(), d, points);
+    double sum_m = 0.0;
+    constexpr int steps = 200;
+    for (int i = 0; i < steps; ++i) {
+      for (int k = 0; k < steps; ++k)
+        sum_m += way_out(middle_m + ((i + 0.5) / steps - 0.5) * along_m + ((k + 0.5) / steps - 0.5) * across_m);
+    }
+    // The ways' difference is not quite evenly spread over a parallelogram.
+    EXPECT_NEAR(points.depth_m[0], sum_m / (steps * steps), 1.5e-5) << x_m;
+  }
+}
+
+/// Where a tool touches the edge of a body, few cells tell the direction and the force of many.
+TEST(PiecesOverAnEdge, GiveTheDirectionOfManySmallOnes) {
+  scene::Scene scene = test::ball_on_cube();
+  scene.tool.shape = scene::ToolShape::box;
+  scene.tool.size_m = Vec3(0.018, 0.0126, 0.027);
+  scene.contact.k3_n_per_m3 = 0.0;
+  const auto press = [&](const CellRule& rule) {
+    FastModel model(scene);
+    model.cells->rule = rule;
+    FastState state(model);
+    for (const double depth_m : {0.0001, 0.001, 0.002})
+      step_force(model, test::at(0.03 + 0.009 - depth_m, 0.0, 0.06), state);
+    return std::pair(state.regions[0].d, total_force_n(state).norm());
+  };
+  const auto [coarse, coarse_n] = press({.points = 48});
+  const auto [fine, fine_n] = press({.points = 4000, .room = 65536});
+  EXPECT_LT((coarse - fine).norm(), 0.003);
+  EXPECT_NEAR(coarse_n, fine_n, 0.01 * fine_n);
 }
 
 struct Press {
@@ -165,20 +193,8 @@ double press_n(const Press& press, int samples, const CellRule* rule) {
 }
 
 /// Of the scene's own settings against as many cells as there is room for, over all tools, bodies and ratios of size.
-/// A faceted tool a thousand times larger than the body is the exception: where the direction d is a thousandth off,
-/// the line through its mass centre passes by the contact, and 1 / r has another meaning.
-TEST(CellsConverge, TheForceIsWithinTwoPercentOfItsLimit) {
-  std::vector<scene::Body> bodies(4);
-  bodies[0].shape = scene::BodyShape::box;
-  bodies[0].size_m = Vec3::Constant(0.06);
-  bodies[1].shape = scene::BodyShape::sphere;
-  bodies[1].radius_m = 0.03;
-  bodies[2].shape = scene::BodyShape::ellipsoid;
-  bodies[2].semi_axes_m = Vec3(0.04, 0.03, 0.025);
-  bodies[3].shape = scene::BodyShape::revolution;
-  bodies[3].profile = scene::cylinder_profile(0.03, 0.06, 0.0);
-  int within_one_percent = 0, beyond = 0;
-  for (const scene::Body& body : bodies) {
+TEST(CellsConverge, TheForceIsWithinOnePercentOfItsLimit) {
+  for (const auto& [name, body] : test::four_bodies()) {
     for (const double ratio : {1e-3, 1e-2, 0.1, 0.3, 0.5, 1.0, 3.0, 10.0, 100.0, 1000.0}) {
       for (const NamedTool& tool : tools(0.03 * ratio)) {
         Press press;
@@ -186,46 +202,35 @@ TEST(CellsConverge, TheForceIsWithinTwoPercentOfItsLimit) {
         press.scene.body = body;
         press.scene.contact.k3_n_per_m3 = 0.0;
         press.scene.tool = tool.tool;
-        press.tool =
-            tool.shape != nullptr ? tool.shape : std::shared_ptr<const scene::Shape>(scene::tool_shape(tool.tool));
-        press.scene.tool.radius_m = 0.03 * ratio;
+        press.tool = tool.shape;
         const double limit_n = press_n(press, 8000, &fine_cells), force_n = press_n(press, 2000, nullptr);
         EXPECT_GT(limit_n, 0.0);
-        const double error = std::abs(force_n / limit_n - 1.0);
-        const bool faceted_and_far = tool.tool.shape == scene::ToolShape::mesh && ratio > 100.0;
-        EXPECT_LT(error, faceted_and_far ? 0.31 : 0.017)
-            << tool.name << " " << ratio << " on body " << static_cast<int>(body.shape);
-        (error < 0.01 ? within_one_percent : beyond)++;
+        EXPECT_LT(std::abs(force_n / limit_n - 1.0), 0.01) << tool.name << " " << ratio << " on " << name;
       }
     }
   }
-  EXPECT_GE(within_one_percent, 220) << "of " << within_one_percent + beyond;
 }
 
 /// The mass centre is far away, and the line through it along d has to be where it belongs.
 TEST(CellsConverge, OffTheMiddleOfARoundBodyALargeToolIsWithinOnePercent) {
-  std::vector<scene::Body> bodies(2);
-  bodies[0].shape = scene::BodyShape::sphere;
-  bodies[0].radius_m = 0.03;
-  bodies[1].shape = scene::BodyShape::ellipsoid;
-  bodies[1].semi_axes_m = Vec3(0.04, 0.03, 0.025);
-  for (const scene::Body& body : bodies) {
+  for (const auto& [name, body] : test::four_bodies()) {
+    if (body.shape != scene::BodyShape::sphere && body.shape != scene::BodyShape::ellipsoid) continue;
     for (const double ratio : {10.0, 30.0, 100.0}) {
       for (const NamedTool& tool : tools(0.03 * ratio)) {
+        // Its facets are not the surface that the depth is measured from.
         if (tool.tool.shape == scene::ToolShape::mesh) continue;
         Press press;
         press.scene = test::ball_on_cube();
         press.scene.body = body;
         press.scene.contact.k3_n_per_m3 = 0.0;
         press.scene.tool = tool.tool;
-        press.scene.tool.radius_m = 0.03 * ratio;
-        press.tool = std::shared_ptr<const scene::Shape>(scene::tool_shape(tool.tool));
+        press.tool = tool.shape;
         for (const Vec3& toward : {Vec3(0.2, 0.35, 1.0), Vec3(1.0, 0.4, 1.0), Vec3(0.5, 0.0, 1.0)}) {
           press.toward = toward.normalized();
           const double limit_n = press_n(press, 60000, &fine_cells), force_n = press_n(press, 2000, nullptr);
           EXPECT_GT(limit_n, 0.0);
           EXPECT_LT(std::abs(force_n / limit_n - 1.0), 0.01)
-              << tool.name << " " << ratio << " on body " << static_cast<int>(body.shape) << " at " << toward.x();
+              << tool.name << " " << ratio << " on " << name << " at " << toward.x();
         }
       }
     }

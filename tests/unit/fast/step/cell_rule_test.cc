@@ -17,8 +17,8 @@ scene::Scene press() {
 TEST(ChooseCells, TakesTheFewestPointsThatAreFineEnough) {
   scene::Scene scene = press();
   const FastModel model = model_of(scene);
-  EXPECT_LE(model.cells->change_rel, cell_tolerance_rel);
-  EXPECT_GT(model.cells->change_rel, 0.0);
+  EXPECT_LE(model.cells->error_rel, cell_tolerance_rel);
+  EXPECT_GT(model.cells->error_rel, 0.0);
   // A ball so large that the contact spans few of its cells and the body's edges needs more of them.
   scene.tool.radius_m = 0.3;
   for (scene::Waypoint& at : scene.track) at.pose.position_m += scene::Vec3(0.02, 0.013, 0.29);
@@ -36,7 +36,7 @@ TEST(ChooseCells, DoesNotDependOnConstantsThatAreFitted) {
   scene.fast.C_n *= 0.5;
   const FastModel other = model_of(scene);
   EXPECT_EQ(other.cells->rule.points, model.cells->rule.points);
-  EXPECT_EQ(other.cells->change_rel, model.cells->change_rel);
+  EXPECT_EQ(other.cells->error_rel, model.cells->error_rel);
 }
 
 TEST(ChooseCells, LeavesTheModelAsItWas) {
@@ -59,7 +59,7 @@ TEST(ChooseCells, WithoutContactOnTheTrackHasAFixedNumber) {
   scene.track = {{0.0, test::pressed(-0.002, 0.0, 0.0)}, {1.0, test::pressed(-0.001, 0.0, 0.0)}};
   const FastModel model = model_of(scene);
   EXPECT_EQ(model.cells->rule.points, 48);
-  EXPECT_EQ(model.cells->change_rel, 0.0);
+  EXPECT_EQ(model.cells->error_rel, 0.0);
 }
 
 }  // namespace

@@ -163,7 +163,7 @@ TEST(Step, SlidingOverAnEdgeTurnsTheForceGradually) {
   for (int i = 0; s.force_n().norm() > 0.5; ++i) {
     s.step_to(test::pressed(0.003, 0.0001 * i));
     // A tenth of a millimetre moves few cells from the top to the side: 0.07 N with fine ones.
-    EXPECT_LT((s.force_n() - before_n).norm(), 0.4) << i;
+    EXPECT_LT((s.force_n() - before_n).norm(), 0.3) << i;
     before_n = s.force_n();
     turned_rad = std::max(turned_rad, std::atan2(before_n.x(), before_n.z()));
   }

@@ -14,6 +14,9 @@
 namespace touchstone::reference {
 namespace {
 
+using test::mesh_tool;
+using test::turned;
+
 scene::Scene cube(const scene::Vec3& from_m, const scene::Vec3& to_m) {
   scene::Scene scene;
   scene.body.size_m = {0.06, 0.06, 0.06};

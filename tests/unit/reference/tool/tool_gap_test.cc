@@ -19,6 +19,9 @@
 namespace touchstone::reference {
 namespace {
 
+using test::mesh_of;
+using test::turned;
+
 using scene::ToolShape;
 using scene::Vec3;
 
