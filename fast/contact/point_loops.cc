@@ -94,17 +94,26 @@ void set_rises(const Mat3& R_WT, const Vec3& d, RegionPoints& p) noexcept {
   }
 }
 
+/// Where all depths change by the same slope.
 TOUCHSTONE_WIDE_LOOPS
-void set_rises(const scene::BoxExit& given, const Mat3& R_WT, const Vec3& d, RegionPoints& p) noexcept {
-  const Rises rises(R_WT, d, grazes_plane);
-  const scene::BoxExit way_out = given;
+static void set_rises(const Vec3& slope_T, RegionPoints& p) noexcept {
+  const Numbers slope = numbers(slope_T);
   const auto count = static_cast<std::size_t>(p.count);
 #pragma GCC ivdep
   for (std::size_t i = 0; i < count; ++i) {
+    p.rise1_m[i] = slope.x * p.e1x_T_m[i] + slope.y * p.e1y_T_m[i] + slope.z * p.e1z_T_m[i];
+    p.rise2_m[i] = slope.x * p.e2x_T_m[i] + slope.y * p.e2y_T_m[i] + slope.z * p.e2z_T_m[i];
+  }
+}
+
+void set_rises(const scene::BoxExit& way_out, const Mat3& R_WT, const Vec3& d, RegionPoints& p) noexcept {
+  // Along an axis d leads to one face only, whose outward normal is -d.
+  if (d.cwiseAbs().maxCoeff() > 1.0 - 1e-12) return set_rises(depth_slope_T(R_WT, d, -d, grazes_plane), p);
+  const Rises rises(R_WT, d, grazes_plane);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(p.count); ++i) {
     const scene::BoxExit::TwoFaces met = way_out.two_faces(p.x_W_m[i], p.y_W_m[i], p.z_W_m[i]);
-    const Rise first = rises.of(met.first.nx, met.first.ny, met.first.nz, p, i),
-               second = rises.of(met.second.nx, met.second.ny, met.second.nz, p, i);
-    set_over_edge(first, second, met.between_m, p, i);
+    set_over_edge(rises.of(met.first.nx, met.first.ny, met.first.nz, p, i),
+                  rises.of(met.second.nx, met.second.ny, met.second.nz, p, i), met.between_m, p, i);
   }
 }
 
