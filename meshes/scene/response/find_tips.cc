@@ -16,8 +16,14 @@ namespace {
 /// At every time at which it touches, a disc or a line lies flat.
 bool lies_flat(const Scene& scene, const Shape& body, const ToolTip& tip) {
   for (const double time_s : looked_at_s(scene)) {
-    const Touch at = touch(body, tip, pose_at(scene.track, time_s));
-    if (at.depth_m > 0.0 && at.tilt > tilt_max) return false;
+    const Pose pose = pose_at(scene.track, time_s);
+    bool touches = false;
+    for (const double side : {-1.0, 0.0, 1.0}) {
+      ToolTip end = tip;
+      end.center_T_m += side * tip.half_line_T_m;
+      touches = touches || touch(body, end, pose).depth_m > 0.0;
+    }
+    if (touches && touch(body, tip, pose).tilt > tilt_max) return false;
   }
   return true;
 }

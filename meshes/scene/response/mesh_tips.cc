@@ -40,7 +40,9 @@ std::vector<std::int32_t> parts(const TriangleMesh& mesh, const Condition& holds
 }
 
 /// How deep every vertex is below the rest surface where it touches, at most [m]; 0 where it never does.
-std::vector<double> depths_m(const Scene& scene, const TriangleMesh& mesh, const std::vector<double>& times_s) {
+/// @param share  of its part's deepest vertex from which one touches
+std::vector<double> depths_m(const Scene& scene, const TriangleMesh& mesh, const std::vector<double>& times_s,
+                             double share) {
   const auto body = body_shape(scene.body);
   const Bounds box = body->bounds();
   const auto count = static_cast<std::size_t>(mesh.points_m.cols());
@@ -59,7 +61,7 @@ std::vector<double> depths_m(const Scene& scene, const TriangleMesh& mesh, const
     const auto deepest = [&](std::size_t i) -> double& { return deepest_m[static_cast<std::size_t>(part[i])]; };
     for (std::size_t i = 0; i < count; ++i) deepest(i) = std::max(deepest(i), now_m[i]);
     for (std::size_t i = 0; i < count; ++i) {
-      if (now_m[i] > touches_rel * deepest(i)) out[i] = std::max(out[i], now_m[i]);
+      if (now_m[i] > share * deepest(i)) out[i] = std::max(out[i], now_m[i]);
     }
   }
   return out;
@@ -167,11 +169,8 @@ std::optional<ToolTip> disc_of(const TriangleMesh& mesh, const std::vector<std::
   return tip;
 }
 
-}  // namespace
-
-FoundTips mesh_tips(const Scene& scene, const std::vector<double>& times_s) {
-  const TriangleMesh mesh = tool_mesh(scene.tool);
-  const std::vector<double> depth_m = depths_m(scene, mesh, times_s);
+/// @param depth_m  of the vertices that touch
+FoundTips tips_of(const TriangleMesh& mesh, const std::vector<double>& depth_m) {
   FoundTips out;
   for (const std::vector<std::size_t>& part : touching_parts(mesh, depth_m)) {
     double deepest_m = 0.0;
@@ -191,6 +190,15 @@ FoundTips mesh_tips(const Scene& scene, const std::vector<double>& times_s) {
     if (!known) out.tips.push_back(*found);
   }
   return out;
+}
+
+}  // namespace
+
+FoundTips mesh_tips(const Scene& scene, const std::vector<double>& times_s) {
+  const TriangleMesh mesh = tool_mesh(scene.tool);
+  // All that is below the rest surface, if it is one form: more facets make a better ball.
+  FoundTips out = tips_of(mesh, depths_m(scene, mesh, times_s, 0.0));
+  return out.why.empty() ? out : tips_of(mesh, depths_m(scene, mesh, times_s, touches_rel));
 }
 
 }  // namespace touchstone::scene

@@ -71,7 +71,8 @@ TEST(ContactTable, AFilletIsBetween) {
 }
 
 TEST(ContactTable, OnePotential) {
-  for (const scene::ToolTip& tip : {ball_tip(0.01), flat_tip(0.0045, 0.0015)}) {
+  const scene::ToolTip line{.half_line_T_m = scene::Vec3(0.0, 0.0, 0.006), .radius_m = 0.01};
+  for (const scene::ToolTip& tip : {ball_tip(0.01), flat_tip(0.0045, 0.0015), line}) {
     const ContactTable table(tip, {}, E_star_pa, {0.2, -0.1});
     double last_n = 0.0;
     for (double D = 3e-5; D < 0.009; D *= 1.3) {
