@@ -84,6 +84,10 @@ TEST(ContactTable, OnePotential) {
       EXPECT_GT(force_n, last_n);
       last_n = force_n;
     }
+    double work_j = 0.0;
+    const double step_m = 1e-6, last_m = 0.009;
+    for (double D = 0.5 * step_m; D < last_m; D += step_m) work_j += table.at(D).force_n * step_m;
+    EXPECT_NEAR(table.energy_j(last_m), work_j, 1e-5 * work_j);
     EXPECT_EQ(table.at(0.0).force_n, 0.0);
     EXPECT_EQ(table.at(-1.0).force_n, 0.0);
     EXPECT_EQ(table.at(10.0).force_n, table.at(table.largest_indentation_m()).force_n);
