@@ -1,5 +1,7 @@
 #include "fast/response/contact_table.h"
 
+#include "fast/response/line_contact.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +11,7 @@ namespace touchstone::fast {
 namespace {
 
 constexpr int nodes = 257;
+constexpr int line_nodes = 33;
 
 /// Gauss-Legendre on [0, 1].
 struct Rule {
@@ -114,6 +117,10 @@ LocalShape local_shape(const scene::Shape& body, const scene::Vec3& point_m, con
 
 ContactTable::ContactTable(const scene::ToolTip& tip, const LocalShape& local, double E_star_pa,
                            const FiniteStrain& strain) {
+  if (tip.line()) {
+    tabulate_line(tip, E_star_pa, strain);
+    return;
+  }
   const Gap gap{tip, local};
   const Rule rule;
   // Radii, closer where the contact is small.
@@ -164,17 +171,50 @@ ContactTable::ContactTable(const scene::ToolTip& tip, const LocalShape& local, d
     const double widening = tip.ball() ? strain.widening(x) : 1.0, between = std::clamp(flat, 0.0, 1.0);
     // (1 - peaked) (3/2 - flat) + 5/2 peaked is the pressure in the middle over its mean.
     const double peaked = tip.ball() ? (strain.peak(x) * widening * widening - 1.5 + between) / (1.0 + between) : 0.0;
-    nodes_.push_back({linear_n * factor, dF_dD * 2.0 * s, at.a_m, between, widening, peaked, 0.0});
+    nodes_.push_back({linear_n * factor, dF_dD * 2.0 * s, at.a_m, between, widening, peaked, 0.0, at.a_m, 0.0});
   }
   if (tip.flat_radius_m > 0.0) nodes_[0].flat = 1.0;
   for (std::size_t i = 1; i < nodes_.size(); ++i) nodes_[i].energy_j = energy_j(i - 1, 1.0);
 }
 
+void ContactTable::tabulate_line(const scene::ToolTip& tip, double E_star_pa, const FiniteStrain& strain) {
+  const double R = tip.radius_m, half_m = tip.half_line_T_m.norm();
+  largest_m_ = R;
+  step_ = std::sqrt(largest_m_) / (line_nodes - 1);
+  nodes_.emplace_back().half_line_m = half_m;
+  for (int i = 1; i < line_nodes; ++i) {
+    const double D_m = std::min(step_ * i * step_ * i, largest_m_);
+    const LineContact line = line_contact(R, half_m, D_m, E_star_pa);
+    // The overlap of the surfaces at rest: two half balls and what is between them.
+    const double wide_m = std::sqrt(D_m * (2.0 * R - D_m)), ball_m2 = std::numbers::pi * wide_m * wide_m;
+    const double area_m2 = ball_m2 + 4.0 * half_m * wide_m;
+    const double volume_m3 = std::numbers::pi * D_m * D_m * (3.0 * R - D_m) / 3.0 +
+                             2.0 * half_m * (R * R * std::acos(1.0 - D_m / R) - (R - D_m) * wide_m);
+    const double x = volume_m3 / (area_m2 * std::sqrt(area_m2 / std::numbers::pi));
+    const double length2_m2 = std::max(3.0 * (line.along2_m2 - line.across2_m2), 0.0);
+    Node& node = nodes_.emplace_back();
+    node.force_n = line.force_n * strain.factor(x);
+    node.radius_m = line.half_width_m;
+    node.patch_radius_m = std::sqrt(5.0 * line.across2_m2);
+    node.half_line_m = std::sqrt(length2_m2);
+  }
+  for (std::size_t i = 1; i < nodes_.size(); ++i) {
+    const std::size_t next = std::min(i + 1, nodes_.size() - 1);
+    nodes_[i].slope = (nodes_[next].force_n - nodes_[i - 1].force_n) / (step_ * static_cast<double>(next - i + 1));
+  }
+  for (std::size_t i = 1; i < nodes_.size(); ++i) nodes_[i].energy_j = energy_j(i - 1, 1.0);
+}
+
+ContactTable::Place ContactTable::place(double s) const noexcept {
+  const double steps = s / step_;
+  const auto i = static_cast<std::size_t>(std::min(static_cast<int>(steps), static_cast<int>(nodes_.size()) - 2));
+  return {i, steps - static_cast<double>(i)};
+}
+
 LocalContact ContactTable::at(double indentation_m) const noexcept {
   if (!(indentation_m > 0.0)) return {};
-  const double s = std::sqrt(std::min(indentation_m, largest_m_)), place = s / step_;
-  const auto i = static_cast<std::size_t>(std::min(static_cast<int>(place), nodes - 2));
-  const double t = place - static_cast<double>(i);
+  const double s = std::sqrt(std::min(indentation_m, largest_m_));
+  const auto [i, t] = place(s);
   const Node &low = nodes_[i], &high = nodes_[i + 1];
   const double rise = high.force_n - low.force_n, m0 = step_ * low.slope, m1 = step_ * high.slope;
   const double c2 = 3.0 * rise - 2.0 * m0 - m1, c3 = m0 + m1 - 2.0 * rise;
@@ -185,14 +225,15 @@ LocalContact ContactTable::at(double indentation_m) const noexcept {
   out.flat = low.flat + t * (high.flat - low.flat);
   out.widening = low.widening + t * (high.widening - low.widening);
   out.peaked = low.peaked + t * (high.peaked - low.peaked);
+  out.patch_radius_m = low.patch_radius_m + t * (high.patch_radius_m - low.patch_radius_m);
+  out.half_line_m = low.half_line_m + t * (high.half_line_m - low.half_line_m);
   return out;
 }
 
 double ContactTable::energy_j(double indentation_m) const noexcept {
   if (!(indentation_m > 0.0)) return 0.0;
-  const double place = std::sqrt(std::min(indentation_m, largest_m_)) / step_;
-  const auto i = static_cast<std::size_t>(std::min(static_cast<int>(place), nodes - 2));
-  return energy_j(i, place - static_cast<double>(i));
+  const auto [i, t] = place(std::sqrt(std::min(indentation_m, largest_m_)));
+  return energy_j(i, t);
 }
 
 double ContactTable::energy_j(std::size_t i, double t) const noexcept {

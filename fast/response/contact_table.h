@@ -5,6 +5,8 @@
 //   D(t) = t int_0^t g'(r) / sqrt(t^2 - r^2) dr,   F = 2 E* int_0^a (D(a) - D(t)) dt.
 // g is that of the tool's true surface and of the body's own, not of their paraboloids. F is what a line of sources
 // from -ia to ia on the axis carries, D(a) - D(|t|) per length; its second moment is the load's.
+//
+// A capsule on its side is no such profile: its table is computed with line_contact.h.
 #pragma once
 
 #include "fast/response/finite_strain.h"
@@ -32,13 +34,17 @@ struct LocalShape {
 struct LocalContact {
   double force_n = 0.0;
   double stiffness_n_per_m = 0.0;       ///< dF / d(indentation)
-  double radius_m = 0.0;                ///< a
+  double radius_m = 0.0;                ///< a; half the width of a line's contact
   double flat = 0.0;                    ///< pressure between a ball's (0) and a flat punch's (1), by its second moment
   double widening = 1.0, peaked = 0.0;  ///< of the pressure, as of SpreadLoad
+  /// Of a line: radius and half the length of a ball's pressure that is swept along a line and has the second moments
+  /// of this one.
+  double patch_radius_m = 0.0, half_line_m = 0.0;
 };
 
 class ContactTable {
  public:
+  /// @param local      not used for a line, which lies on a plane
   /// @param E_star_pa  E / (1 - nu^2)
   ContactTable(const scene::ToolTip& tip, const LocalShape& local, double E_star_pa, const FiniteStrain& strain);
 
@@ -54,10 +60,17 @@ class ContactTable {
  private:
   /// At even steps of s = sqrt(indentation), in which force and radius are smooth.
   struct Node {
-    double force_n, slope;  ///< dF / ds
-    double radius_m, flat, widening, peaked;
-    double energy_j;
+    double force_n = 0.0, slope = 0.0;  ///< dF / ds
+    double radius_m = 0.0, flat = 0.0, widening = 1.0, peaked = 0.0;
+    double energy_j = 0.0;
+    double patch_radius_m = 0.0, half_line_m = 0.0;
   };
+  void tabulate_line(const scene::ToolTip& tip, double E_star_pa, const FiniteStrain& strain);
+  struct Place {
+    std::size_t node;
+    double share;  ///< of the way to the next
+  };
+  [[nodiscard]] Place place(double s) const noexcept;
   /// Up to share t of the way from node i to the next.
   [[nodiscard]] double energy_j(std::size_t i, double t) const noexcept;
 

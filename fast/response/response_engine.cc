@@ -5,6 +5,7 @@
 #include "scene/response/response_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -13,12 +14,33 @@ namespace {
 
 using scene::Vec3;
 
+/// Pressure of a contact along a line: a ball's, swept along it.
+/// @param off_m  from the nearest point of the line
+double line_pressure_pa(const ResponseContact& contact, const Vec3& off_m) {
+  const double b_m = contact.law.radius_m, below_m = off_m.dot(contact.load.normal);
+  const double inside = 1.0 - (off_m.squaredNorm() - below_m * below_m) / (b_m * b_m);
+  if (!(inside > 0.0)) return 0.0;
+  return contact.load.force_n * std::sqrt(inside) /
+         (std::numbers::pi * b_m * contact.law.half_line_m + 2.0 / 3.0 * std::numbers::pi * b_m * b_m);
+}
+
 /// Traction on the body at a point under the tool. Pressure along the tool's normal is force along the load per area
 /// across it, and so is the normal traction on a surface of any slope. Shear is along the tool's surface.
 Vec3 traction_pa(const scene::ToolTip& tip, const ResponseContact& contact, const Vec3& x_m, const Vec3& axis) {
-  const double pressure_pa = spread_pressure_pa(contact.load, x_m - contact.stretch_m);
+  Vec3 from_axis_m = x_m - contact.at.point_m;
+  double pressure_pa = 0.0;
+  if (tip.line()) {
+    const Vec3 line = contact.half_line_m.normalized();
+    const double half_m = contact.law.half_line_m;
+    const Vec3 off_m = x_m - contact.load.center_m;
+    pressure_pa = line_pressure_pa(contact, off_m - std::clamp(off_m.dot(line), -half_m, half_m) * line);
+    const double reach_m = tip.half_line_T_m.norm();
+    from_axis_m -= std::clamp(from_axis_m.dot(line), -reach_m, reach_m) * line;
+  } else {
+    pressure_pa = spread_pressure_pa(contact.load, x_m - contact.stretch_m);
+  }
   if (pressure_pa == 0.0) return Vec3::Zero();
-  const Vec3 from_axis_m = x_m - contact.at.point_m, across_m = from_axis_m - from_axis_m.dot(axis) * axis;
+  const Vec3 across_m = from_axis_m - from_axis_m.dot(axis) * axis;
   const double r_m = across_m.norm();
   const double slope = tip.slope(std::min(r_m, 0.99 * tip.reach_m()));
   const Vec3 out = (r_m > 0.0 ? Vec3(axis + slope / r_m * across_m) : axis).normalized();
@@ -74,12 +96,13 @@ scene::InstantRecord ResponseEngine::record(double time_s, const scene::Pose& to
       record.traction_pa.col(i) += traction_pa(tip, contact, x_m, axis);
     }
     record.pressure_peak_pa =
-        std::max(record.pressure_peak_pa, spread_pressure_pa(contact.load, contact.load.center_m));
-    const double radius_m = contact.load.widening * contact.load.radius_m;
+        std::max(record.pressure_peak_pa, tip.line() ? line_pressure_pa(contact, Vec3::Zero())
+                                                     : spread_pressure_pa(contact.load, contact.load.center_m));
+    const double radius_m = contact.load.widening * contact.law.radius_m;
     record.regions.push_back({.depth_m = contact.depth_m,
                               .force_n = contact.wrench.force_n,
                               .torque_nm = contact.wrench.torque_nm,
-                              .area_m2 = std::numbers::pi * radius_m * radius_m,
+                              .area_m2 = radius_m * (std::numbers::pi * radius_m + 4.0 * contact.law.half_line_m),
                               .id = static_cast<int>(k),
                               .friction_n = contact.friction_n,
                               .sliding = state_.slip && state_.slip->sliding});

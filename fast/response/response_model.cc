@@ -23,6 +23,8 @@ bool alike(const LocalShape& a, const LocalShape& b, double reach_m) {
 TipLaw tip_law(const scene::Body& body, const scene::Shape& shape, const scene::LoadGrid& grid,
                const scene::ToolTip& tip) {
   TipLaw out{.tip = tip, .local = {}, .tables = {}};
+  // At most a radius apart.
+  if (tip.line()) out.patches = 1 + 2 * static_cast<int>(std::ceil(tip.half_line_T_m.norm() / tip.radius_m));
   const double reach_m = tip.reach_m();
   for (int k = 0; k < grid.count(); ++k) {
     out.local.push_back(local_shape(shape, grid.points_m.col(k), grid.normals.col(k), 0.8 * reach_m));
@@ -189,13 +191,15 @@ ResponseState::ResponseState(const ResponseModel& model)
       field(model.rest_normal),
       near(model.rest_m[0].size() * model.tips.size()),
       near_count(model.tips.size()),
+      column_weight(model.response.grid.count()),
       slip(model.springs ? std::make_unique<SlipState>() : nullptr) {
-  if (model.tips.size() > 1) other_m = model.rest_m;
+  if (model.tips.size() > 1 || model.tips.front().tip.line()) other_m = model.rest_m;
 }
 
 std::size_t ResponseState::memory_bytes() const noexcept {
   return contacts.size() * sizeof(ResponseContact) + field.memory_bytes() + near.size() * sizeof(std::int32_t) +
-         3 * other_m[0].size() * sizeof(float) + (slip ? sizeof(SlipState) : 0);
+         3 * other_m[0].size() * sizeof(float) + static_cast<std::size_t>(column_weight.size()) * sizeof(double) +
+         (slip ? sizeof(SlipState) : 0);
 }
 
 }  // namespace touchstone::fast

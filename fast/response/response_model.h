@@ -42,6 +42,7 @@ struct TipLaw {
   scene::ToolTip tip;
   std::vector<LocalShape> local;     ///< of the body at the grid's points
   std::vector<ContactTable> tables;  ///< one per grid point; one alone where the body is the same everywhere
+  int patches = 1;                   ///< of the load: round ones along a line
 };
 
 struct ResponseModel {
@@ -87,9 +88,10 @@ struct ResponseContact {
   GridWeights weights;  ///< of p0
   LoadPath path;
   scene::Vec3 sway_m_per_n = scene::Vec3::Zero(), tilt_per_n = scene::Vec3::Zero(), shift_m_per_n = scene::Vec3::Zero();
-  double curvature_per_m = 0.0;     ///< of the body
-  double compliance_m_per_n = 0.0;  ///< C of this force
-  scene::Wrench wrench;             ///< its part
+  double curvature_per_m = 0.0;                   ///< of the body
+  double compliance_m_per_n = 0.0;                ///< C of this force
+  scene::Wrench wrench;                           ///< its part
+  scene::Vec3 half_line_m = scene::Vec3::Zero();  ///< of a line: from the load's centre to the last patch's, world
   // Only with friction:
   scene::Vec3 friction_n = scene::Vec3::Zero();  ///< on the tool
   scene::Vec3 stretch_m = scene::Vec3::Zero();   ///< by which friction moves the surface at the load
@@ -108,7 +110,8 @@ struct ResponseState {
   bool deformed = false;
   std::vector<std::int32_t> near;        ///< vertices near the loads, as many for each tip as there are
   std::vector<std::int32_t> near_count;  ///< per tip
-  Columns3 other_m;                      ///< of one more load; only with several tips
+  Columns3 other_m;                      ///< of one more load; only with several tips or a line
+  Eigen::VectorXd column_weight;         ///< of a load, at the grid's points
   std::unique_ptr<SlipState> slip;       ///< from tick to tick; null without friction
   StageClock* clock = nullptr;           ///< times of the stages, if wanted
 

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <span>
 
 namespace touchstone::fast {
@@ -48,6 +49,7 @@ LocalContact local_contact(const TipLaw& tip, const GridWeights& weights, double
     out.flat += weight * one.flat;
     out.widening += weight * one.widening;
     out.peaked += weight * one.peaked;
+    out.patch_radius_m += weight * one.patch_radius_m;
   }
   return out;
 }
@@ -135,6 +137,15 @@ void add_friction(const ResponseModel& model, const scene::Pose& pose, ResponseS
   contact.wrench.torque_nm += arm_m.cross(contact.friction_n);
 }
 
+/// One of the equal patches of a load along a line; of any other contact its only one.
+SpreadLoad patch(const ResponseContact& contact, int k, int patches) noexcept {
+  SpreadLoad load = contact.load;
+  if (patches == 1) return load;
+  load.force_n /= patches;
+  load.center_m += (2.0 * k / (patches - 1) - 1.0) * contact.half_line_m;
+  return load;
+}
+
 /// Points under the tool lie on it. A point belongs to the contact where it is within the contact's radius, with a
 /// little to spare, and the tool is below the free surface there.
 void follow_tool(const ResponseModel& model, const scene::ToolTip& tip, const ResponseContact& contact,
@@ -142,14 +153,19 @@ void follow_tool(const ResponseModel& model, const scene::ToolTip& tip, const Re
   constexpr double rim = 1.15;   // of the radius: finite strain widens the linear contact
   constexpr double slide = 0.2;  // outward, of depth times slope in the middle; chosen, as in reports/response.md
   const Vec3 p0 = contact.at.point_m, n = contact.at.normal;
-  const double a_m = contact.load.radius_m;
+  const double a_m = contact.law.radius_m, half_m = tip.half_line_T_m.norm();
+  const Vec3 line = half_m > 0.0 ? contact.half_line_m.normalized() : Vec3::Zero();
+  // From the nearest point of the line.
+  const auto from_line_m = [&](const Vec3& x_m) -> Vec3 {
+    return x_m - std::clamp(x_m.dot(line), -half_m, half_m) * line;
+  };
   for (const std::int32_t i : near) {
     if (model.free[static_cast<std::size_t>(i)] == 0.0f) continue;
-    const Vec3 d_m = at(model.rest_m, i) - contact.load.center_m;
+    const Vec3 d_m = from_line_m(at(model.rest_m, i) - contact.load.center_m);
     const double r_m = (d_m - d_m.dot(n) * n).norm();
     if (r_m > rim * a_m || d_m.dot(n) < -2.0 * a_m) continue;
     Vec3 u_m = at(field.displacement_m, i);
-    const Vec3 from_axis_m = at(model.rest_m, i) + u_m - p0;
+    const Vec3 from_axis_m = from_line_m(at(model.rest_m, i) + u_m - p0);
     Vec3 across_m = from_axis_m - from_axis_m.dot(n) * n;
     const double below_m = -(at(model.rest_m, i) - p0).dot(n);  // of the rest point, under the tangent plane
     const double inward_m = contact.depth_m - tip.height_m(across_m.norm()) - below_m;
@@ -188,6 +204,12 @@ void press(const ResponseModel& model, const TipLaw& tip, double indentation_m, 
                                          : 2.0 * law.radius_m * law.radius_m / (3.0 * indentation_m);
   const scene::LoadGrid& grid = model.response.grid;
   contact.shift_m_per_n = radius_m * contact.tilt_per_n - contact.sway_m_per_n;
+  if (!contact.half_line_m.isZero(0.0)) {
+    // Along a line the load moves as under a punch with the same second moment.
+    const Vec3 along = contact.half_line_m.normalized();
+    const double along2_m2 = law.half_line_m * law.half_line_m / 3.0 + law.patch_radius_m * law.patch_radius_m / 5.0;
+    contact.shift_m_per_n += (2.0 * along2_m2 / indentation_m - radius_m) * contact.tilt_per_n.dot(along) * along;
+  }
   contact.path.per_n = {contact.shift_m_per_n.dot(grid.axes.col(0)) / grid.spacing_m[0],
                         contact.shift_m_per_n.dot(grid.axes.col(1)) / grid.spacing_m[1]};
   contact.compliance_m_per_n = compliance_m_per_n(model, contact.path.start + law.force_n * contact.path.per_n);
@@ -329,7 +351,12 @@ void finish_contact(const ResponseModel& model, const TipLaw& tip, const scene::
   }
   const Vec3 sum_n = force_n * contact.at.normal + along_n;
   const Vec3 center_m = pose.orientation * tip.tip.center_T_m;
-  const Vec3 arm_m = tip.tip.ball() ? center_m : Vec3(center_m + force_n * contact.shift_m_per_n);
+  Vec3 arm_m = center_m;
+  if (!tip.tip.ball()) arm_m += force_n * contact.shift_m_per_n;
+  if (tip.tip.line()) {
+    const Vec3 along = contact.half_line_m.normalized();
+    arm_m += force_n * contact.shift_m_per_n.dot(along) * along;
+  }
   contact.wrench = {sum_n, arm_m.cross(sum_n)};
 }
 
@@ -352,6 +379,10 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
     contact.depth_m = contact.at.depth_m;
     contact.load.center_m = contact.at.point_m;
     contact.load.normal = contact.at.normal;
+    if (model.tips[i].tip.line()) {
+      const Vec3 half_m = pose.orientation * model.tips[i].tip.half_line_T_m;
+      contact.half_line_m = half_m - half_m.dot(contact.at.normal) * contact.at.normal;
+    }
     deepest_m = std::max(deepest_m, contact.depth_m);
   }
   state.lap(Stage::detection);
@@ -387,8 +418,12 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
       contact.depth_m = contact.indentation_m = 0.0;
       continue;
     }
-    contact.load = {contact.at.point_m, contact.at.normal, law.force_n, law.radius_m,
+    contact.load = {contact.at.point_m, contact.at.normal, law.force_n, law.patch_radius_m,
                     law.flat,           law.widening,      law.peaked};
+    if (contact.half_line_m.isZero(0.0)) continue;
+    // Equal patches whose places have the mean square of an even line's.
+    const double n = model.tips[static_cast<std::size_t>(&contact - state.contacts.data())].patches;
+    contact.half_line_m = law.half_line_m * std::sqrt((n - 1.0) / (n + 1.0)) * contact.half_line_m.normalized();
   }
   for (std::size_t i = 0; i < model.tips.size(); ++i) {
     ResponseContact& contact = state.contacts[i];
@@ -434,14 +469,22 @@ void response_shape(const ResponseModel& model, ResponseState& state) noexcept {
   for (std::size_t i = 0; i < state.contacts.size(); ++i) {
     const ResponseContact& contact = state.contacts[i];
     if (!contact.touches()) continue;
-    Columns3& out_m = touches ? state.other_m : shape_m;
-    state.near_count[i] =
-        spread_displacements_m(contact.load, model.half_space, model.rest_m, out_m, state.near.data() + i * vertices);
-    for (const std::int32_t v : near(i)) {
-      set(out_m, v, spread_displacement_m(contact.load, model.half_space, at(model.rest_m, v)));
+    std::int32_t* const listed = state.near.data() + i * vertices;
+    const int patches = model.tips[i].patches;
+    for (int k = 0; k < patches; ++k) {
+      const SpreadLoad load = patch(contact, k, patches);
+      Columns3& out_m = touches ? state.other_m : shape_m;
+      state.near_count[i] = spread_displacements_m(load, model.half_space, model.rest_m, out_m, listed);
+      for (const std::int32_t v : near(i)) {
+        set(out_m, v, spread_displacement_m(load, model.half_space, at(model.rest_m, v)));
+      }
+      if (touches) add(out_m, shape_m);
+      touches = true;
     }
-    if (touches) add(out_m, shape_m);
-    touches = true;
+    if (patches > 1) {
+      state.near_count[i] = static_cast<std::int32_t>(vertices);
+      std::iota(listed, listed + vertices, 0);
+    }
   }
   if (!touches) {
     if (state.deformed) state.field.reset(model.rest_normal);
@@ -453,15 +496,24 @@ void response_shape(const ResponseModel& model, ResponseState& state) noexcept {
   for (const ResponseContact& contact : state.contacts) {
     if (!contact.touches()) continue;
     // The body carries the load where the tool is.
-    const GridWeights weights(grid, grid.place(contact.load.center_m + contact.stretch_m));
+    Eigen::VectorXd& weights = state.column_weight;
+    weights.setZero();
+    const int patches = model.tips[static_cast<std::size_t>(&contact - state.contacts.data())].patches;
+    for (int k = 0; k < patches; ++k) {
+      const GridWeights one(grid, grid.place(patch(contact, k, patches).center_m + contact.stretch_m));
+      for (int t = 0; t < one.count; ++t) {
+        const auto [point, weight] = one.terms[static_cast<std::size_t>(t)];
+        weights[point] += weight / patches;
+      }
+    }
     const Vec3& force_n = contact.wrench.force_n;
     const Vec3 lateral_n = force_n - force_n.dot(contact.at.normal) * contact.at.normal;
-    for (int k = 0; k < weights.count; ++k) {
-      const auto [point, weight] = weights.terms[static_cast<std::size_t>(k)];
-      add_column(model.response.smooth_m_per_n.col(point).data(), static_cast<float>(weight * contact.load.force_n),
-                 shape_m);
+    for (int point = 0; point < grid.count(); ++point) {
+      if (weights[point] == 0.0) continue;
+      add_column(model.response.smooth_m_per_n.col(point).data(),
+                 static_cast<float>(weights[point] * contact.load.force_n), shape_m);
       if (!state.slip) continue;
-      const Eigen::Vector2d along_n = weight * grid.along(point).transpose() * -lateral_n;
+      const Eigen::Vector2d along_n = weights[point] * grid.along(point).transpose() * -lateral_n;
       for (int axis = 0; axis < 2; ++axis) {
         add_column(model.response.smooth_m_per_n.col(grid.count() + 2 * point + axis).data(),
                    static_cast<float>(along_n[axis]), shape_m);

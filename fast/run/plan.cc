@@ -107,6 +107,9 @@ std::string one_region_text(const scene::Tool& tool) {
 /// "2 balls of 2.5 and 3 mm radius".
 std::string tips_text(const std::vector<scene::ToolTip>& tips) {
   if (!tips.front().ball()) return fmt::format("a flat tip of {:.4g} mm radius", tips.front().reach_m() * 1e3);
+  if (tips.front().line()) {
+    return fmt::format("a capsule of {:.4g} mm radius on its side", tips.front().radius_m * 1e3);
+  }
   if (tips.size() == 1) return fmt::format("a ball of {:.4g} mm radius", tips.front().radius_m * 1e3);
   std::string radii;
   for (std::size_t i = 0; i < tips.size(); ++i) {

@@ -5,6 +5,7 @@
 #include "support/synthetic_response.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace touchstone::fast {
 namespace {
@@ -139,6 +140,36 @@ TEST(ResponseExtremes, FrictionOverAllCoefficients) {
         largest_n = std::max(largest_n, region.friction_n.norm());
       }
       EXPECT_EQ(largest_n > 0.0, mu > 0.0);
+    }
+  }
+}
+
+// A capsule on its side, its length from 1e-4 to 6 of its radius, turned about two axes: force and shape are finite,
+// and the status reports when it does not lie flat. As printed: There is no such model.
+TEST(ResponseExtremes, ACapsuleOnItsSideTurnedAnyWay) {
+  scene::Scene scene = press();
+  scene.tool.shape = scene::ToolShape::capsule;
+  scene.tool.radius_m = 0.006;
+  for (const double length : {1e-4, 1e-2, 1.0, 6.0}) {
+    scene.tool.length_m = length * scene.tool.radius_m;
+    const auto turned = [&](double about_x, double about_z) {
+      scene::Pose pose = test::at(0.0, 0.0, 0.064);
+      pose.orientation = Eigen::AngleAxisd(about_z, Vec3::UnitZ()) *
+                         Eigen::AngleAxisd(0.5 * std::numbers::pi + about_x, Vec3::UnitX());
+      return pose;
+    };
+    scene.track = {{0.0, turned(0.0, 0.0)}, {1.0, turned(0.0, 0.0)}};
+    ASSERT_EQ(scene::response_needs(scene), "") << length;
+    ResponseEngine engine = engine_of(scene);
+    for (int i = 0; i <= 40; ++i) {
+      const double about_x = 0.05 * std::numbers::pi * i;
+      const StepStatus status = engine.step(turned(about_x, 0.7 * i));
+      expect_sound(engine);
+      EXPECT_GT(engine.wrench().force_n.z(), 0.0);
+      EXPECT_EQ(extremes::has(status, StepStatus::tilted), i % 20 != 0) << i;
+      const scene::InstantRecord record = engine.record(0.0, turned(about_x, 0.7 * i), 0.002);
+      EXPECT_TRUE(record.traction_pa.allFinite());
+      EXPECT_TRUE(std::isfinite(record.pressure_peak_pa) && std::isfinite(record.regions.front().area_m2));
     }
   }
 }

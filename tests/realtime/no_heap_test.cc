@@ -83,6 +83,32 @@ TEST(NoHeap, BelowAStepOfTheResponseModelWithSeveralTips) {
   EXPECT_GT(together, 20);
 }
 
+TEST(NoHeap, BelowAStepOfTheResponseModelWithACapsuleOnItsSide) {
+  const auto lying = [](double depth_m, double about_z) {
+    scene::Pose pose = test::at(0.0, 0.0, 0.066 - depth_m);
+    pose.orientation = Eigen::AngleAxisd(about_z, scene::Vec3::UnitZ()) *
+                       Eigen::AngleAxisd(0.5 * std::acos(-1.0), scene::Vec3::UnitX());
+    return pose;
+  };
+  scene::Scene scene = test::ball_on_cube();
+  scene.tool.shape = scene::ToolShape::capsule;
+  scene.tool.radius_m = 0.006;
+  scene.tool.length_m = 0.012;
+  scene.track = {{0.0, lying(0.001, 0.0)}, {1.0, lying(0.002, 0.0)}};
+  const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
+  const ResponseModel model(scene, surface, test::synthetic_response(scene, surface));
+  ASSERT_TRUE(model.tips[0].tip.line());
+  ResponseState state(model);
+  int touching = 0;
+  for (int i = -20; i < 100; ++i) {
+    const scene::Pose pose = lying(2e-5 * i, 0.1 * i);
+    const test::NoHeap guard;
+    (void)response_step(model, pose, state);
+    touching += state.contacts[0].touches() ? 1 : 0;
+  }
+  EXPECT_GT(touching, 90);
+}
+
 TEST(NoHeap, BelowAStepOnABox) {
   for (const Formulation formulation : {Formulation::published, Formulation::corrected}) {
     run_without_heap(test::ball_on_cube(formulation));

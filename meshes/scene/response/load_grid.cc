@@ -36,8 +36,14 @@ FoundGrid load_grid(const Scene& scene) {
   std::vector<Touch> touches;
   for (const double time_s : looked_at_s(scene)) {
     for (const ToolTip& tip : found.tips) {
-      const Touch at = touch(*body, tip, pose_at(scene.track, time_s));
-      if (at.depth_m > 0.0) touches.push_back(at);
+      const Pose pose = pose_at(scene.track, time_s);
+      if (touch(*body, tip, pose).depth_m <= 0.0) continue;
+      for (const double side : {-1.0, 1.0}) {  // of a line
+        ToolTip end = tip;
+        end.center_T_m += side * tip.half_line_T_m;
+        touches.push_back(touch(*body, end, pose));
+        if (!tip.line()) break;
+      }
     }
   }
   if (touches.empty()) return {{}, "the tool touches the body"};

@@ -35,10 +35,15 @@ TEST(ContactTable, ABallOfTrueShape) {
 TEST(ContactTable, HertzAsTheDepthGoesToZero) {
   const double R = 0.01, D = 1e-5;
   const double F = 4.0 / 3.0 * E_star_pa * std::sqrt(R) * std::pow(D, 1.5);
-  const LocalContact contact = ContactTable(ball_tip(R), {}, E_star_pa, finite_strain(0.5)).at(D);
-  EXPECT_NEAR(contact.force_n, F, 4e-3 * F);
-  EXPECT_NEAR(contact.radius_m, std::sqrt(R * D), 2e-2 * contact.radius_m);
-  EXPECT_NEAR(contact.flat, 0.0, 1e-2);
+  for (const double nu : {0.0, 0.3, 0.5}) {
+    const LocalContact contact = ContactTable(ball_tip(R), {}, E_star_pa, finite_strain(nu)).at(D);
+    EXPECT_NEAR(contact.force_n, F, 2e-2 * F) << nu;  // x = 0.016
+    EXPECT_NEAR(contact.radius_m, std::sqrt(R * D), 2e-2 * contact.radius_m);
+    EXPECT_NEAR(contact.flat, 0.0, 1e-2);
+    // Less deep it is nearer.
+    const double less = ContactTable(ball_tip(R), {}, E_star_pa, finite_strain(nu)).at(0.01 * D).force_n / (1e-3 * F);
+    EXPECT_NEAR(less, 1.0, 0.4 * std::abs(contact.force_n / F - 1.0) + 1e-3) << nu;
+  }
 }
 
 TEST(ContactTable, ABallOnABallHasTheRelativeCurvature) {
@@ -71,7 +76,8 @@ TEST(ContactTable, AFilletIsBetween) {
 }
 
 TEST(ContactTable, OnePotential) {
-  for (const scene::ToolTip& tip : {ball_tip(0.01), flat_tip(0.0045, 0.0015)}) {
+  const scene::ToolTip line{.half_line_T_m = scene::Vec3(0.0, 0.0, 0.006), .radius_m = 0.01};
+  for (const scene::ToolTip& tip : {ball_tip(0.01), flat_tip(0.0045, 0.0015), line}) {
     const ContactTable table(tip, {}, E_star_pa, {0.2, -0.1});
     double last_n = 0.0;
     for (double D = 3e-5; D < 0.009; D *= 1.3) {
@@ -83,6 +89,10 @@ TEST(ContactTable, OnePotential) {
       EXPECT_GT(force_n, last_n);
       last_n = force_n;
     }
+    double work_j = 0.0;
+    const double step_m = 1e-6, last_m = 0.009;
+    for (double D = 0.5 * step_m; D < last_m; D += step_m) work_j += table.at(D).force_n * step_m;
+    EXPECT_NEAR(table.energy_j(last_m), work_j, 1e-5 * work_j);
     EXPECT_EQ(table.at(0.0).force_n, 0.0);
     EXPECT_EQ(table.at(-1.0).force_n, 0.0);
     EXPECT_EQ(table.at(10.0).force_n, table.at(table.largest_indentation_m()).force_n);

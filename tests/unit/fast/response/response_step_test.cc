@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -107,6 +108,107 @@ TEST_F(ResponseStep, PointsUnderTheToolLieOnIt) {
     }
   }
   EXPECT_GT(on_tool, 20);
+}
+
+/// A capsule of 6 mm on its side, turned by some angle about the surface's normal.
+class ResponseLine : public ResponseStep {
+ protected:
+  ResponseLine() {
+    scene_.tool.shape = scene::ToolShape::capsule;
+    scene_.tool.radius_m = R_m;
+    scene_.tool.length_m = 2.0 * half_m;
+    scene_.track = {{0.0, lying(0.001, 0.0)}, {1.0, lying(0.003, 0.0)}};
+    surface_ = scene::tessellate(*scene::body_shape(scene_.body), 16000);
+  }
+  static scene::Pose lying(double depth_m, double x_m) {
+    scene::Pose pose = test::at(x_m, 0.0, 0.06 + R_m - depth_m);
+    pose.orientation =
+        Eigen::AngleAxisd(0.4, scene::Vec3::UnitZ()) * Eigen::AngleAxisd(0.5 * std::numbers::pi, scene::Vec3::UnitX());
+    return pose;
+  }
+  static constexpr double R_m = 0.006, half_m = 0.008;
+};
+
+TEST_F(ResponseLine, PressesAsTheHalfSpaceAndPointsLieOnIt) {
+  C_m_per_n_ = 0.0;
+  const ResponseModel model = this->model();
+  ASSERT_TRUE(model.tips[0].tip.line());
+  ResponseState state(model);
+  const double depth_m = 0.002, x_m = 0.001;
+  const scene::Pose pose = lying(depth_m, x_m);
+  EXPECT_EQ(response_step(model, pose, state), StepStatus::ok);
+  const LocalContact law = model.tips[0].tables.front().at(depth_m);
+  EXPECT_NEAR(state.wrench.force_n.z(), law.force_n, 1e-12 * law.force_n);
+  EXPECT_NEAR(state.wrench.torque_nm.norm(), 0.0, 1e-12);
+  const scene::Vec3 along = pose.orientation * scene::Vec3::UnitZ();
+  EXPECT_NEAR(std::abs(state.contacts[0].half_line_m.normalized().dot(along)), 1.0, 1e-12);
+  // Its patches have the load's second moment along the line.
+  double moment_m2 = 0.0;
+  const int n = model.tips[0].patches;
+  for (int k = 0; k < n; ++k) {
+    const double at_m = (2.0 * k / (n - 1) - 1.0) * state.contacts[0].half_line_m.norm();
+    moment_m2 += at_m * at_m / n;
+  }
+  EXPECT_NEAR(moment_m2, law.half_line_m * law.half_line_m / 3.0, 1e-9 * moment_m2);
+  int on_tool = 0;
+  double furthest_m = 0.0;
+  for (Eigen::Index i = 0; i < surface_.points_m.cols(); ++i) {
+    scene::Vec3 moved_m = surface_.points_m.col(i);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      moved_m[axis] += state.field.displacement_m[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)];
+    }
+    const scene::Vec3 d_m = moved_m - pose.position_m;
+    const double along_m = d_m.dot(along), out_m = (d_m - std::clamp(along_m, -half_m, half_m) * along).norm() - R_m;
+    EXPECT_GT(out_m, -3e-4);
+    if (std::abs(out_m) > 1e-7) continue;
+    ++on_tool;
+    furthest_m = std::max(furthest_m, std::abs(along_m));
+  }
+  EXPECT_GT(on_tool, 40);
+  EXPECT_NEAR(furthest_m, half_m + law.radius_m, 0.001);
+}
+
+TEST_F(ResponseLine, FarAwayItIsAPointLoadAndEqualPosesGiveEqualBits) {
+  C_m_per_n_ = 0.0;
+  const ResponseModel model = this->model();
+  ResponseState once(model), again(model);
+  (void)response_step(model, lying(0.002, 0.0), once);
+  (void)response_step(model, lying(0.003, 0.002), again);
+  (void)response_step(model, lying(0.002, 0.0), again);
+  EXPECT_EQ(once.wrench.force_n, again.wrench.force_n);
+  EXPECT_EQ(once.field.displacement_m, again.field.displacement_m);
+  SpreadLoad point = once.contacts[0].load;
+  EXPECT_NEAR(point.force_n, once.wrench.force_n.z(), 1e-12 * point.force_n);
+  int far = 0;
+  for (Eigen::Index i = 0; i < surface_.points_m.cols(); ++i) {
+    const scene::Vec3 p_m = surface_.points_m.col(i);
+    if ((p_m - point.center_m).norm() < 5.0 * half_m || p_m.z() == 0.0) continue;
+    scene::Vec3 u_m;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      u_m[axis] = once.field.displacement_m[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)];
+    }
+    const scene::Vec3 expected_m = spread_displacement_m(point, model.half_space, p_m);
+    EXPECT_LT((u_m - expected_m).norm(), 0.05 * expected_m.norm());
+    ++far;
+  }
+  EXPECT_GT(far, 100);
+}
+
+TEST_F(ResponseLine, TheBodyIsInSeriesAndTakesTheLoadOverTheLine) {
+  const ResponseModel model = this->model();
+  ResponseState state(model);
+  (void)response_step(model, lying(0.002, 0.0), state);
+  const ResponseContact& contact = state.contacts[0];
+  EXPECT_NEAR(contact.indentation_m + contact.compliance_m_per_n * contact.load.force_n, 0.002, 1e-9);
+  EXPECT_GT(contact.compliance_m_per_n * contact.load.force_n, 1e-4);
+  // The columns at the patches' places, each with its share; all shares together are one.
+  EXPECT_NEAR(state.column_weight.sum(), 1.0, 1e-12);
+  const scene::LoadGrid& grid = model.response.grid;
+  const scene::Vec3 along = contact.half_line_m.normalized(), middle_m = grid.points_m * state.column_weight;
+  EXPECT_LT((middle_m - contact.load.center_m).norm(), 1e-6);
+  const Eigen::VectorXd along_m = (grid.points_m.colwise() - contact.load.center_m).transpose() * along;
+  const double spread_m2 = along_m.cwiseAbs2().dot(state.column_weight);
+  EXPECT_NEAR(spread_m2, contact.law.half_line_m * contact.law.half_line_m / 3.0, 0.01 * spread_m2);
 }
 
 TEST_F(ResponseStep, EqualPosesGiveEqualBits) {
@@ -272,10 +374,11 @@ TEST_F(ResponseStep, SaysWhatItNeeds) {
   other.tool.size_m = scene::Vec3(0.02, 0.02, 0.02);
   EXPECT_THAT(scene::response_needs(other), HasSubstr("its tool is a ball"));
   other = scene_;
-  other.tool.shape = scene::ToolShape::capsule;
+  other.tool.shape = scene::ToolShape::cylinder;
   other.tool.length_m = 0.02;
+  other.tool.edge_radius_m = 0.002;
   for (scene::Waypoint& waypoint : other.track) {
-    waypoint.pose.orientation = Eigen::AngleAxisd(0.5 * std::numbers::pi, scene::Vec3::UnitX());
+    waypoint.pose.orientation = Eigen::AngleAxisd(0.1, scene::Vec3::UnitX());
   }
   EXPECT_THAT(scene::response_needs(other), HasSubstr("upright"));
 }

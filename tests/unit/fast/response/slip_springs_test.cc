@@ -69,6 +69,30 @@ TEST_F(SlipSpringsTest, BeginAsMindlinsAndSlideAtTheLimit) {
   EXPECT_NEAR(slid.displacement_m.x(), last_m, 2e-3 * last_m);
 }
 
+TEST(SlipSpringsLimit, IsMindlinsWithEveryPoissonsRatio) {
+  for (const double any_nu : {0.0, 0.3, 0.5}) {
+    const scene::Material any{3.0e6, any_nu};
+    const ContactTable table(scene::ToolTip{.radius_m = R_m}, LocalShape{}, any.contact_modulus_pa(), FiniteStrain{});
+    const SlipSprings springs({.K = mu, .beta = 1.0, .mu_D = mu}, any_nu, table);
+    SlipState state;
+    double last_n = 0.0, gone_m = 0.0;
+    const LocalContact law = table.at(depth_m);
+    const auto to = [&](double u_m) {
+      last_n = slip(springs, law, depth_m, Matrix2d::Zero(), Vector2d::Zero(), {u_m - gone_m, 0.0}, state).force_n.x();
+      gone_m = u_m;
+      return last_n;
+    };
+    (void)to(0.0);
+    const double G = any.shear_modulus_pa(), a = law.radius_m, F = law.force_n;
+    EXPECT_NEAR(to(1e-9) / 1e-9, 8.0 * G * a / (2.0 - any_nu), 2e-3 * 8.0 * G * a / (2.0 - any_nu)) << any_nu;
+    // u = 3 mu F (2 - nu) / (16 G a) (1 - (1 - Q / (mu F))^(2/3)), Johnson (1985), 7.44.
+    for (const double share : {0.2, 0.5, 0.8}) {
+      const double u_m = 3.0 * mu * F * (2.0 - any_nu) / (16.0 * G * a) * (1.0 - std::pow(1.0 - share, 2.0 / 3.0));
+      EXPECT_NEAR(to(u_m), share * mu * F, 0.03 * mu * F) << any_nu << ' ' << share;
+    }
+  }
+}
+
 TEST_F(SlipSpringsTest, TheWayBackIsTwiceAsLong) {
   // Q = Q* - 2 Q((u* - u) / 2) on the way back (Mindlin and Deresiewicz 1953).
   (void)move(0.0, 0.0);
