@@ -5,6 +5,7 @@
 #include "reference/tool/tool_distance.h"
 #include "reference/verification/closed_forms.h"
 #include "reference/verification/half_space.h"
+#include "reference/verification/pressed_with_friction.h"
 #include "reference/verification/problem.h"
 #include "reference/verification/shifted_ball.h"
 #include "reference/verification/solids.h"
@@ -314,6 +315,39 @@ Findings cones(const Effort& effort) {
   return findings;
 }
 
+/// A flat punch and a ball pressed upright with friction: the contact sticks inside and slips outwards of it.
+Findings pressed_slip(const Effort& effort) {
+  const int meshes = meshes_for(effort);
+  Findings findings;
+  for (const auto& [nu, mu] : {std::pair(0.3, 0.2), std::pair(0.0, 0.3)}) {
+    if (effort.quick && nu == 0.0) continue;
+    const PressedWithFriction exact = pressed_with_friction(nu, mu);
+    for (const bool ball : {false, true}) {
+      const double depth_m = ball ? 2e-4 * R_m : 0.01 * R_m;
+      HalfSpaceProblem problem{{E_pa, nu}, ball ? ball_punch(R_m, depth_m) : flat_punch(R_m), depth_m};
+      problem.friction = mu;
+      // The punch's increments are all alike.
+      problem.steps = ball ? 32 : 1;
+      const std::string at = fmt::format("{}, nu = {:.3g}, mu = {:.3g}", ball ? "ball" : "flat punch", nu, mu);
+      const auto answers = on_meshes(problem, meshes, effort, at);
+      const Indentation free = hertz(E_star_pa(nu), R_m, depth_m);
+      const double contact_m = ball ? free.contact_radius_m / std::sqrt(exact.ball_depth) : R_m;
+      check(findings, "stick radius, " + at, "m", exact.stick_radius * contact_m, limit_of_table, answers,
+            [](const HalfSpaceAnswer& answer) { return answer.stick_radius_m; });
+      // Of the part that friction adds the error is measured against the whole force, as a scene's is.
+      check(findings, "force, " + at, "N",
+            ball ? exact.ball_force * free.force_n
+                 : exact.punch_stiffness * flat_punch_force_n(E_star_pa(nu), R_m, depth_m),
+            limit_of_closed_form, answers, force_of);
+      if (ball) check(findings, "contact radius, " + at, "m", contact_m, limit_of_edge, answers, radius_of);
+      findings.notes.push_back(fmt::format("{}: without friction the force is {:.4g} N.", at,
+                                           ball ? free.force_n : flat_punch_force_n(E_star_pa(nu), R_m, depth_m)));
+    }
+  }
+  findings.notes.push_back(mesh_note(meshes) + " The ball in 32 equal steps.");
+  return findings;
+}
+
 /// A half ball on rollers, pressed by a rigid flat.
 struct PressedBall {
   double force_n = 0.0, contact_radius_m = 0.0, peak_pa = 0.0;
@@ -524,6 +558,8 @@ std::vector<Problem> contact_problems() {
       {"rounded-punch", "Flat punch with a fillet on a half space, small strain", sneddons, rounded},
       {"cone", "Cone on a half space, small strain", sneddons, cones},
       {"friction-wedge", "A wedge drawn along a block, with friction", "NAFEMS CGS-4", wedge},
+      {"pressed-slip", "Flat punch and ball pressed with friction: partial slip, small strain",
+       "D. A. Spence, J. Elasticity 5 (1975) 297-319, solved anew", pressed_slip},
       {"cattaneo-mindlin", "Ball moved along a half space with friction: partial slip, small strain",
        "Mindlin, J. Appl. Mech. 16 (1949) 259-268", cattaneo},
   };
