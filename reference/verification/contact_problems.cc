@@ -327,7 +327,7 @@ Findings pressed_slip(const Effort& effort) {
       HalfSpaceProblem problem{{E_pa, nu}, ball ? ball_punch(R_m, depth_m) : flat_punch(R_m), depth_m};
       problem.friction = mu;
       // The punch's increments are all alike.
-      problem.steps = ball ? 32 : 1;
+      problem.steps = !ball ? 1 : effort.quick ? 32 : 64;
       const std::string at = fmt::format("{}, nu = {:.3g}, mu = {:.3g}", ball ? "ball" : "flat punch", nu, mu);
       const auto answers = on_meshes(problem, meshes, effort, at);
       const Indentation free = hertz(E_star_pa(nu), R_m, depth_m);
@@ -344,7 +344,8 @@ Findings pressed_slip(const Effort& effort) {
                                            ball ? free.force_n : flat_punch_force_n(E_star_pa(nu), R_m, depth_m)));
     }
   }
-  findings.notes.push_back(mesh_note(meshes) + " The ball in 32 equal steps.");
+  findings.notes.push_back(mesh_note(meshes) + " The contact of the ball grows by equal parts in " +
+                           (effort.quick ? "32" : "64") + " steps.");
   return findings;
 }
 
@@ -442,27 +443,45 @@ Findings cattaneo(const Effort& effort) {
   Findings findings;
   reference::ShiftedBall problem{{E_pa, 0.5}, R_m, 1e-6, 0.3};
   const double slides_m = 1.5 * problem.friction * problem.depth_m;
+  const Indentation pressed = hertz(E_star_pa(0.5), R_m, problem.depth_m);
+  const double largest_shear_pa = problem.friction * hertz_peak_pressure_pa(pressed);
   problem.shift_m = 0.9 * slides_m;
   problem.steps = 3;
-  std::vector<std::vector<double>> shares(problem.steps);
-  std::vector<double> shifts_m(problem.steps);
-  problem.cells_per_radius = 2.0;
-  effort.tell("two cells to the contact's radius");
-  const std::vector<reference::ShiftedBallStep> steps = reference::shift_ball(problem);
-  for (std::size_t k = 0; k < steps.size(); ++k) {
-    shares[k].push_back(steps[k].tangential_n / (problem.friction * steps[k].normal_n));
-    shifts_m[k] = steps[k].shift_m;
+  problem.places_m = pressed.contact_radius_m * Eigen::Vector2d(0.4, 0.8);
+  std::vector<std::vector<reference::ShiftedBallStep>> meshes;
+  for (problem.cells_per_radius = 2.0; problem.cells_per_radius <= (effort.quick ? 4.0 : 8.0);
+       problem.cells_per_radius *= 2.0) {
+    effort.tell(fmt::format("{:.3g} cells to the contact's radius", problem.cells_per_radius));
+    meshes.push_back(reference::shift_ball(problem));
   }
-  for (std::size_t k = 0; k < shifts_m.size(); ++k) {
-    findings.checks.push_back(
-        from_levels(fmt::format("Q / (mu P) at {:.3g} of the gross-slip shift", shifts_m[k] / slides_m), "",
-                    reference::mindlin_force(problem, shifts_m[k]), limit_of_table, shares[k]));
+  for (int step = 0; step < problem.steps; ++step) {
+    const double shift_m = meshes.back()[step].shift_m, force = reference::mindlin_force(problem, shift_m);
+    const double stick_radius = reference::mindlin_stick_radius(force);
+    const auto add = [&](const std::string& what, const char* unit, double exact, double limit, const auto& value_of) {
+      std::vector<double> values;
+      for (const auto& steps : meshes) values.push_back(value_of(steps[step]));
+      findings.checks.push_back(from_levels(
+          fmt::format("{} at {:.3g} of the gross-slip shift", what, shift_m / slides_m), unit, exact, limit, values));
+    };
+    add("Q / (mu P)", "", force, limit_of_table,
+        [&](const reference::ShiftedBallStep& now) { return now.tangential_n / (problem.friction * now.normal_n); });
+    add("stick radius c / a", "", stick_radius, limit_of_table,
+        [](const reference::ShiftedBallStep& now) { return reference::stick_radius_of_share(now.stuck_share); });
+    for (Eigen::Index k = 0; k < problem.places_m.size(); ++k) {
+      const double r_over_a = problem.places_m[k] / pressed.contact_radius_m;
+      const double exact = reference::mindlin_shear(stick_radius, r_over_a);
+      add(fmt::format("shear / (mu p0) at r/a = {:.3g}", r_over_a), "", exact, limit_of_table,
+          [&](const reference::ShiftedBallStep& now) { return now.shear_pa[k] / largest_shear_pa; });
+      Check& added = findings.checks.back();
+      if (added.mesh_band) *added.mesh_band *= exact;
+      added.scale = 1.0;
+    }
   }
-  findings.notes.emplace_back(
-      "nu = 0.5, in space, on one half of a block of 300 contact radii to each side, two cells to the contact's "
-      "radius. At smaller nu pressure and "
-      "friction "
-      "affect each other, and the closed form is one of another model.");
+  findings.notes.push_back(fmt::format(
+      "nu = 0.5, in space, on one half of a block of 300 contact radii to each side, 2 to {:.3g} cells to the "
+      "contact's radius. At smaller nu pressure and friction affect each other, and the closed form is one "
+      "of another model. Errors of the shear are of mu p0, p0 Hertz's largest pressure.",
+      0.5 * problem.cells_per_radius));
   return findings;
 }
 

@@ -136,8 +136,8 @@ HalfSpaceAnswer indent_half_space(const HalfSpaceProblem& problem) {
   int newton_iterations = 0;
   for (int step = 1; step <= problem.steps; ++step) {
     reference::Solved<2> next;
-    const reference::AdvanceReport report =
-        path.advance(before ? &*before : nullptr, end, static_cast<double>(step) / problem.steps, next, {}, {});
+    const double share = std::pow(static_cast<double>(step) / problem.steps, 2);
+    const reference::AdvanceReport report = path.advance(before ? &*before : nullptr, end, share, next, {}, {});
     if (!report.converged) throw reference::NotConverged("tool on half space: " + report.last.trouble);
     newton_iterations += report.newton_iterations;
     before = std::exchange(end, std::move(next));

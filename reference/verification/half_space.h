@@ -42,8 +42,8 @@ struct HalfSpaceProblem {
   double depth_m = 0.0;
   scene::Kinematics kinematics = scene::Kinematics::small;
   std::optional<double> friction = {};  ///< Coulomb's coefficient
-  int steps = 1;                        ///< equal ones; with friction the answer depends on them
-  int level = 3;                        ///< mesh of level_mesh(): 4, 8, 16, 32, ... cells to the patch's radius
+  int steps = 1;  ///< with friction the answer depends on them; a ball's contact grows by equal parts in each
+  int level = 3;  ///< mesh of level_mesh(): 4, 8, 16, 32, ... cells to the patch's radius
   /// Cylinder's radius and height over the patch's radius. The far end adds about 1.13 / this to the force.
   double domain_over_patch = 3000.0;
   Eigen::VectorXd radii_m = {};  ///< where on the surface displacement and pressure are wanted

@@ -130,10 +130,14 @@ PressedWithFriction pressed_with_friction(double poissons_ratio, double friction
   PressedWithFriction answer;
   if (g == 0.0) return answer;  // nothing moves along the surface
   // The shear just inside is below friction for too small a stick radius, and above for too large a one.
-  double low = 0.0, high = 1.0;
-  for (int k = 0; k < 24; ++k) {
+  const auto step_at = [&](double stick_radius) { return Rings(stick_radius, rings).solve(g, friction); };
+  double low = 0.1, high = 0.998;
+  if (!(step_at(low) < 0.0 && step_at(high) > 0.0)) {
+    throw std::domain_error("pressed_with_friction: the stick radius is not between 0.1 and 0.998");
+  }
+  for (int k = 0; k < 18; ++k) {
     const double middle = 0.5 * (low + high);
-    (Rings(middle, rings).solve(g, friction) < 0.0 ? low : high) = middle;
+    (step_at(middle) < 0.0 ? low : high) = middle;
   }
   answer.stick_radius = 0.5 * (low + high);
   Rings punch(answer.stick_radius, rings);
