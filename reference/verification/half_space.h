@@ -41,13 +41,13 @@ struct HalfSpaceProblem {
   Punch punch;
   double depth_m = 0.0;
   scene::Kinematics kinematics = scene::Kinematics::small;
-  std::optional<double> friction = {};  ///< Coulomb's coefficient
-  int steps = 1;  ///< with friction the answer depends on them; a ball's contact grows by equal parts in each
   int level = 3;  ///< mesh of level_mesh(): 4, 8, 16, 32, ... cells to the patch's radius
   /// Cylinder's radius and height over the patch's radius. The far end adds about 1.13 / this to the force.
   double domain_over_patch = 3000.0;
-  Eigen::VectorXd radii_m = {};  ///< where on the surface displacement and pressure are wanted
-  Eigen::VectorXd below_m = {};  ///< how far below the surface, on the axis, stress is wanted
+  Eigen::VectorXd radii_m = {};         ///< where on the surface displacement and pressure are wanted
+  Eigen::VectorXd below_m = {};         ///< how far below the surface, on the axis, stress is wanted
+  std::optional<double> friction = {};  ///< Coulomb's coefficient
+  int steps = 1;  ///< with friction the answer depends on them; a ball's contact grows by equal parts in each
 };
 
 struct HalfSpaceAnswer {

@@ -25,9 +25,6 @@ std::vector<ShiftedBallStep> shift_ball(const ShiftedBall& problem) {
   const auto place_tool = [&](double shift_m) {
     return ball_tool<3>(problem.radius_m, {shift_m, 0.0, problem.radius_m - problem.depth_m});
   };
-  Eigen::Matrix3Xd places_m = Eigen::Matrix3Xd::Zero(3, problem.places_m.size());
-  places_m.row(0) = problem.places_m.transpose();
-  const SurfaceSampler<3> sampler(body.mesh(), places_m, false, true);
   State<3> state = body.rest();
   const auto solve = [&](double shift_m) {
     body.set_tool(place_tool(shift_m));
@@ -47,7 +44,14 @@ std::vector<ShiftedBallStep> shift_ball(const ShiftedBall& problem) {
     now.normal_n = seen.force_n.z();
     now.tangential_n = -seen.force_n.x();
     now.stuck_share = seen.regions.at(0).stuck_share;
-    now.shear_pa = sampler.at_points(body.contact_traction(state).nodal_pa).row(0).transpose();
+    if (problem.places_m.size() > 0) {
+      Eigen::Matrix3Xd places_m = Eigen::Matrix3Xd::Zero(3, problem.places_m.size());
+      places_m.row(0) = problem.places_m.transpose();
+      now.shear_pa = SurfaceSampler<3>(body.mesh(), places_m, false, true)
+                         .at_points(body.contact_traction(state).nodal_pa)
+                         .row(0)
+                         .transpose();
+    }
     now.dissipated_j = seen.dissipated_j;
   }
   return steps;

@@ -62,7 +62,7 @@ TEST(HalfSpaceLimit, LargeStepDoesNotEndInAnUnstableBalance) {
 
 TEST(HalfSpaceLimit, AContactNarrowerThanTheFirstCellConverges) {
   // The tool touches the two nodes nearest to the axis only, and what it presses on the axis holds the other one.
-  for (const double share : {4.5, 5.0, 8.0}) {
+  for (const double share : {5.0, 5.25, 5.5, 8.0}) {
     const double depth_m = 2e-4 * R_m;
     HalfSpaceProblem problem{{E_pa, 0.3}, ball_punch(R_m, depth_m), share / 288.0 * depth_m, Kinematics::small, 0};
     const HalfSpaceAnswer answer = indent_half_space(problem);
