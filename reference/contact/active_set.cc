@@ -42,12 +42,18 @@ double ActiveSet<dim>::update(State<dim>& state, bool late, bool& changed) const
   // A node exactly on the contact's edge may flip between two equal answers. Late in the solve it is let go only when
   // it pulls noticeably.
   const double tolerated_pull_pa = late ? 1e-5 * largest_pa : 0.0;
+  // What presses on a node of the axis, which has no area, holds its partner too. In a contact narrower than the two
+  // the partner alone pulls, and would be let go and caught again for ever.
+  std::vector<double> held_n = lambda_n_;
+  for (const int node : model_.nodes) {
+    const int partner = model_.axis_partner[node];
+    if (partner >= 0) held_n[partner] += std::max(lambda_n_[node], 0.0);
+  }
   std::vector<char> next(state.touching.size(), 0);
   for (const int node : model_.nodes) {
     const double g_m = gaps_[node].value_m;
-    const bool touches = state.touching[node]
-                             ? lambda_n_[node] / model_.area_m2[node] - c_pa_per_m * g_m > -tolerated_pull_pa
-                             : g_m < 0.0;
+    const bool touches =
+        state.touching[node] ? held_n[node] / model_.area_m2[node] - c_pa_per_m * g_m > -tolerated_pull_pa : g_m < 0.0;
     next[node] = touches ? 1 : 0;
   }
   if constexpr (dim == 2) {

@@ -5,6 +5,7 @@
 #include "reference/tool/tool_distance.h"
 #include "reference/verification/closed_forms.h"
 #include "reference/verification/half_space.h"
+#include "reference/verification/pressed_with_friction.h"
 #include "reference/verification/problem.h"
 #include "reference/verification/shifted_ball.h"
 #include "reference/verification/solids.h"
@@ -314,6 +315,47 @@ Findings cones(const Effort& effort) {
   return findings;
 }
 
+/// A flat punch and a ball pressed upright with friction: the contact sticks inside and slips outwards of it.
+Findings pressed_slip(const Effort& effort) {
+  // Of one to five percent of the force, in which the errors of the meshes nearly cancel.
+  constexpr double limit_of_added_part = 0.02;
+  const int meshes = meshes_for(effort);
+  Findings findings;
+  for (const auto& [nu, mu] : {std::pair(0.3, 0.2), std::pair(0.0, 0.3)}) {
+    if (effort.quick && nu == 0.0) continue;
+    const PressedWithFriction exact = pressed_with_friction(nu, mu);
+    for (const bool ball : {false, true}) {
+      const double depth_m = ball ? 2e-4 * R_m : 0.01 * R_m;
+      HalfSpaceProblem problem{{E_pa, nu}, ball ? ball_punch(R_m, depth_m) : flat_punch(R_m), depth_m};
+      problem.friction = mu;
+      // The punch's increments are all alike.
+      problem.steps = !ball ? 1 : effort.quick ? 32 : 64;
+      const std::string at = fmt::format("{}, nu = {:.3g}, mu = {:.3g}", ball ? "ball" : "flat punch", nu, mu);
+      const auto answers = on_meshes(problem, meshes, effort, at);
+      const Indentation free = hertz(E_star_pa(nu), R_m, depth_m);
+      const double contact_m = ball ? free.contact_radius_m / std::sqrt(exact.ball_depth) : R_m;
+      check(findings, "stick radius, " + at, "m", exact.stick_radius * contact_m, limit_of_table, answers,
+            [](const HalfSpaceAnswer& answer) { return answer.stick_radius_m; });
+      const double free_n = ball ? free.force_n : flat_punch_force_n(E_star_pa(nu), R_m, depth_m);
+      const double added = (ball ? exact.ball_force : exact.punch_stiffness) - 1.0;
+      check(findings, "force, " + at, "N", (1.0 + added) * free_n, limit_of_closed_form, answers, force_of);
+      HalfSpaceProblem without = problem;
+      without.friction.reset();
+      without.steps = 1;
+      const auto free_answers = on_meshes(without, meshes, effort, at + ", without friction");
+      std::vector<double> values;
+      for (int mesh = 0; mesh < meshes; ++mesh) {
+        values.push_back(answers[mesh].force_n / free_answers[mesh].force_n - 1.0);
+      }
+      findings.checks.push_back(from_levels("part added by friction, " + at, "", added, limit_of_added_part, values));
+      if (ball) check(findings, "contact radius, " + at, "m", contact_m, limit_of_edge, answers, radius_of);
+    }
+  }
+  findings.notes.push_back(mesh_note(meshes) + " The contact of the ball grows by equal parts in " +
+                           (effort.quick ? "32" : "64") + " steps.");
+  return findings;
+}
+
 /// A half ball on rollers, pressed by a rigid flat.
 struct PressedBall {
   double force_n = 0.0, contact_radius_m = 0.0, peak_pa = 0.0;
@@ -408,27 +450,47 @@ Findings cattaneo(const Effort& effort) {
   Findings findings;
   reference::ShiftedBall problem{{E_pa, 0.5}, R_m, 1e-6, 0.3};
   const double slides_m = 1.5 * problem.friction * problem.depth_m;
+  const Indentation pressed = hertz(E_star_pa(0.5), R_m, problem.depth_m);
+  const double largest_shear_pa = problem.friction * hertz_peak_pressure_pa(pressed);
   problem.shift_m = 0.9 * slides_m;
   problem.steps = 3;
-  std::vector<std::vector<double>> shares(problem.steps);
-  std::vector<double> shifts_m(problem.steps);
-  problem.cells_per_radius = 2.0;
-  effort.tell("two cells to the contact's radius");
-  const std::vector<reference::ShiftedBallStep> steps = reference::shift_ball(problem);
-  for (std::size_t k = 0; k < steps.size(); ++k) {
-    shares[k].push_back(steps[k].tangential_n / (problem.friction * steps[k].normal_n));
-    shifts_m[k] = steps[k].shift_m;
+  problem.places_m = pressed.contact_radius_m * Eigen::Vector2d(0.4, 0.8);
+  std::vector<std::vector<reference::ShiftedBallStep>> meshes;
+  for (problem.cells_per_radius = 2.0; problem.cells_per_radius <= (effort.quick ? 2.0 : 4.0);
+       problem.cells_per_radius *= 2.0) {
+    effort.tell(fmt::format("{:.3g} cells to the contact's radius", problem.cells_per_radius));
+    meshes.push_back(reference::shift_ball(problem));
   }
-  for (std::size_t k = 0; k < shifts_m.size(); ++k) {
-    findings.checks.push_back(
-        from_levels(fmt::format("Q / (mu P) at {:.3g} of the gross-slip shift", shifts_m[k] / slides_m), "",
-                    reference::mindlin_force(problem, shifts_m[k]), limit_of_table, shares[k]));
+  for (int step = 0; step < problem.steps; ++step) {
+    const double shift_m = meshes.back()[step].shift_m, force = reference::mindlin_force(problem, shift_m);
+    const double stick_radius = reference::mindlin_stick_radius(force);
+    const auto add = [&](const std::string& what, const char* unit, double exact, double limit, const auto& value_of) {
+      std::vector<double> values;
+      for (const auto& steps : meshes) values.push_back(value_of(steps[step]));
+      findings.checks.push_back(from_levels(
+          fmt::format("{} at {:.3g} of the gross-slip shift", what, shift_m / slides_m), unit, exact, limit, values));
+    };
+    add("Q / (mu P)", "", force, limit_of_table,
+        [&](const reference::ShiftedBallStep& now) { return now.tangential_n / (problem.friction * now.normal_n); });
+    if (effort.quick) continue;
+    // Of the contact's radius and of mu p0, on cells of a quarter of the radius.
+    constexpr double limit_of_stick_radius = 0.03, limit_of_shear = 0.07;
+    add("stick radius c / a", "", stick_radius, limit_of_stick_radius,
+        [](const reference::ShiftedBallStep& now) { return reference::stick_radius_of_share(now.stuck_share); });
+    findings.checks.back().scale = 1.0;
+    for (Eigen::Index k = 0; k < problem.places_m.size(); ++k) {
+      const double r_over_a = problem.places_m[k] / pressed.contact_radius_m;
+      add(fmt::format("shear / (mu p0) at r/a = {:.3g}", r_over_a), "",
+          reference::mindlin_shear(stick_radius, r_over_a), limit_of_shear,
+          [&](const reference::ShiftedBallStep& now) { return now.shear_pa[k] / largest_shear_pa; });
+      findings.checks.back().scale = 1.0;
+    }
   }
-  findings.notes.emplace_back(
-      "nu = 0.5, in space, on one half of a block of 300 contact radii to each side, two cells to the contact's "
-      "radius. At smaller nu pressure and "
-      "friction "
-      "affect each other, and the closed form is one of another model.");
+  findings.notes.push_back(fmt::format(
+      "nu = 0.5, in space, on one half of a block of 300 contact radii to each side, 2 to {:.3g} cells to the "
+      "contact's radius. At smaller nu pressure and friction affect each other, and the closed form is one "
+      "of another model. p0 is Hertz's largest pressure.",
+      0.5 * problem.cells_per_radius));
   return findings;
 }
 
@@ -524,6 +586,8 @@ std::vector<Problem> contact_problems() {
       {"rounded-punch", "Flat punch with a fillet on a half space, small strain", sneddons, rounded},
       {"cone", "Cone on a half space, small strain", sneddons, cones},
       {"friction-wedge", "A wedge drawn along a block, with friction", "NAFEMS CGS-4", wedge},
+      {"pressed-slip", "Flat punch and ball pressed with friction: partial slip, small strain",
+       "D. A. Spence, J. Elasticity 5 (1975) 297-319, solved anew", pressed_slip},
       {"cattaneo-mindlin", "Ball moved along a half space with friction: partial slip, small strain",
        "Mindlin, J. Appl. Mech. 16 (1949) 259-268", cattaneo},
   };

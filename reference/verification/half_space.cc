@@ -12,6 +12,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
 
 namespace touchstone::verification {
 namespace {
@@ -47,6 +51,19 @@ scene::Tool cylinder(double radius_m, double edge_radius_m) {
   tool.length_m = 4.0 * radius_m;
   tool.edge_radius_m = edge_radius_m;
   return tool;
+}
+
+double stick_radius_m(const reference::ContactProblem<2>& body, const reference::State<2>& state) {
+  double sticks_m = 0.0, slips_m = std::numeric_limits<double>::infinity();
+  const std::vector<reference::NodeContact<2>> contacts = body.node_contacts(state);
+  const auto radius_m = [&](const reference::NodeContact<2>& contact) { return body.mesh().points_m(0, contact.node); };
+  for (const auto& contact : contacts) {
+    if (!contact.slips) sticks_m = std::max(sticks_m, radius_m(contact));
+  }
+  for (const auto& contact : contacts) {
+    if (contact.slips && radius_m(contact) > sticks_m) slips_m = std::min(slips_m, radius_m(contact));
+  }
+  return std::isfinite(slips_m) ? 0.5 * (sticks_m + slips_m) : sticks_m;
 }
 
 }  // namespace
@@ -108,33 +125,42 @@ HalfSpaceAnswer indent_half_space(const HalfSpaceProblem& problem) {
   const reference::Discretisation<2> mesh = reference::level_mesh<2>(scene, choice, problem.level);
   reference::ContactProblem<2> body(mesh, problem.material, problem.kinematics, false, false);
 
-  const reference::Solved<2> rest{0.0, body.rest(), false};
-  reference::Solved<2> end;
-  reference::LoadPath<2> path(body, [&](double share) -> std::optional<reference::RigidTool<2>> {
+  if (problem.friction) body.set_friction({*problem.friction, 1.0, *problem.friction}, 0.0);
+  const auto tool_at = [&](double share) {
     const Vec3 center_m(0.0, 0.0, L_m + punch.tip_m - share * problem.depth_m);
     return reference::RigidTool<2>(punch.tool, {center_m, Eigen::Quaterniond::Identity()});
-  });
-  const reference::AdvanceReport report = path.advance(nullptr, rest, 1.0, end, {}, {});
-  if (!report.converged) throw reference::NotConverged("tool on half space: " + report.last.trouble);
+  };
+  reference::LoadPath<2> path(body, tool_at, tool_at);
+  reference::Solved<2> end{0.0, body.rest(), false};
+  std::optional<reference::Solved<2>> before;
+  int newton_iterations = 0;
+  for (int step = 1; step <= problem.steps; ++step) {
+    reference::Solved<2> next;
+    const double share = std::pow(static_cast<double>(step) / problem.steps, 2);
+    const reference::AdvanceReport report = path.advance(before ? &*before : nullptr, end, share, next, {}, {});
+    if (!report.converged) throw reference::NotConverged("tool on half space: " + report.last.trouble);
+    newton_iterations += report.newton_iterations;
+    before = std::exchange(end, std::move(next));
+  }
   const reference::Observation seen = body.observe(end.state);
-  HalfSpaceAnswer answer{seen.force_n.z(),
-                         seen.contact_radius_m,
-                         axis_pressure_pa(body, end.state, problem.kinematics),
-                         seen.equilibrium_rel,
-                         seen.node_penetration_m,
-                         {},
-                         {},
-                         {},
-                         {},
-                         body.unknowns(),
-                         report.newton_iterations};
+  HalfSpaceAnswer answer;
+  answer.force_n = seen.force_n.z();
+  answer.contact_radius_m = seen.contact_radius_m;
+  answer.stick_radius_m = problem.friction ? stick_radius_m(body, end.state) : 0.0;
+  answer.peak_pressure_pa = axis_pressure_pa(body, end.state, problem.kinematics);
+  answer.equilibrium_rel = seen.equilibrium_rel;
+  answer.node_penetration_m = seen.node_penetration_m;
+  answer.unknowns = body.unknowns();
+  answer.newton_iterations = newton_iterations;
   if (problem.radii_m.size() > 0) {
     Eigen::Matrix3Xd points_m = Eigen::Matrix3Xd::Zero(3, problem.radii_m.size());
     points_m.row(0) = problem.radii_m.transpose();
     points_m.row(2).setConstant(L_m);
     const reference::SurfaceSampler<2> sampler(mesh, points_m, false, false);
     answer.settlement_m = -sampler.at_points(end.state.u_m).row(2).transpose();
-    answer.pressure_pa = -sampler.at_points(body.contact_traction(end.state).nodal_pa).row(2).transpose();
+    const Eigen::Matrix3Xd traction_pa = sampler.at_points(body.contact_traction(end.state).nodal_pa);
+    answer.pressure_pa = -traction_pa.row(2).transpose();
+    answer.shear_pa = traction_pa.row(0).transpose();
   }
   if (problem.below_m.size() > 0) {
     Eigen::Matrix3Xd points_m = Eigen::Matrix3Xd::Zero(3, problem.below_m.size());

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,18 +44,22 @@ struct HalfSpaceProblem {
   int level = 3;  ///< mesh of level_mesh(): 4, 8, 16, 32, ... cells to the patch's radius
   /// Cylinder's radius and height over the patch's radius. The far end adds about 1.13 / this to the force.
   double domain_over_patch = 3000.0;
-  Eigen::VectorXd radii_m = {};  ///< where on the surface displacement and pressure are wanted
-  Eigen::VectorXd below_m = {};  ///< how far below the surface, on the axis, stress is wanted
+  Eigen::VectorXd radii_m = {};         ///< where on the surface displacement and pressure are wanted
+  Eigen::VectorXd below_m = {};         ///< how far below the surface, on the axis, stress is wanted
+  std::optional<double> friction = {};  ///< Coulomb's coefficient
+  int steps = 1;  ///< with friction the answer depends on them; a ball's contact grows by equal parts in each
 };
 
 struct HalfSpaceAnswer {
   double force_n = 0.0;
   double contact_radius_m = 0.0;
+  double stick_radius_m = 0.0;    ///< halfway between the last sticking node and the next; 0 without friction
   double peak_pressure_pa = 0.0;  ///< on the axis
   double equilibrium_rel = 0.0;
   double node_penetration_m = 0.0;
   Eigen::VectorXd settlement_m;  ///< downwards, at radii_m
   Eigen::VectorXd pressure_pa;   ///< at radii_m
+  Eigen::VectorXd shear_pa;      ///< outwards on the body, at radii_m
   Eigen::VectorXd stress_zz_pa;  ///< along the axis, at below_m
   Eigen::VectorXd stress_rr_pa;  ///< across it
   int unknowns = 0;

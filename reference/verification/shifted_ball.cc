@@ -2,6 +2,7 @@
 
 #include "reference/contact/contact_problem.h"
 #include "reference/mesh/mesh.h"
+#include "reference/mesh/sampling.h"
 #include "reference/tool/tool_distance.h"
 
 #include <algorithm>
@@ -43,6 +44,14 @@ std::vector<ShiftedBallStep> shift_ball(const ShiftedBall& problem) {
     now.normal_n = seen.force_n.z();
     now.tangential_n = -seen.force_n.x();
     now.stuck_share = seen.regions.at(0).stuck_share;
+    if (problem.places_m.size() > 0) {
+      Eigen::Matrix3Xd places_m = Eigen::Matrix3Xd::Zero(3, problem.places_m.size());
+      places_m.row(0) = problem.places_m.transpose();
+      now.shear_pa = SurfaceSampler<3>(body.mesh(), places_m, false, true)
+                         .at_points(body.contact_traction(state).nodal_pa)
+                         .row(0)
+                         .transpose();
+    }
     now.dissipated_j = seen.dissipated_j;
   }
   return steps;
@@ -55,6 +64,11 @@ double mindlin_force(const ShiftedBall& problem, double shift_m) {
 }
 
 double mindlin_stick_radius(double force) { return std::cbrt(1.0 - force); }
+
+double mindlin_shear(double stick_radius, double r_over_a) {
+  const auto ellipse = [](double x) { return std::sqrt(std::max(0.0, 1.0 - x * x)); };
+  return ellipse(r_over_a) - stick_radius * ellipse(r_over_a / stick_radius);
+}
 
 double stick_radius_of_share(double stuck_share) { return std::sqrt(1.0 - std::pow(1.0 - stuck_share, 2.0 / 3.0)); }
 

@@ -3,6 +3,8 @@
 
 #include "scene/model/scene.h"
 
+#include <Eigen/Core>
+
 #include <vector>
 
 namespace touchstone::reference {
@@ -18,6 +20,7 @@ struct ShiftedBall {
   int steps = 1;
   double cells_per_radius = 6.0;  ///< of the contact
   double extent = 300.0;          ///< half the block's width, and its height, in contact radii
+  Eigen::VectorXd places_m = {};  ///< along the shift from the middle: where the shear is wanted
 };
 
 /// One step's answer.
@@ -25,6 +28,7 @@ struct ShiftedBallStep {
   double shift_m = 0.0;
   double normal_n = 0.0, tangential_n = 0.0;  ///< P and Q on the body
   double stuck_share = 0.0;                   ///< of P, carried by what sticks
+  Eigen::VectorXd shear_pa;                   ///< at places_m, along the shift
   double dissipated_j = 0.0;                  ///< since the first step
   int newton_iterations = 0;
 };
@@ -36,6 +40,9 @@ struct ShiftedBallStep {
 /// K. L. Johnson, Contact Mechanics (1985), 7.2.
 [[nodiscard]] double mindlin_force(const ShiftedBall& problem, double shift_m);
 [[nodiscard]] double mindlin_stick_radius(double force);
+
+/// q / (mu p0) at r / a, p0 Hertz's largest pressure, of the stick radius c / a. Johnson, as above.
+[[nodiscard]] double mindlin_shear(double stick_radius, double r_over_a);
 
 /// c / a from the fraction of P inside c under Hertz's pressure, 1 - (1 - (c/a)^2)^(3/2).
 [[nodiscard]] double stick_radius_of_share(double stuck_share);
