@@ -16,7 +16,7 @@ inline constexpr double left_m = 0.004, right_m = 0.003, apart_m = 0.030;
 inline scene::Tool two_balls(bool left_first = true) {
   auto both = std::make_shared<scene::TriangleMesh>();
   const auto add = [&](double x_m, double radius_m) {
-    const auto one = reference::mesh_of(scene::Sphere(scene::Vec3(x_m, 0.0, radius_m), radius_m), 3000);
+    const auto one = mesh_of(scene::Sphere(scene::Vec3(x_m, 0.0, radius_m), radius_m), 3000);
     const auto begin = both->points_m.cols();
     both->points_m.conservativeResize(3, begin + one->points_m.cols());
     both->points_m.rightCols(one->points_m.cols()) = one->points_m;
