@@ -11,8 +11,6 @@ namespace touchstone::fast {
 namespace {
 
 constexpr std::array points_tried{CellRule{}.points, 64, 96, 128, 192, 256, 384, 512, 768, 1024};
-/// The load of so many, each in quarters, is taken for the limit.
-constexpr int points_of_limit = 512;
 /// Poses of the track, evenly spaced in time, and those in contact that are then looked at, at most.
 constexpr int poses_tried = 64;
 constexpr std::size_t poses_kept = 8;
@@ -20,9 +18,9 @@ constexpr std::size_t poses_kept = 8;
 constexpr double small_load_rel = 0.2;
 
 /// All rounds together make several times as many cells as the last one, which may have twice as many as are asked for.
-CellRule rule_of(int points, int halvings) {
-  return {.points = points, .halvings = halvings, .room = std::max(1024, (points << halvings) * 16)};
-}
+CellRule rule_of(int points) { return {.points = points, .room = std::max(1024, points * 16)}; }
+/// Their load is taken for the limit. The last two rounds make most of them.
+constexpr CellRule limit_rule{.points = 512, .halvings = 2, .room = 20000};
 
 /// What the law makes the force of, over all regions.
 struct Load {
@@ -90,7 +88,7 @@ std::vector<scene::Pose> poses_in_contact(const std::vector<scene::Waypoint>& tr
   const double begin_s = track.front().time_s, length_s = track.back().time_s - begin_s;
   for (int k = 0; k < poses_tried; ++k)
     all.push_back(scene::pose_at(track, begin_s + length_s * k / (poses_tried - 1)));
-  const std::vector<Load> loads = model.loads(rule_of(points_tried[0], 0), all);
+  const std::vector<Load> loads = model.loads(rule_of(points_tried[0]), all);
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (loads[k].linear_m > 0.0) touching.push_back(all[k]);
   }
@@ -121,11 +119,11 @@ double error_rel(const std::vector<Load>& loads, const std::vector<Load>& limit)
 ContactCells choose_cells(const std::vector<scene::Waypoint>& track, FastModel& model) {
   Softened softened(model);
   const std::vector<scene::Pose> poses = poses_in_contact(track, softened);
-  ContactCells chosen{rule_of(points_tried[0], 0), 0.0};
+  ContactCells chosen{rule_of(points_tried[0]), 0.0};
   if (poses.empty()) return chosen;
-  const std::vector<Load> limit = softened.loads(rule_of(points_of_limit, 2), poses);
+  const std::vector<Load> limit = softened.loads(limit_rule, poses);
   for (const int points : points_tried) {
-    chosen.rule = rule_of(points, 0);
+    chosen.rule = rule_of(points);
     chosen.error_rel = error_rel(softened.loads(chosen.rule, poses), limit);
     if (chosen.error_rel <= cell_tolerance_rel) break;
   }

@@ -11,8 +11,8 @@ namespace touchstone::fast {
 /// The largest error_rel that is fine enough: a little less than 1 %, since the track is looked at at some poses only.
 inline constexpr double cell_tolerance_rel = 0.008;
 
-/// The fewest points whose load is as near to its limit as that, or the most there are. The load is that of a unit law, linear and
-/// cubic, without friction, so that the answer does not depend on constants that are fitted.
+/// The fewest points whose load is as near to its limit as that, or the most there are. The load is that of a unit law,
+/// linear and cubic, without friction, so that the answer does not depend on constants that are fitted.
 /// @param model  rules are tried in it, and it is left as it was
 [[nodiscard]] ContactCells choose_cells(const std::vector<scene::Waypoint>& track, FastModel& model);
 
