@@ -85,7 +85,13 @@ void set_rises(const scene::Box&, const scene::BoxExit& way_out, const Mat3& R_W
 template <class WayOut>
 void set_rises(const scene::Revolution& body, const WayOut&, const Mat3& R_WT, const Vec3& d,
                RegionPoints& points) noexcept {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
+  const auto count = static_cast<std::size_t>(points.count);
+  // Under a plane no piece leads to another face.
+  bool plane = true;
+  for (std::size_t i = 0; i < count && plane; ++i)
+    plane = Vec3(points.rest_nx_W[i], points.rest_ny_W[i], points.rest_nz_W[i]).dot(d) < -1.0 + 1e-12;
+  if (plane) return set_rises(R_WT, d, points);
+  for (std::size_t i = 0; i < count; ++i) {
     const auto [first, second] = nearest_faces(body, points.p_W_m(i) - points.depth_m[i] * d);
     const Spread spread_T_m = points.spread_T_m(i);
     const auto rise = [&](const NearFace& face) -> Rise {
@@ -93,8 +99,11 @@ void set_rises(const scene::Revolution& body, const WayOut&, const Mat3& R_WT, c
       return {slope_T.dot(spread_T_m[0]), slope_T.dot(spread_T_m[1])};
     };
     const double against = second.normal.dot(d);
+    const bool meets_second = against < -grazes_plane;
     const Rise here = rise(first);
-    set_over_edge(here, against < 0.0 ? rise(second) : here, against < 0.0 ? second.above_m / against : 0.0, points, i);
+    // Rounding may leave the place a little outside.
+    set_over_edge(here, meets_second ? rise(second) : here,
+                  meets_second ? std::max(0.0, second.above_m / against) : 0.0, points, i);
   }
 }
 

@@ -82,16 +82,23 @@ void cut(const scene::Revolution& body, const Mat3& R_WT, const PlacedCell& at, 
   }
 }
 
-/// Mean of the rest surface's normal at the closest points of a piece of surface, each by its depth.
+/// Of a piece of surface, the mean depth below the closest points of the rest surface, and that of depth times normal.
+struct MeanDepth {
+  double depth_m;
+  Vec3 along_normals_m;
+  explicit MeanDepth(const RestDistance& rest) noexcept
+      : depth_m(-rest.signed_distance_m), along_normals_m(depth_m * rest.normal) {}
+  MeanDepth(double mean_m, const Vec3& along_m) noexcept : depth_m(mean_m), along_normals_m(along_m) {}
+};
+
 template <class Body>
-Vec3 mean_normal(const Body&, const Mat3&, const Vec3&, const RestDistance& rest, const Spread&) noexcept {
-  return rest.normal;
+MeanDepth mean_depth(const Body&, const Mat3&, const Vec3&, const RestDistance& rest, const Spread&) noexcept {
+  return MeanDepth(rest);
 }
 
-/// Of a piece that is nearer to one face in one part and to another in the rest: the mean of depth times normal, over
-/// the depth of its middle.
-Vec3 mean_normal_at_edge(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
-                         const Spread& spread_T_m) noexcept {
+/// Of a piece that is nearer to one face in one part and to another in the rest.
+MeanDepth mean_depth_at_edge(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
+                             const Spread& spread_T_m) noexcept {
   const Vec3 local = p_W - box.center_m(), above_m = local.cwiseAbs() - box.half_m();
   Mat3 normal = Mat3::Zero();
   for (int axis = 0; axis < 3; ++axis) normal(axis, axis) = std::copysign(1.0, local[axis]);
@@ -101,38 +108,39 @@ Vec3 mean_normal_at_edge(const scene::Box& box, const Mat3& R_WT, const Vec3& p_
   };
   const EdgeShare xy = pair(0, 1), yz = pair(1, 2), zx = pair(2, 0);
   Vec3 share(xy.share * (1.0 - zx.share), yz.share * (1.0 - xy.share), zx.share * (1.0 - yz.share));
-  const double sum = share.sum(), depth_m = -rest.signed_distance_m;
-  if (!(sum > 0.0) || !(depth_m > 0.0)) return rest.normal;
+  const double sum = share.sum();
+  if (!(sum > 0.0)) return MeanDepth(rest);
   share /= sum;
   Vec3 depths_m = -share.cwiseProduct(above_m);
   depths_m += (1.0 - share.z()) * Vec3(-xy.a_m, xy.b_m, 0.0) + (1.0 - share.x()) * Vec3(0.0, -yz.a_m, yz.b_m) +
               (1.0 - share.y()) * Vec3(zx.b_m, 0.0, -zx.a_m);
-  return normal * depths_m.cwiseMax(0.0) / depth_m;
+  depths_m = depths_m.cwiseMax(0.0);
+  return {depths_m.sum(), normal * depths_m};
 }
 
-Vec3 mean_normal(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
-                 const Spread& spread_T_m) noexcept {
+MeanDepth mean_depth(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
+                     const Spread& spread_T_m) noexcept {
   const auto above_m = [&](int axis) { return std::abs(p_W[axis] - box.center_m()[axis]) - box.half_m()[axis]; };
   const double ax_m = above_m(0), ay_m = above_m(1), az_m = above_m(2), most_m = std::max(std::max(ax_m, ay_m), az_m);
   const double x_m = most_m - ax_m, y_m = most_m - ay_m, z_m = most_m - az_m;
   // One of them is 0.
   const double second_m = (x_m + y_m) + z_m - std::max(std::max(x_m, y_m), z_m);
-  if (second_m * second_m > 6.0 * (spread_T_m[0].squaredNorm() + spread_T_m[1].squaredNorm())) return rest.normal;
-  return mean_normal_at_edge(box, R_WT, p_W, rest, spread_T_m);
+  if (second_m * second_m > 6.0 * (spread_T_m[0].squaredNorm() + spread_T_m[1].squaredNorm())) return MeanDepth(rest);
+  return mean_depth_at_edge(box, R_WT, p_W, rest, spread_T_m);
 }
 
-Vec3 mean_normal(const scene::Revolution& body, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
-                 const Spread& spread_T_m) noexcept {
+MeanDepth mean_depth(const scene::Revolution& body, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
+                     const Spread& spread_T_m) noexcept {
   const auto [a, b] = nearest_faces(body, p_W);
-  const double by_m = a.above_m - b.above_m, depth_m = -rest.signed_distance_m;
-  // No change of two heights is larger than twice the spread.
-  if (by_m * by_m > 12.0 * (spread_T_m[0].squaredNorm() + spread_T_m[1].squaredNorm()) || !(depth_m > 0.0))
-    return rest.normal;
+  const double by_m = a.above_m - b.above_m;
+  // No change of two heights is larger than twice the spread. Not ">": with one face or none that is not a number.
+  if (!(by_m * by_m <= 12.0 * (spread_T_m[0].squaredNorm() + spread_T_m[1].squaredNorm()))) return MeanDepth(rest);
   const Vec3 e1_m = R_WT * spread_T_m[0], e2_m = R_WT * spread_T_m[1];
   const EdgeShare edge =
       edge_share(by_m, {a.normal.dot(e1_m), a.normal.dot(e2_m)}, {b.normal.dot(e1_m), b.normal.dot(e2_m)});
-  const double a_m = -edge.share * a.above_m - edge.a_m, b_m = -(1.0 - edge.share) * b.above_m + edge.b_m;
-  return (std::max(0.0, a_m) * a.normal + std::max(0.0, b_m) * b.normal) / depth_m;
+  const double a_m = std::max(0.0, -edge.share * a.above_m - edge.a_m),
+               b_m = std::max(0.0, -(1.0 - edge.share) * b.above_m + edge.b_m);
+  return {a_m + b_m, a_m * a.normal + b_m * b.normal};
 }
 
 /// Where a direction's error moves the line through a far mass centre by more than this share of the contact's radius
@@ -210,7 +218,8 @@ class CellFinder {
   [[nodiscard]] InsideSummary take() noexcept {
     points_.count = 0;
     points_.spread = true;
-    summary_ = {};
+    plain_ = summary_ = {};
+    one_face_ = true;
     const std::vector<CellPart>& parts = scratch_.parts;
     for (std::size_t begin = 0, end; begin < parts.size(); begin = end) {
       batch_.count = 0;
@@ -239,7 +248,8 @@ class CellFinder {
         }
       }
     }
-    return summary_;
+    // A piece is not quite as wide as its spread says: under one face, none reaches another one.
+    return one_face_ ? plain_ : summary_;
   }
 
  private:
@@ -433,7 +443,14 @@ class CellFinder {
   /// @param whole  the cell, if all of it is the point
   void put(const Vec3& p_W, const Vec3& p_T, const Vec3& normal_T, std::int32_t sample, double area_m2,
            const RestDistance& rest, const Spread& spread_m, const Turn& turn, const SurfaceCell* whole) noexcept {
-    summary_.add(mean_normal(body_, at_.R_WT, p_W, rest, spread_m), -rest.signed_distance_m, area_m2);
+    const double depth_m = -rest.signed_distance_m;
+    if (!(plain_.weight_sum > 0.0)) normal_ = rest.normal;
+    one_face_ = one_face_ && (rest.normal - normal_).squaredNorm() < 1e-20;
+    plain_.add(rest.normal, depth_m, area_m2);
+    const MeanDepth mean = mean_depth(body_, at_.R_WT, p_W, rest, spread_m);
+    summary_.normal_sum += area_m2 * mean.along_normals_m;
+    summary_.weight_sum += area_m2 * mean.depth_m;
+    summary_.deepest_m = std::max(summary_.deepest_m, depth_m);
     if (points_.count == points_.capacity) return;
     points_.set(points_.count, p_W, p_T, normal_T, area_m2, rest.signed_distance_m, sample);
     points_.set_spread(points_.count++, rest.normal, spread_m, turn, whole);
@@ -455,7 +472,9 @@ class CellFinder {
   RegionPoints& points_;
   CellScratch& scratch_;
   CellBatch& batch_;
-  InsideSummary summary_;
+  InsideSummary plain_, summary_;  ///< by the middles of the pieces, and with what of them is nearer to another face
+  bool one_face_ = true;           ///< is the nearest of all middles
+  Vec3 normal_;                    ///< of that
   std::array<const SurfaceCell*, CellBatch::size> cell_;  ///< asked for, not yet placed
   std::array<std::int32_t, CellBatch::size> index_;
   std::size_t asked_ = 0;
