@@ -133,7 +133,7 @@ MeanDepth mean_depth(const scene::Revolution& body, const Mat3& R_WT, const Vec3
                      const Spread& spread_T_m) noexcept {
   const auto [a, b] = nearest_faces(body, p_W);
   const double by_m = a.above_m - b.above_m;
-  // No change of two heights is larger than twice the spread. Not ">": with one face or none that is not a number.
+  // Two heights differ by more than they change over the piece, or there are not two faces and by_m is not finite.
   if (!(by_m * by_m <= 12.0 * (spread_T_m[0].squaredNorm() + spread_T_m[1].squaredNorm()))) return MeanDepth(rest);
   const Vec3 e1_m = R_WT * spread_T_m[0], e2_m = R_WT * spread_T_m[1];
   const EdgeShare edge =
@@ -248,7 +248,7 @@ class CellFinder {
         }
       }
     }
-    // A piece is not quite as wide as its spread says: under one face, none reaches another one.
+    // The spread takes a piece for a parallelogram, which may be wider than the piece and reach another face.
     return one_face_ ? plain_ : summary_;
   }
 

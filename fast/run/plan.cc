@@ -90,7 +90,7 @@ std::string fineness_text(const std::optional<ContactCells>& cells) {
   if (!cells || cells->error_rel == 0.0) return "";
   std::string text = fmt::format("; {} points are asked for, whose load is within {:.2g} % of the limit of small cells",
                                  cells->rule.points, 100.0 * cells->error_rel);
-  if (cells->error_rel > cell_tolerance_rel) text += ": MORE THAN 1 %";
+  if (cells->error_rel > cell_tolerance_rel) text += fmt::format(": MORE THAN {:.2g} %", 100.0 * cell_tolerance_rel);
   return text;
 }
 
