@@ -32,13 +32,18 @@ function(entry title filter suite case)
       list(APPEND labels ${label})
     endif()
   endforeach()
+  # Without measured times the long ones begin first.
+  set(cost "")
+  if(labels MATCHES "solve|browser|program|long")
+    set(cost " COST 1000")
+  endif()
   # A suite with one case that was skipped is not skipped.
   set(skip "")
   if(case AND NOT filter MATCHES "\\*")
     set(skip " SKIP_REGULAR_EXPRESSION [==[\\[  SKIPPED \\]]==]")
   endif()
   set(text "${text}add_test([==[${title}]==] [==[${EXECUTABLE}]==] [==[--gtest_filter=${filter}]==])
-set_tests_properties([==[${title}]==] PROPERTIES LABELS [==[${labels}]==] TIMEOUT ${TIMEOUT} PROCESSORS ${PROCESSORS} ENVIRONMENT OMP_NUM_THREADS=${PROCESSORS} WORKING_DIRECTORY [==[${FOLDER}]==]${skip})\n"
+set_tests_properties([==[${title}]==] PROPERTIES LABELS [==[${labels}]==] TIMEOUT ${TIMEOUT} PROCESSORS ${PROCESSORS} ENVIRONMENT OMP_NUM_THREADS=${PROCESSORS} WORKING_DIRECTORY [==[${FOLDER}]==]${cost}${skip})\n"
     PARENT_SCOPE)
   math(EXPR count "${entries} + 1")
   set(entries ${count} PARENT_SCOPE)
