@@ -1,7 +1,9 @@
-# cmake -DNAME=... -DEXECUTABLE=... -DOUTPUT=... -DPER_SUITE=ON|OFF [-DAPART=...] [-DLABELS=...] ... -P discover.cmake
-# After a test program is built: writes the ctest entries of its cases. PER_SUITE: one entry runs a whole suite, for
-# programs that take long to load; a case that a list below names has an entry of its own. The lists hold names of suites
-# ("Prefix/Suite") or of cases ("Suite.Case", which stands for every parameter), separated by blanks; ALL is all of them.
+# cmake -DNAME=... -DEXECUTABLE=... -DOUTPUT=... -DPER=case|suite|program [-DAPART=...] [-DLABELS=...] ...
+#   -P discover.cmake
+# After a test program is built: writes the ctest entries of its cases. PER: what one entry runs. Programs that take long
+# to load have few entries: one per suite, or a single one; what a list below names still has an entry of its own. The
+# lists hold names of suites ("Prefix/Suite") or of cases ("Suite.Case", which stands for every parameter), separated by
+# blanks; ALL is all of them.
 cmake_minimum_required(VERSION 3.25)
 set(lists APART SOLVE BROWSER MPIRUN LONG PROGRAM NIGHTLY)
 foreach(list ${lists})
@@ -30,21 +32,30 @@ function(entry title filter suite case)
       list(APPEND labels ${label})
     endif()
   endforeach()
+  # Without measured times the long ones begin first.
+  set(cost "")
+  if(labels MATCHES "solve|browser|program|long")
+    set(cost " COST 1000")
+  endif()
   # A suite with one case that was skipped is not skipped.
   set(skip "")
   if(case AND NOT filter MATCHES "\\*")
     set(skip " SKIP_REGULAR_EXPRESSION [==[\\[  SKIPPED \\]]==]")
   endif()
   set(text "${text}add_test([==[${title}]==] [==[${EXECUTABLE}]==] [==[--gtest_filter=${filter}]==])
-set_tests_properties([==[${title}]==] PROPERTIES LABELS [==[${labels}]==] TIMEOUT ${TIMEOUT} PROCESSORS ${PROCESSORS} ENVIRONMENT OMP_NUM_THREADS=${PROCESSORS} WORKING_DIRECTORY [==[${FOLDER}]==]${skip})\n"
+set_tests_properties([==[${title}]==] PROPERTIES LABELS [==[${labels}]==] TIMEOUT ${TIMEOUT} PROCESSORS ${PROCESSORS} ENVIRONMENT OMP_NUM_THREADS=${PROCESSORS} WORKING_DIRECTORY [==[${FOLDER}]==]${cost}${skip})\n"
     PARENT_SCOPE)
   math(EXPR count "${entries} + 1")
   set(entries ${count} PARENT_SCOPE)
 endfunction()
 
-# Ends a suite: its remaining cases are the suite's own entry.
+# Ends a suite: its remaining cases are the suite's own entry, or join the program's.
+set(joined "")
 macro(end_suite)
-  if(suite AND rest)
+  if(suite AND rest AND PER STREQUAL "program" AND NOT suite_named)
+    list(APPEND joined "${suite}.*")
+    list(APPEND joined_without ${apart_filters})
+  elseif(suite AND rest)
     if(apart_filters)
       list(JOIN apart_filters ":" without)
       entry("${NAME}.${suite}" "${suite}.*-${without}" "${suite}" "")
@@ -68,13 +79,17 @@ foreach(line IN LISTS listing)
     string(STRIP "${line}" whole)
     string(REGEX REPLACE "/.*" "" case "${whole}")
     set(named OFF)
+    set(suite_named OFF)
     foreach(list ${lists})
       list(REMOVE_ITEM unseen_${list} ALL "${suite}" "${suite}.${case}")
       if("${suite}.${case}" IN_LIST ${list})
         set(named ON)
       endif()
+      if(ALL IN_LIST ${list} OR suite IN_LIST ${list})
+        set(suite_named ON)
+      endif()
     endforeach()
-    if(NOT PER_SUITE OR ALL IN_LIST APART OR suite IN_LIST APART)
+    if(PER STREQUAL "case" OR ALL IN_LIST APART OR suite IN_LIST APART)
       entry("${suite}.${whole}" "${suite}.${whole}" "${suite}" "${case}")
     elseif(NOT named)
       set(rest ON)
@@ -90,6 +105,11 @@ foreach(line IN LISTS listing)
   endif()
 endforeach()
 end_suite()
+if(joined)
+  list(JOIN joined ":" filter)
+  list(JOIN joined_without ":" without)
+  entry("${NAME}" "${filter}-${without}" "*" "")
+endif()
 
 foreach(list ${lists})
   if(unseen_${list})

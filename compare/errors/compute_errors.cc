@@ -3,6 +3,7 @@
 #include "compare/errors/contact_errors.h"
 #include "compare/errors/moved_surface.h"
 #include "reference/tool/tool_distance.h"
+#include "scene/base/index.h"
 
 #include <fmt/format.h>
 
@@ -105,7 +106,7 @@ std::vector<bool> on_side_faces(const scene::Shape& body, const scene::Surface& 
   for (std::size_t t = 0; t < errors.instants.size(); ++t) {
     if (!errors.instants[t].in_contact) continue;
     for (const scene::Vec3& contact_m : contact_points_m(body, reference, t)) {
-      touched.insert(face[static_cast<std::size_t>(body.query(contact_m).patch)]);
+      touched.insert(nth(face, body.query(contact_m).patch));
     }
   }
   std::vector<bool> on_side(static_cast<std::size_t>(surface.points_m.cols()));
@@ -145,8 +146,8 @@ void compare_shapes(const scene::Scene& scene, const scene::Answer& answer,
       const Eigen::VectorXd fast_gap_m = tool_gaps_m(surface, fast_m, *tool, pose);
       const Eigen::VectorXd reference_gap_m = tool_gaps_m(surface, reference_m, *tool, pose);
       for (Eigen::Index i = 0; i < points; ++i) {
-        e.touched_fast[static_cast<std::size_t>(i)] = fast_gap_m[i] <= tolerance_m;
-        e.touched_reference[static_cast<std::size_t>(i)] = reference_gap_m[i] <= tolerance_m;
+        nth(e.touched_fast, i) = fast_gap_m[i] <= tolerance_m;
+        nth(e.touched_reference, i) = reference_gap_m[i] <= tolerance_m;
         keep_larger(e.penetration_fast_m, -fast_gap_m[i]);
       }
     }

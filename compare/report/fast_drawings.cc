@@ -3,6 +3,7 @@
 #include "compare/format/text.h"
 #include "compare/report/picture.h"
 #include "compare/report/section.h"
+#include "scene/base/index.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -203,14 +204,13 @@ std::string add_components(Plot& plot, const fast::Run& run, const std::string& 
   const double per_n = force_unit(run).per_n;
   std::vector<std::string> left_out;
   for (int axis = 0; axis < 3; ++axis) {
-    const std::string name =
-        fmt::format("{}_{}{}", symbol, axis_names[static_cast<std::size_t>(axis)], axis == 2 ? " (up)" : "");
+    const std::string name = fmt::format("{}_{}{}", symbol, nth(axis_names, axis), axis == 2 ? " (up)" : "");
     if (largest_n[axis] <= visible_share * largest_n.maxCoeff()) {
       left_out.push_back(name);
       continue;
     }
-    plot.curves.push_back(curve(run, name, looks[static_cast<std::size_t>(axis)], x,
-                                [&](const InstantRecord& r) { return per_n * force_n(r)[axis]; }));
+    plot.curves.push_back(
+        curve(run, name, nth(looks, axis), x, [&](const InstantRecord& r) { return per_n * force_n(r)[axis]; }));
   }
   if (left_out.size() < 2) {
     plot.curves.push_back(curve(run, "|" + symbol + "|", Look::plain, x,
@@ -255,7 +255,7 @@ Drawing along_path(const fast::Run& run, const Travel& travel, const std::string
                    const std::string& symbol, const std::function<Vec3(const InstantRecord&)>& force_n) {
   Plot plot;
   plot.title = title;
-  plot.x_label = fmt::format("{} of the tool [mm]", axis_names[static_cast<std::size_t>(travel.axis)]);
+  plot.x_label = fmt::format("{} of the tool [mm]", nth(axis_names, travel.axis));
   plot.y_label = force_label(run, "force on the tool");
   const std::string note = add_components(
       plot, run, symbol, [&](const InstantRecord& r) { return 1e3 * r.tool.position_m[travel.axis]; }, force_n);
@@ -268,7 +268,7 @@ std::string instant_text(const scene::Scene& scene, const fast::Run& run, std::s
   std::string text = fmt::format("{}{}s", number_text(record.time_s), no_break);
   if (most_regions(run) > 1) text += ", " + regions_text(record.regions.size());
   if (const auto travel = sideways(run)) {
-    text += fmt::format(", {} = {}", axis_names[static_cast<std::size_t>(travel->axis)],
+    text += fmt::format(", {} = {}", nth(axis_names, travel->axis),
                         quantity_text(record.tool.position_m[travel->axis], "m"));
   } else {
     text += fmt::format(", {} deep", quantity_text(record.depth_m, "m"));

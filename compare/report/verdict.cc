@@ -2,12 +2,14 @@
 
 #include "compare/format/text.h"
 #include "compare/report/comparison_drawings.h"
-#include "fast/step/state.h"
+#include "fast/step/status.h"
 #include "reference/verification/closed_forms.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -148,38 +150,14 @@ Reason cause_paragraph(const scene::Scene& scene, const Errors& errors) {
   return out;
 }
 
-/// Explains the fast model's status bits.
-std::vector<Reason> status_paragraphs(const scene::Scene& scene, const fast::Run& run) {
+/// A sentence for every status bit of the fast model.
+std::vector<Reason> status_paragraphs(std::uint32_t status) {
   std::vector<Reason> out;
-  const auto add = [&](fast::StepStatus bit, std::string text) {
-    if ((run.status & static_cast<std::uint32_t>(bit)) != 0) out.push_back({"Status", std::move(text)});
-  };
-  add(fast::StepStatus::not_finite,
-      "Some poses of the tool were not finite numbers; the fast model kept its last valid result there.");
-  add(fast::StepStatus::contact_missed,
-      "At some instant the tool is inside the body but none of its samples is, so the fast model has no force there. "
-      "Raise fast.tool_samples.");
-  add(fast::StepStatus::depth_limited,
-      "The tool goes deeper than half of the body's thickness. The fast model limited its depth there.");
-  add(fast::StepStatus::law_saturated,
-      "The depth exceeds the peak of the contact law. The fast model kept the peak force there.");
-  add(fast::StepStatus::regions_full,
-      fmt::format("There are more contact regions than fast.max_regions = {}. The smallest were left out.",
-                  scene.fast.max_regions));
-  add(fast::StepStatus::anchors_limited,
-      fmt::format(
-          "The beams are too soft for this force (fast.s_c_m2 = {} m²). An anchor point would have moved farther "
-          "than the contact point, and was limited to its displacement.",
-          number_text(scene.fast.s_c_m2)));
-  add(fast::StepStatus::outside_grid,
-      "The load left the part of the surface for which the body's response is known. Its nearest place was used.");
-  add(fast::StepStatus::tip_exceeded, "The tool is deeper than its tip is high. The model sees only the tip.");
-  add(fast::StepStatus::tilted, "A flat tip is tilted. The model takes it to lie flat.");
-  const std::string unchecked = " than any contact for which the model was compared with the reference.";
-  add(fast::StepStatus::depth_unchecked, "The tool is deeper, over its tip's radius," + unchecked);
-  add(fast::StepStatus::size_unchecked, "The contact is larger, over the body's size," + unchecked);
-  add(fast::StepStatus::edge_unchecked, "The contact is nearer to an edge, over its radius," + unchecked);
-  add(fast::StepStatus::regions_unchecked, "Two contacts are nearer to each other, over their radii," + unchecked);
+  for (std::uint32_t left = status; left != 0; left &= left - 1) {
+    std::string text = fast::status_text(1u << std::countr_zero(left));
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    out.push_back({"Status", text + "."});
+  }
   return out;
 }
 
@@ -349,7 +327,7 @@ Verdict verdict(const scene::Scene& scene, const fast::Run& run, const reference
   } else {
     out.force = force_sentence(errors);
     out.shape = shape_sentence(errors);
-    for (Reason& status : status_paragraphs(scene, run)) add(std::move(status));
+    for (Reason& status : status_paragraphs(run.status)) add(std::move(status));
     add(cause_paragraph(scene, errors));
     add(force_paragraph(errors));
     add(friction_paragraph(errors));

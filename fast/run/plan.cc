@@ -88,8 +88,8 @@ std::string anchors_text(const AnchorPoints& anchors) {
 
 std::string fineness_text(const std::optional<ContactCells>& cells) {
   if (!cells || cells->error_rel == 0.0) return "";
-  std::string text = fmt::format("; {} points are asked for, whose load is within {:.2g} % of the limit of small cells",
-                                 cells->rule.points, 100.0 * cells->error_rel);
+  std::string text =
+      fmt::format(", {} asked for: load within {:.2g} % of the limit", cells->rule.points, 100.0 * cells->error_rel);
   if (cells->error_rel > cell_tolerance_rel) text += fmt::format(": MORE THAN {:.2g} %", 100.0 * cell_tolerance_rel);
   return text;
 }
@@ -213,19 +213,16 @@ scene::Plan plan(const scene::Scene& scene) {
   const auto held = std::count(model.skeleton.held.begin(), model.skeleton.held.end(), true);
 
   Lines lines;
-  lines.models(
-      "contact detection",
-      fmt::format("{} {} of the tool, {:.3g} mm apart, against the exact rest shape{}; {} points inside at the track's "
-                  "deepest instant",
-                  model.tool.count(), elements, model.tool.spacing_m * 1e3,
-                  published ? "" : ", halved where few are inside", points) +
-          fineness_text(model.cells) +
-          (measured.deepest_m > 0.0 && !measured.contact
-               ? fmt::format("; CONTACT MISSED: the tool is {:.3g} mm deep there but the force is zero; raise "
-                             "fast.tool_samples",
-                             measured.deepest_m * 1e3)
-               : ""),
-      measured.cost({Stage::detection}));
+  lines.models("contact detection",
+               fmt::format("{} {} of the tool, {:.3g} mm apart; {} points inside at the deepest instant",
+                           model.tool.count(), elements, model.tool.spacing_m * 1e3, points) +
+                   fineness_text(model.cells) +
+                   (measured.deepest_m > 0.0 && !measured.contact
+                        ? fmt::format("; CONTACT MISSED: the tool is {:.3g} mm deep there but the force is zero; raise "
+                                      "fast.tool_samples",
+                                      measured.deepest_m * 1e3)
+                        : ""),
+               measured.cost({Stage::detection}));
   if (model.max_regions > 1) {
     lines.models(
         "several regions",

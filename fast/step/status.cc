@@ -6,23 +6,30 @@ std::string status_text(std::uint32_t status) {
   std::string text;
   const auto add = [&](StepStatus bit, const char* words) {
     if ((status & static_cast<std::uint32_t>(bit)) == 0) return;
-    text += (text.empty() ? "" : ", ") + std::string(words);
+    text += (text.empty() ? "" : "; ") + std::string(words);
   };
-  add(StepStatus::not_finite, "pose not finite, last good answer held");
-  add(StepStatus::depth_limited, "depth limited to half of the body's thickness");
-  add(StepStatus::law_saturated, "contact law saturated at its peak");
-  add(StepStatus::regions_full, "more contact regions than fast.max_regions, the smallest dropped");
+  add(StepStatus::not_finite, "the tool's pose was not finite, and the last valid result was kept");
+  add(StepStatus::depth_limited, "the tool was deeper than half of the body's thickness, and its depth was limited");
+  add(StepStatus::law_saturated, "the depth exceeded the peak of the contact law, and the peak force was kept");
+  add(StepStatus::regions_full,
+      "there were more contact regions than fast.max_regions, and the smallest were left out");
   add(StepStatus::contact_missed,
-      "contact missed: the tool is inside the body, no sample of it is (raise fast.tool_samples)");
-  add(StepStatus::anchors_limited, "anchor displacement limited to that of the contact (raise fast.s_c_m2)");
-  add(StepStatus::outside_grid, "outside the grid of the response");
-  add(StepStatus::tip_exceeded, "deeper than the tool's tip is high");
-  add(StepStatus::tilted, "a flat tip that does not lie flat");
-  add(StepStatus::depth_unchecked, "deeper, over the tip's radius, than was compared with the reference");
-  add(StepStatus::size_unchecked, "a larger contact, over the body's size, than was compared with the reference");
-  add(StepStatus::edge_unchecked, "nearer to an edge, over the contact's radius, than was compared with the reference");
+      "the tool was inside the body but none of its samples was, so there was no force (raise fast.tool_samples)");
+  add(StepStatus::anchors_limited,
+      "the beams were too soft for the force, and the displacement of an anchor point was limited to that of the "
+      "contact (raise fast.s_c_m2)");
+  add(StepStatus::outside_grid,
+      "the load was outside the places for which the body's response is known, and the nearest was used");
+  add(StepStatus::tip_exceeded, "the tool was deeper than its tip is high, and the model sees only the tip");
+  add(StepStatus::tilted, "a flat tip was tilted, and the model takes it to lie flat");
+  add(StepStatus::depth_unchecked,
+      "the tool was deeper, over its tip's radius, than in any contact compared with the reference");
+  add(StepStatus::size_unchecked,
+      "the contact was larger, over the body's size, than any that was compared with the reference");
+  add(StepStatus::edge_unchecked,
+      "the contact was nearer to an edge, over its radius, than any that was compared with the reference");
   add(StepStatus::regions_unchecked,
-      "two contacts nearer to each other, over their radii, than were compared with the reference");
+      "two contacts were nearer to each other, over their radii, than any that were compared with the reference");
   return text.empty() ? "ok" : text;
 }
 

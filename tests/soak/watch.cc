@@ -2,6 +2,7 @@
 
 #include "fast/contact/equivalent_point.h"
 #include "fast/step/stages.h"
+#include "scene/base/index.h"
 
 #include <unistd.h>
 
@@ -75,7 +76,7 @@ Watch::Watch(const fast::FastModel& model, fast::FastState& state, Figures& figu
 
 void Watch::check(Property property, bool holds, const std::string& otherwise) {
   if (holds) return;
-  ++figures_.looked[static_cast<std::size_t>(property)].faults;
+  ++nth(figures_.looked, property).faults;
   report_(property, otherwise);
 }
 
@@ -94,7 +95,7 @@ void Watch::after_step(const scene::Pose& asked, StepStatus status) {
   const bool placement =
       asked.position_m.allFinite() && asked.orientation.coeffs().allFinite() && asked.orientation.squaredNorm() > 0.0;
   if (!placement || has(status, StepStatus::not_finite)) {
-    ++figures_.looked[static_cast<std::size_t>(Property::bad_pose_held)].times;
+    ++nth(figures_.looked, Property::bad_pose_held).times;
     check(Property::bad_pose_held, !placement && status == StepStatus::not_finite, "a bad pose and its bit disagree");
     check(Property::bad_pose_held, total_force_n(state_) == force_n_ && state_.motion.pose.position_m == position_m_,
           "a bad pose changed the force or the last good pose");
@@ -116,12 +117,12 @@ void Watch::after_step(const scene::Pose& asked, StepStatus status) {
 }
 
 void Watch::check_finite() {
-  ++figures_.looked[static_cast<std::size_t>(Property::finite)].times;
+  ++nth(figures_.looked, Property::finite).times;
   bool finite_depths = true;
   bool finite =
       total_force_n(state_).allFinite() && total_torque_nm(state_).allFinite() && support_force_n(state_).allFinite();
   for (int i = 0; i < state_.region_count; ++i) {
-    const ContactRegion& region = state_.regions[static_cast<std::size_t>(i)];
+    const ContactRegion& region = nth(state_.regions, i);
     finite = finite && all_finite(region);
     finite_depths = finite_depths && std::isfinite(region.depth_rel);
   }
@@ -133,10 +134,10 @@ void Watch::check_finite() {
 }
 
 void Watch::check_reported(StepStatus status) {
-  ++figures_.looked[static_cast<std::size_t>(Property::reported)].times;
+  ++nth(figures_.looked, Property::reported).times;
   bool too_deep = false, past_peak = false, ends_cut = false, ends_beyond = false;
   for (int i = 0; i < state_.region_count; ++i) {
-    const ContactRegion& region = state_.regions[static_cast<std::size_t>(i)];
+    const ContactRegion& region = nth(state_.regions, i);
     if (!region.pressing()) continue;
     too_deep = too_deep || region.extent.deepest_m > fast::depth_limit_rel * region.extent.thickness_m;
     const double peak_m = model_.law.at(fast::contact_radius_m(region.extent.area_m2)).peak_depth_m();
@@ -166,7 +167,7 @@ void Watch::check_regions_full(const scene::Pose& pose, StepStatus status) {
   const auto count = static_cast<std::size_t>(points.count);
   std::iota(group_.begin(), group_.begin() + points.count, 0);
   const auto root = [&](int i) {
-    while (group_[static_cast<std::size_t>(i)] != i) i = group_[static_cast<std::size_t>(i)];
+    while (nth(group_, i) != i) i = nth(group_, i);
     return i;
   };
   const double near2_m2 = model_.clusters->r_th_m * model_.clusters->r_th_m;
@@ -180,17 +181,17 @@ void Watch::check_regions_full(const scene::Pose& pose, StepStatus status) {
       if (!((sample_m(i) - sample_m(k)).squaredNorm() < near2_m2)) continue;
       const int a = root(static_cast<int>(i)), b = root(static_cast<int>(k));
       if (a == b) continue;
-      group_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+      nth(group_, std::max(a, b)) = std::min(a, b);
       --groups;
     }
   }
-  ++figures_.looked[static_cast<std::size_t>(Property::reported)].times;
+  ++nth(figures_.looked, Property::reported).times;
   check(Property::reported, groups <= model_.max_regions || has(status, StepStatus::regions_full),
         with_number("groups of points beyond max_regions, unreported: %.0f", groups));
 }
 
 void Watch::check_rest() {
-  ++figures_.looked[static_cast<std::size_t>(Property::rest)].times;
+  ++nth(figures_.looked, Property::rest).times;
   check(Property::rest, total_force_n(state_).isZero(0.0), "a force without contact");
   double farthest_m = 0.0, turned = 0.0;
   for (std::size_t v = 0; v < model_.rest.vertex_count(); ++v) {

@@ -1,5 +1,7 @@
 #include "scene/mesh/mesh_checks.h"
 
+#include "scene/base/index.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +16,7 @@ namespace {
 
 using Triangle = std::array<std::int32_t, 3>;
 
-const Vec3& point(const RawMesh& mesh, std::int32_t i) { return mesh.points[static_cast<std::size_t>(i)]; }
+const Vec3& point(const RawMesh& mesh, std::int32_t i) { return nth(mesh.points, i); }
 
 double diagonal(const std::vector<Vec3>& points) {
   Vec3 lower = points.front(), upper = points.front();
@@ -50,8 +52,8 @@ std::vector<std::int32_t> first_at_same_place(const std::vector<Vec3>& points) {
     const Vec3 p = points[i] - origin;
     std::array<std::array<std::int64_t, 2>, 3> range;
     for (int axis = 0; axis < 3; ++axis) {
-      range[static_cast<std::size_t>(axis)] = {std::llround(std::floor((p[axis] - tolerance) / width)),
-                                               std::llround(std::floor((p[axis] + tolerance) / width))};
+      nth(range, axis) = {std::llround(std::floor((p[axis] - tolerance) / width)),
+                          std::llround(std::floor((p[axis] + tolerance) / width))};
     }
     std::int32_t same = static_cast<std::int32_t>(i);
     for (std::int64_t x = range[0][0]; x <= range[0][1]; ++x) {
@@ -60,7 +62,7 @@ std::vector<std::int32_t> first_at_same_place(const std::vector<Vec3>& points) {
           const auto cell = cells.find({{x, y, z}});
           if (cell == cells.end()) continue;
           for (const std::int32_t other : cell->second) {
-            if ((points[static_cast<std::size_t>(other)] - points[i]).norm() <= tolerance) same = std::min(same, other);
+            if ((nth(points, other) - points[i]).norm() <= tolerance) same = std::min(same, other);
           }
         }
       }
@@ -69,7 +71,7 @@ std::vector<std::int32_t> first_at_same_place(const std::vector<Vec3>& points) {
     if (same != static_cast<std::int32_t>(i)) continue;
     Cell home;
     for (int axis = 0; axis < 3; ++axis) {
-      home.index[static_cast<std::size_t>(axis)] = std::llround(std::floor(p[axis] / width));
+      nth(home.index, axis) = std::llround(std::floor(p[axis] / width));
     }
     cells[home].push_back(same);
   }
@@ -111,12 +113,12 @@ RawMesh welded(const RawMesh& mesh) {
   std::vector<std::int32_t> number(mesh.points.size(), -1);
   for (const Triangle& raw : mesh.triangles) {
     Triangle t;
-    for (std::size_t k = 0; k < 3; ++k) t[k] = first[static_cast<std::size_t>(raw[k])];
+    for (std::size_t k = 0; k < 3; ++k) t[k] = nth(first, raw[k]);
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
     const Vec3 area = (point(mesh, t[1]) - point(mesh, t[0])).cross(point(mesh, t[2]) - point(mesh, t[0]));
     if (area.squaredNorm() == 0.0) continue;
     for (std::int32_t& corner : t) {
-      std::int32_t& place = number[static_cast<std::size_t>(corner)];
+      std::int32_t& place = nth(number, corner);
       if (place < 0) {
         place = static_cast<std::int32_t>(out.points.size());
         out.points.push_back(point(mesh, corner));

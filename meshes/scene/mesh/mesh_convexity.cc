@@ -1,3 +1,4 @@
+#include "scene/base/index.h"
 #include "scene/base/least_value.h"
 #include "scene/mesh/mesh_checks.h"
 
@@ -129,19 +130,18 @@ class Facets {
     // Relative to one of the mesh's own points, so that far from the origin no digits are lost.
     for (Vec3& p : points_) p -= mesh.points.front();
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
-      for (const std::int32_t i : triangles_[t]) at_[static_cast<std::size_t>(i)].push_back(t);
+      for (const std::int32_t i : triangles_[t]) nth(at_, i).push_back(t);
     }
     twice_area_at_.assign(points_.size(), Vec3::Zero());
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
-      for (const std::int32_t i : triangles_[t]) twice_area_at_[static_cast<std::size_t>(i)] += twice_area(t);
+      for (const std::int32_t i : triangles_[t]) nth(twice_area_at_, i) += twice_area(t);
     }
   }
   [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }
   [[nodiscard]] std::size_t size() const { return triangles_.size(); }
   [[nodiscard]] Corners corners(std::size_t t) const {
     const auto& [a, b, c] = triangles_[t];
-    return {points_[static_cast<std::size_t>(a)], points_[static_cast<std::size_t>(b)],
-            points_[static_cast<std::size_t>(c)]};
+    return {nth(points_, a), nth(points_, b), nth(points_, c)};
   }
 
   /// Unit normal. For a triangle thinner than `thin` it is inaccurate, so that its neighbours are used.
@@ -151,7 +151,7 @@ class Facets {
     Vec3 normal = twice_area(t);
     if (normal.norm() < thin * longest) {
       normal.setZero();
-      for (const std::int32_t i : triangles_[t]) normal += twice_area_at_[static_cast<std::size_t>(i)];
+      for (const std::int32_t i : triangles_[t]) normal += nth(twice_area_at_, i);
     }
     return normal.normalized();
   }
@@ -167,8 +167,8 @@ class Facets {
       next.pop_back();
       for (const std::int32_t i : triangles_[t]) {
         // Visited once: a vertex may have thousands of triangles.
-        if (std::exchange(turn_at_[static_cast<std::size_t>(i)], turn_) == turn_) continue;
-        for (const std::size_t near : at_[static_cast<std::size_t>(i)]) {
+        if (std::exchange(nth(turn_at_, i), turn_) == turn_) continue;
+        for (const std::size_t near : nth(at_, i)) {
           if (marked[near]) continue;
           const Corners c = corners(near);
           if (!std::all_of(c.begin(), c.end(), [&](const Vec3& p) { return along.dot(p) >= least; })) continue;

@@ -1,5 +1,7 @@
 #include "scene/mesh/mesh_checks.h"
 
+#include "scene/base/index.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -31,9 +33,8 @@ class Tree {
 
  private:
   Corners corners(int t) const {
-    const auto& [a, b, c] = mesh_.triangles[static_cast<std::size_t>(t)];
-    return {mesh_.points[static_cast<std::size_t>(a)], mesh_.points[static_cast<std::size_t>(b)],
-            mesh_.points[static_cast<std::size_t>(c)]};
+    const auto& [a, b, c] = nth(mesh_.triangles, t);
+    return {nth(mesh_.points, a), nth(mesh_.points, b), nth(mesh_.points, c)};
   }
   int build(int begin, int end);
   std::optional<Vec3> within(int node);
@@ -55,7 +56,7 @@ int Tree::build(int begin, int end) {
   node.lower = Vec3::Constant(INFINITY);
   node.upper = -node.lower;
   for (int i = begin; i < end; ++i) {
-    for (const Vec3& p : corners(order_[static_cast<std::size_t>(i)])) {
+    for (const Vec3& p : corners(nth(order_, i))) {
       node.lower = node.lower.cwiseMin(p);
       node.upper = node.upper.cwiseMax(p);
     }
@@ -75,7 +76,7 @@ int Tree::build(int begin, int end) {
     node.left = build(begin, middle);
     node.right = build(middle, end);
   }
-  nodes_[static_cast<std::size_t>(index)] = node;
+  nth(nodes_, index) = node;
   return index;
 }
 
@@ -111,8 +112,8 @@ bool apart(const Corners& a, const Corners& b) {
 
 std::optional<Vec3> Tree::between_triangles(int s, int t) {
   if (pairs_left_-- == 0) throw TooManyPairs{};
-  for (const std::int32_t i : mesh_.triangles[static_cast<std::size_t>(s)]) {
-    for (const std::int32_t j : mesh_.triangles[static_cast<std::size_t>(t)]) {
+  for (const std::int32_t i : nth(mesh_.triangles, s)) {
+    for (const std::int32_t j : nth(mesh_.triangles, t)) {
       if (i == j) return std::nullopt;
     }
   }
@@ -130,14 +131,12 @@ std::optional<Vec3> Tree::between_triangles(int s, int t) {
 }
 
 std::optional<Vec3> Tree::between(int a, int b) {
-  const Node &na = nodes_[static_cast<std::size_t>(a)], &nb = nodes_[static_cast<std::size_t>(b)];
+  const Node &na = nth(nodes_, a), &nb = nth(nodes_, b);
   if (!na.meets(nb)) return std::nullopt;
   if (na.leaf() && nb.leaf()) {
     for (int i = na.begin; i < na.end; ++i) {
       for (int j = nb.begin; j < nb.end; ++j) {
-        if (const auto place =
-                between_triangles(order_[static_cast<std::size_t>(i)], order_[static_cast<std::size_t>(j)]))
-          return place;
+        if (const auto place = between_triangles(nth(order_, i), nth(order_, j))) return place;
       }
     }
     return std::nullopt;
@@ -152,13 +151,11 @@ std::optional<Vec3> Tree::between(int a, int b) {
 }
 
 std::optional<Vec3> Tree::within(int index) {
-  const Node& node = nodes_[static_cast<std::size_t>(index)];
+  const Node& node = nth(nodes_, index);
   if (node.leaf()) {
     for (int i = node.begin; i < node.end; ++i) {
       for (int j = i + 1; j < node.end; ++j) {
-        if (const auto place =
-                between_triangles(order_[static_cast<std::size_t>(i)], order_[static_cast<std::size_t>(j)]))
-          return place;
+        if (const auto place = between_triangles(nth(order_, i), nth(order_, j))) return place;
       }
     }
     return std::nullopt;

@@ -2,6 +2,7 @@
 // first contact along a line, where that distance becomes zero.
 #include "scene/model/rest_depth.h"
 
+#include "scene/base/index.h"
 #include "scene/base/least_value.h"
 #include "scene/model/first_contact.h"
 
@@ -111,7 +112,7 @@ double least_over_mesh(const Shape& body, const TriangleMesh& mesh, const Pose& 
     std::array<SurfaceQuery, 3> at_corner;
     for (std::size_t k = 0; k < 3; ++k) {
       corner_m[k] = points_m.col(triangle[k]);
-      at_corner[k] = at[static_cast<std::size_t>(triangle[k])];
+      at_corner[k] = nth(at, triangle[k]);
     }
     const double bound_m = least_by_tangents_m(corner_m, at_corner);
     if (bound_m < best - tolerance_m) candidates.push_back({bound_m, triangle});
@@ -154,7 +155,7 @@ class LeastOverBoxes {
     std::array<Vec3, 3> corner_m;
     std::array<SurfaceQuery, 3> at;
     for (std::size_t k = 0; k < 3; ++k) {
-      corner_m[k] = turn_ * mesh_.points_m.col(mesh_.triangles[static_cast<std::size_t>(t)][k]) + move_m_;
+      corner_m[k] = turn_ * mesh_.points_m.col(nth(mesh_.triangles, t)[k]) + move_m_;
       at[k] = body_.query(corner_m[k]);
       best_ = std::min(best_, at[k].signed_distance_m);
     }
@@ -248,7 +249,7 @@ std::optional<double> first_contact_of_mesh_m(const Shape& body, const TriangleM
     for (std::size_t t = 0; t < candidates.size(); ++t) {
       candidates[t] = {0.0, mesh.triangles[t]};
       for (const std::int32_t i : mesh.triangles[t]) {
-        const SurfaceQuery& q = at[static_cast<std::size_t>(i)];
+        const SurfaceQuery& q = nth(at, i);
         double least_m = q.signed_distance_m;
         for (const std::int32_t j : mesh.triangles[t]) {
           least_m = std::min(least_m, q.signed_distance_m + q.normal.dot(points_m.col(j) - points_m.col(i)));

@@ -1,5 +1,6 @@
 #include "scene/shape/ellipsoid.h"
 
+#include "scene/base/index.h"
 #include "scene/shape/crossing.h"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ Ellipsoid::Ellipsoid(const Vec3& center_m, const Vec3& semi_axes_m)
                    [&](int a, int b) { return semi_axes_m[a] > semi_axes_m[b]; });
   const double least_m = semi_axes_m.minCoeff();
   for (int i = 0; i < 3; ++i) {
-    const double axis_m = semi_axes_m[longest_first_[static_cast<std::size_t>(i)]];
+    const double axis_m = semi_axes_m[nth(longest_first_, i)];
     excess_[i] = (axis_m - least_m) * (axis_m + least_m) / (least_m * least_m);
   }
 }
@@ -58,7 +59,7 @@ Vec3 Ellipsoid::closest_on_unit_sphere(const Vec3& local_m) const noexcept {
   Vec3 p, q;
   double t = 0.0;
   for (int i = 0; i < 3; ++i) {
-    const int axis = longest_first_[static_cast<std::size_t>(i)];
+    const int axis = nth(longest_first_, i);
     p[i] = (excess_[i] + 1.0) * std::abs(local_m[axis]) / semi_axes_m_[axis];
     // Its square would underflow.
     if (p[i] < 1e-150) p[i] = 0.0;
@@ -84,7 +85,7 @@ Vec3 Ellipsoid::closest_on_unit_sphere(const Vec3& local_m) const noexcept {
   }
   Vec3 place;
   for (int i = 0; i < 3; ++i) {
-    const int axis = longest_first_[static_cast<std::size_t>(i)];
+    const int axis = nth(longest_first_, i);
     place[axis] = local_m[axis] < 0.0 ? -q[i] : q[i];
   }
   return place;

@@ -1,5 +1,7 @@
 #include "scene/shape/surface_builder.h"
 
+#include "scene/base/index.h"
+
 namespace touchstone::scene {
 
 Surface SurfaceBuilder::finish() {
@@ -8,15 +10,15 @@ Surface SurfaceBuilder::finish() {
   surface_.points_m.resize(3, count);
   surface_.normals.resize(3, count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    surface_.points_m.col(i) = points_[static_cast<std::size_t>(i)];
-    surface_.normals.col(i) = normals_[static_cast<std::size_t>(i)];
+    surface_.points_m.col(i) = nth(points_, i);
+    surface_.normals.col(i) = nth(normals_, i);
   }
   surface_.vertex_area_m2.assign(points_.size(), 0.0);
   for (const auto& [a, b, c] : surface_.triangles) {
     const Vec3 ab = surface_.points_m.col(b) - surface_.points_m.col(a);
     const Vec3 ac = surface_.points_m.col(c) - surface_.points_m.col(a);
     const double third_m2 = ab.cross(ac).norm() / 6.0;
-    for (const std::int32_t vertex : {a, b, c}) surface_.vertex_area_m2[static_cast<std::size_t>(vertex)] += third_m2;
+    for (const std::int32_t vertex : {a, b, c}) nth(surface_.vertex_area_m2, vertex) += third_m2;
   }
   points_.clear();
   normals_.clear();

@@ -149,7 +149,9 @@ TEST(LiveReport, SaysFaultsInWords) {
   result.scheduling.warnings = {"SCHED_FIFO refused (Operation not permitted): <ask>"};
   result.replay = live::ReplayAnswer{2000, 2000, 3, 41};
   page = html(result);
-  EXPECT_THAT(page, HasSubstr("The model reported: contact law saturated at its peak."));
+  EXPECT_THAT(
+      page,
+      HasSubstr("The model reported: the depth exceeded the peak of the contact law, and the peak force was kept."));
   EXPECT_THAT(page, HasSubstr("In 12\u00a0ticks the device gave no usable pose"));
   EXPECT_THAT(page, HasSubstr("live.csv lacks 5\u00a0ticks"));
   EXPECT_THAT(page, HasSubstr("ended early by a signal (Ctrl-C)"));

@@ -212,7 +212,7 @@ TEST(Report, GivesTheCommandToTypeNext) {
   testing::Sides sides = testing::pressed(5, 600);
   sides.run.status = static_cast<std::uint32_t>(fast::StepStatus::anchors_limited);
   const std::string html = report_of(sides);
-  EXPECT_TRUE(has(html, "The beams are too soft for this force"));
+  EXPECT_TRUE(has(html, "The beams were too soft for the force"));
   EXPECT_TRUE(has(html, "<pre>touchstone compare meshes/scenes/ball-on-cube-press.toml --level 3 --set fast.s_c_m2="));
 }
 

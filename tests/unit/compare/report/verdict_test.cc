@@ -208,12 +208,13 @@ TEST(Verdict, SaysWhenTheShapeIsWorseThanNoDeformation) {
 TEST(Verdict, PassesOnWhatTheFastModelSaysOfItsSteps) {
   testing::Sides sides = testing::pressed(5, 200);
   EXPECT_FALSE(says(told(sides), "Status:")) << told(sides);
-  for (const auto& [bit, words] : {std::pair(fast::StepStatus::not_finite, "were not finite numbers"),
-                                   std::pair(fast::StepStatus::contact_missed, "Raise fast.tool_samples"),
-                                   std::pair(fast::StepStatus::depth_limited, "half of the body's thickness"),
-                                   std::pair(fast::StepStatus::law_saturated, "exceeds the peak of the contact law"),
-                                   std::pair(fast::StepStatus::regions_full, "fast.max_regions = 1"),
-                                   std::pair(fast::StepStatus::anchors_limited, "fast.s_c_m2 = 0.001 m²")}) {
+  for (const auto& [bit, words] :
+       {std::pair(fast::StepStatus::not_finite, "Status: The tool's pose was not finite, "),
+        std::pair(fast::StepStatus::contact_missed, "raise fast.tool_samples"),
+        std::pair(fast::StepStatus::depth_limited, "half of the body's thickness"),
+        std::pair(fast::StepStatus::law_saturated, "exceeded the peak of the contact law"),
+        std::pair(fast::StepStatus::regions_full, "fast.max_regions, and the smallest were left out."),
+        std::pair(fast::StepStatus::anchors_limited, "(raise fast.s_c_m2).")}) {
     sides.run.status = static_cast<std::uint32_t>(bit);
     EXPECT_TRUE(says(told(sides), words)) << told(sides);
   }
