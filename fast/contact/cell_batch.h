@@ -22,10 +22,11 @@ struct CellBatch {
   alignas(64) Column distance_m{}, nx{}, ny{}, nz{};  ///< RestDistance of the middle
   std::array<std::array<Column, 3>, 4> corner_m{};    ///< from the middle, frame T
   std::array<std::array<Column, 3>, 2> sag_m{};       ///< of SurfaceCell
+  std::array<Column, 2> sagitta_m{};                  ///< of SurfaceCell
   alignas(64) Column nx_T{}, ny_T{}, nz_T{};          ///< (nx, ny, nz) in frame T
   alignas(64) Column lowest_m{}, highest_m{};         ///< corners, over the tangent plane of the rest surface
-
-  alignas(64) Column area_m2{};  ///< of what cut_batch() leaves
+  alignas(64) Column dip_m{};                         ///< no point of a curved cell is further below its lowest corner
+  alignas(64) Column area_m2{};                       ///< of what cut_batch() leaves
 
   /// Lanes that loops work off: those behind `count` hold what the last one does.
   [[nodiscard]] std::size_t lanes() const noexcept { return (count + 3) / 4 * 4; }
@@ -52,6 +53,7 @@ struct CellBatch {
       corner_m[k][1][i] = at_m.y();
       corner_m[k][2][i] = at_m.z();
     }
+    for (std::size_t k = 0; k < sagitta_m.size(); ++k) sagitta_m[k][i] = cell.sagitta_m[k];
   }
   void set_sag(std::size_t i, const SurfaceCell& cell) noexcept {
     for (std::size_t k = 0; k < sag_m.size(); ++k) {
@@ -92,7 +94,7 @@ void rest_batch(const Body& body, CellBatch& batch) noexcept {
 void rest_batch(const scene::Box&, CellBatch&) noexcept;
 void rest_batch(const scene::Sphere&, CellBatch&) noexcept;
 void rest_batch(const scene::Ellipsoid&, CellBatch&) noexcept;
-/// Normals in frame T, and the levels of the corners.
+/// Normals in frame T, the levels of the corners, and dips.
 void level_batch(const scene::Mat3& R_WT, CellBatch&) noexcept;
 /// Area and middle (x_m, y_m, z_m), from the cell's, of the part of the polygon of the corners that is below the plane
 /// of (nx_T, ny_T, nz_T) and distance_m: what CutPolygon gives.

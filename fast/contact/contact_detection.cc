@@ -42,8 +42,12 @@ InsideSummary find_inside(const scene::Shape& shape, const ToolSamples& tool, co
       const RestDistance rest = rest_distance(body, p_W);
       if (!(rest.signed_distance_m < margin_m)) continue;
       if (rest.signed_distance_m < 0.0) summary.add(rest.normal, -rest.signed_distance_m, tool.area_m2[i]);
-      const Vec3 normal_T(tool.nx_T[i], tool.ny_T[i], tool.nz_T[i]);
-      points.set(count++, p_W, p_T, normal_T, tool.area_m2[i], rest.signed_distance_m, static_cast<std::int32_t>(i));
+      points.set(count++, FoundPoint{.p_W_m = p_W,
+                                     .p_T_m = p_T,
+                                     .normal_T = Vec3(tool.nx_T[i], tool.ny_T[i], tool.nz_T[i]),
+                                     .area_m2 = tool.area_m2[i],
+                                     .depth_m = -rest.signed_distance_m,
+                                     .sample = static_cast<std::int32_t>(i)});
     }
   }
   points.count = count;
@@ -68,7 +72,7 @@ void set_rises(const Body& body, const WayOut&, const Mat3& R_WT, const Vec3& d,
   set_rises(R_WT, d, points);
   for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
     // The closest surface may be another side.
-    if (-Vec3(points.rest_nx_W[i], points.rest_ny_W[i], points.rest_nz_W[i]).dot(d) > 0.5) continue;
+    if (-points.rest_normal_W(i).dot(d) > 0.5) continue;
     const Vec3 exit_W_m = points.p_W_m(i) - points.depth_m[i] * d;
     const Vec3 slope_T = depth_slope_T(R_WT, d, rest_distance(body, exit_W_m).normal, grazes_curved);
     const Spread spread_T_m = points.spread_T_m(i);
@@ -88,8 +92,7 @@ void set_rises(const scene::Revolution& body, const WayOut&, const Mat3& R_WT, c
   const auto count = static_cast<std::size_t>(points.count);
   // Under a plane no piece leads to another face.
   bool plane = true;
-  for (std::size_t i = 0; i < count && plane; ++i)
-    plane = Vec3(points.rest_nx_W[i], points.rest_ny_W[i], points.rest_nz_W[i]).dot(d) < -1.0 + 1e-12;
+  for (std::size_t i = 0; i < count && plane; ++i) plane = points.rest_normal_W(i).dot(d) < -1.0 + 1e-12;
   if (plane) return set_rises(R_WT, d, points);
   for (std::size_t i = 0; i < count; ++i) {
     const auto [first, second] = nearest_faces(body, points.p_W_m(i) - points.depth_m[i] * d);

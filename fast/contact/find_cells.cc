@@ -48,10 +48,10 @@ void cut(const scene::Box& box, const Mat3& R_WT, const PlacedCell& at, CutPolyg
 /// Whether no more than the tangent plane at the closest point can cut the cell: the other faces are further away than
 /// the cell is large.
 bool by_one_plane(const scene::Box& box, const PlacedCell& at) noexcept {
-  const Vec3 local = at.p_W - box.center_m();
   int within_reach = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    for (const double side : {1.0, -1.0}) within_reach += side * local[axis] - box.half_m()[axis] > -at.cell->radius_m;
+    const double off_m = std::abs(at.p_W[axis] - box.center_m()[axis]), half_m = box.half_m()[axis];
+    within_reach += (off_m - half_m > -at.cell->radius_m) + (-off_m - half_m > -at.cell->radius_m);
   }
   return within_reach <= 1;
 }
@@ -80,67 +80,6 @@ void cut(const scene::Revolution& body, const Mat3& R_WT, const PlacedCell& at, 
     }
     if (cuts) polygon.keep_below({level.data(), corners.size()}, at.normal_T);
   }
-}
-
-/// Of a piece of surface, the mean depth below the closest points of the rest surface, and that of depth times normal.
-struct MeanDepth {
-  double depth_m;
-  Vec3 along_normals_m;
-  explicit MeanDepth(const RestDistance& rest) noexcept
-      : depth_m(-rest.signed_distance_m), along_normals_m(depth_m * rest.normal) {}
-  MeanDepth(double mean_m, const Vec3& along_m) noexcept : depth_m(mean_m), along_normals_m(along_m) {}
-};
-
-template <class Body>
-MeanDepth mean_depth(const Body&, const Mat3&, const Vec3&, const RestDistance& rest, const Spread&) noexcept {
-  return MeanDepth(rest);
-}
-
-/// Of a piece that is nearer to one face in one part and to another in the rest.
-MeanDepth mean_depth_at_edge(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
-                             const Spread& spread_T_m) noexcept {
-  const Vec3 local = p_W - box.center_m(), above_m = local.cwiseAbs() - box.half_m();
-  Mat3 normal = Mat3::Zero();
-  for (int axis = 0; axis < 3; ++axis) normal(axis, axis) = std::copysign(1.0, local[axis]);
-  const Vec3 e1_m = normal * (R_WT * spread_T_m[0]), e2_m = normal * (R_WT * spread_T_m[1]);
-  const auto pair = [&](int a, int b) {
-    return edge_share(above_m[a] - above_m[b], {e1_m[a], e2_m[a]}, {e1_m[b], e2_m[b]});
-  };
-  const EdgeShare xy = pair(0, 1), yz = pair(1, 2), zx = pair(2, 0);
-  Vec3 share(xy.share * (1.0 - zx.share), yz.share * (1.0 - xy.share), zx.share * (1.0 - yz.share));
-  const double sum = share.sum();
-  if (!(sum > 0.0)) return MeanDepth(rest);
-  share /= sum;
-  Vec3 depths_m = -share.cwiseProduct(above_m);
-  depths_m += (1.0 - share.z()) * Vec3(-xy.a_m, xy.b_m, 0.0) + (1.0 - share.x()) * Vec3(0.0, -yz.a_m, yz.b_m) +
-              (1.0 - share.y()) * Vec3(zx.b_m, 0.0, -zx.a_m);
-  depths_m = depths_m.cwiseMax(0.0);
-  return {depths_m.sum(), normal * depths_m};
-}
-
-MeanDepth mean_depth(const scene::Box& box, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
-                     const Spread& spread_T_m) noexcept {
-  const auto above_m = [&](int axis) { return std::abs(p_W[axis] - box.center_m()[axis]) - box.half_m()[axis]; };
-  const double ax_m = above_m(0), ay_m = above_m(1), az_m = above_m(2), most_m = std::max(std::max(ax_m, ay_m), az_m);
-  const double x_m = most_m - ax_m, y_m = most_m - ay_m, z_m = most_m - az_m;
-  // One of them is 0.
-  const double second_m = (x_m + y_m) + z_m - std::max(std::max(x_m, y_m), z_m);
-  if (second_m * second_m > 6.0 * (spread_T_m[0].squaredNorm() + spread_T_m[1].squaredNorm())) return MeanDepth(rest);
-  return mean_depth_at_edge(box, R_WT, p_W, rest, spread_T_m);
-}
-
-MeanDepth mean_depth(const scene::Revolution& body, const Mat3& R_WT, const Vec3& p_W, const RestDistance& rest,
-                     const Spread& spread_T_m) noexcept {
-  const auto [a, b] = nearest_faces(body, p_W);
-  const double by_m = a.above_m - b.above_m;
-  // Two heights differ by more than they change over the piece, or there are not two faces and by_m is not finite.
-  if (!(by_m * by_m <= 12.0 * (spread_T_m[0].squaredNorm() + spread_T_m[1].squaredNorm()))) return MeanDepth(rest);
-  const Vec3 e1_m = R_WT * spread_T_m[0], e2_m = R_WT * spread_T_m[1];
-  const EdgeShare edge =
-      edge_share(by_m, {a.normal.dot(e1_m), a.normal.dot(e2_m)}, {b.normal.dot(e1_m), b.normal.dot(e2_m)});
-  const double a_m = std::max(0.0, -edge.share * a.above_m - edge.a_m),
-               b_m = std::max(0.0, -(1.0 - edge.share) * b.above_m + edge.b_m);
-  return {a_m + b_m, a_m * a.normal + b_m * b.normal};
 }
 
 /// Where a direction's error moves the line through a far mass centre by more than this share of the contact's radius
@@ -174,6 +113,33 @@ void steady_direction(const ToolSamples& tool, const Mat3& R_WT, const RegionPoi
   inside.normal_sum += x * x * (3.0 - 2.0 * x) * (R_WT * sum_T - inside.normal_sum);
 }
 
+/// What pieces of surface say about the rest surface above them.
+template <class Body>
+InsideSummary summarise_pieces(const Body& body, const Mat3& R_WT, const RegionPoints& points) noexcept {
+  InsideSummary by_middles, by_parts;
+  const auto count = static_cast<std::size_t>(points.count);
+  Vec3 normal = Vec3::Zero();
+  bool one_face = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(points.depth_m[i] > 0.0)) continue;
+    const Vec3 here = points.rest_normal_W(i);
+    if (!(by_middles.weight_sum > 0.0)) normal = here;
+    one_face = one_face && (here - normal).squaredNorm() < 1e-20;
+    by_middles.add(here, points.depth_m[i], points.area_m2[i]);
+  }
+  // The spread takes a piece for a parallelogram, which may be wider than the piece and reach another face.
+  if (one_face) return by_middles;
+  by_parts.deepest_m = by_middles.deepest_m;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(points.depth_m[i] > 0.0)) continue;
+    const RestDistance rest{-points.depth_m[i], points.rest_normal_W(i)};
+    const MeanDepth mean = mean_depth(body, R_WT, points.p_W_m(i), rest, points.spread_T_m(i));
+    by_parts.normal_sum += points.area_m2[i] * mean.along_normals_m;
+    by_parts.weight_sum += points.area_m2[i] * mean.depth_m;
+  }
+  return by_parts;
+}
+
 /// Cells of the tool, a batch at a time, and what is inside of them.
 template <class Body>
 class CellFinder {
@@ -203,53 +169,18 @@ class CellFinder {
   /// Cells of the round of which some is inside.
   [[nodiscard]] int inside() const noexcept { return inside_; }
 
-  /// Takes what is inside of the cells.
-  void measure() noexcept {
-    scratch_.parts.clear();
+  /// Makes points of what is inside of the cells of the last round.
+  void take() noexcept {
+    points_.count = 0;
+    points_.spread = true;
     const std::vector<PlacedCell>& placed = scratch_.placed;
     for (std::size_t begin = 0; begin < placed.size(); begin += CellBatch::size) {
       const std::size_t end = std::min(placed.size(), begin + CellBatch::size);
       cut_by_planes({placed.data() + begin, end - begin});
+      rims_ = 0;
       for (std::size_t k = begin, lane = 0; k < end; ++k) measure(placed[k], cut_[k - begin], lane);
+      put_rims();
     }
-  }
-
-  /// Makes points of what measure() has found.
-  [[nodiscard]] InsideSummary take() noexcept {
-    points_.count = 0;
-    points_.spread = true;
-    plain_ = summary_ = {};
-    one_face_ = true;
-    const std::vector<CellPart>& parts = scratch_.parts;
-    for (std::size_t begin = 0, end; begin < parts.size(); begin = end) {
-      batch_.count = 0;
-      for (end = begin; end < parts.size() && batch_.count < CellBatch::size; ++end) {
-        if (parts[end].kind != CellPart::Kind::rim) continue;
-        const Vec3 p_W = parts[end].at->p_W + at_.R_WT * parts[end].off_m;
-        batch_.set(batch_.count++, p_W, 0.0);
-      }
-      if (batch_.count > 0) {
-        batch_.pad();
-        rest_batch(body_, batch_);
-      }
-      for (std::size_t k = begin, rim = 0; k < end; ++k) {
-        const PlacedCell& here = *parts[k].at;
-        switch (parts[k].kind) {
-          case CellPart::Kind::inside:
-            put(here.p_W, here.cell->center_T_m, here.cell->normal_T, here.cell->sample, here.cell->area_m2, here.rest,
-                here.cell->spread_m, here.cell->turn, here.cell);
-            break;
-          case CellPart::Kind::rim:
-            put_rim(parts[k], rim++);
-            break;
-          case CellPart::Kind::outside:
-            put_outside(here, Vec3::Zero(), here.cell->area_m2);
-            break;
-        }
-      }
-    }
-    // The spread takes a piece for a parallelogram, which may be wider than the piece and reach another face.
-    return one_face_ ? plain_ : summary_;
   }
 
  private:
@@ -296,11 +227,10 @@ class CellFinder {
     batch_.count = kept;
     level_batch(at_.R_WT, batch_);
     for (std::size_t i = 0; i < kept; ++i) {
-      // Only the ball around the cell reaches the body.
       const SurfaceCell& cell = *cell_[i];
-      if (margin_m_ == 0.0 && cell.group < 0 && batch_.distance_m[i] > -cell.radius_m &&
-          !(batch_.lowest_m[i] < cell.bulge_m))
-        continue;
+      const bool may_be_inside = batch_.lowest_m[i] < (cell.group < 0 ? batch_.dip_m[i] : cell.bulge_m);
+      // Only the ball around the cell reaches the body.
+      if (margin_m_ == 0.0 && cell.group < 0 && batch_.distance_m[i] > -cell.radius_m && !may_be_inside) continue;
       const PlacedCell here{&cell,
                             Vec3(batch_.x_m[i], batch_.y_m[i], batch_.z_m[i]),
                             {batch_.distance_m[i], Vec3(batch_.nx[i], batch_.ny[i], batch_.nz[i])},
@@ -309,7 +239,7 @@ class CellFinder {
                             batch_.highest_m[i]};
       const bool inside = some_inside(here);
       inside_ += inside;
-      if (inside || may_be_inside(here)) scratch_.near.push_back(index_[i]);
+      if (inside || may_be_inside) scratch_.near.push_back(index_[i]);
       scratch_.placed.push_back(here);
     }
   }
@@ -318,11 +248,6 @@ class CellFinder {
   [[nodiscard]] static bool some_inside(const PlacedCell& here) noexcept {
     return here.wholly_inside() || (here.cell->group >= 0 ? lowest_of_group_m(here, slope(here)) : here.lowest_m) < 0.0;
   }
-  /// Whether some of the cell may be inside.
-  [[nodiscard]] static bool may_be_inside(const PlacedCell& here) noexcept {
-    return here.lowest_m < here.cell->bulge_m;
-  }
-
   /// A cell's spread in two vectors, of which one is level and the other shows how the surface rises.
   struct Slope {
     double rise_m;    ///< over the tangent plane of the rest surface, along `up_m`
@@ -342,18 +267,14 @@ class CellFinder {
     return here.rest.signed_distance_m - std::numbers::sqrt3 * slope.rise_m;
   }
 
-  void is_inside(const PlacedCell& here) noexcept {
-    scratch_.parts.push_back({&here, CellPart::Kind::inside, 1.0, Vec3::Zero()});
-  }
+  /// What of a placed cell is inside, where another part is not.
+  struct Rim {
+    const PlacedCell* at;
+    double share;  ///< of its area
+    Vec3 off_m;    ///< from its centre to the middle of that share, tool frame
+  };
 
-  /// @param off_m  from the cell's centre to the middle of the share that is inside, tool frame
-  void is_rim(const PlacedCell& here, double share, const Vec3& off_m) noexcept {
-    scratch_.parts.push_back({&here, CellPart::Kind::rim, share, off_m});
-  }
-
-  void is_outside(const PlacedCell& here) noexcept {
-    if (margin_m_ > 0.0) scratch_.parts.push_back({&here, CellPart::Kind::outside, 0.0, Vec3::Zero()});
-  }
+  void put_outside(const PlacedCell& here) noexcept { put_outside(here, Vec3::Zero(), here.cell->area_m2); }
 
   /// The cut of a surface whose shape is not known: that of a rectangle with two level sides, of the same area, middle
   /// and spread.
@@ -361,9 +282,9 @@ class CellFinder {
     const Slope slope = CellFinder::slope(here);
     const double half_m = std::numbers::sqrt3 * slope.rise_m, middle_m = here.rest.signed_distance_m;
     const double lowest_m = lowest_of_group_m(here, slope);
-    if (lowest_m >= 0.0) return is_outside(here);
-    if (middle_m + half_m <= 0.0) return is_inside(here);
-    is_rim(here, -lowest_m / (2.0 * half_m), (0.5 * lowest_m - middle_m) / slope.rise_m * slope.up_m);
+    if (lowest_m >= 0.0) return put_outside(here);
+    if (middle_m + half_m <= 0.0) return put_whole(here);
+    rim_[rims_++] = {&here, -lowest_m / (2.0 * half_m), (0.5 * lowest_m - middle_m) / slope.rise_m * slope.up_m};
   }
 
   /// How a cell is cut.
@@ -394,10 +315,10 @@ class CellFinder {
 
   /// @param lane  of the batch, for the next cell that a plane cuts
   void measure(const PlacedCell& here, Cut cut, std::size_t& lane) noexcept {
-    if (here.wholly_inside()) return is_inside(here);
+    if (here.wholly_inside()) return put_whole(here);
     if (here.cell->group >= 0) return measure_group(here);
-    if (!(here.lowest_m < 0.0)) return is_outside(here);
-    if (cut == Cut::no) return is_inside(here);
+    if (!(here.lowest_m < 0.0)) return put_outside(here);
+    if (cut == Cut::no) return put_whole(here);
     if (cut == Cut::by_faces) return measure_cut(here);
     const Vec3 center_m(batch_.x_m[lane], batch_.y_m[lane], batch_.z_m[lane]);
     measure_part(here, batch_.area_m2[lane++], center_m);
@@ -406,7 +327,7 @@ class CellFinder {
   void measure_cut(const PlacedCell& here) noexcept {
     CutPolygon polygon(*here.cell);
     fast::cut(body_, at_.R_WT, here, polygon);
-    if (!polygon.is_cut() && here.rest.signed_distance_m < 0.0) return is_inside(here);
+    if (!polygon.is_cut() && here.rest.signed_distance_m < 0.0) return put_whole(here);
     const CutPolygon::Moments part = polygon.moments();
     measure_part(here, part.area_m2, part.center_m);
   }
@@ -415,55 +336,65 @@ class CellFinder {
   void measure_part(const PlacedCell& here, double area_m2, const Vec3& center_m) noexcept {
     const SurfaceCell& cell = *here.cell;
     const double share = cell.polygon_m2 > 0.0 ? std::min(1.0, area_m2 / cell.polygon_m2) : 0.0;
-    if (!(share > 0.0)) return is_outside(here);
+    if (!(share > 0.0)) return put_outside(here);
     // The polygon's, moved to the surface that bulges from it.
-    is_rim(here, share, center_m - cell.polygon_center_m);
+    rim_[rims_++] = {&here, share, center_m - cell.polygon_center_m};
+  }
+
+  void put_rims() noexcept {
+    if (rims_ == 0) return;
+    for (std::size_t i = 0; i < rims_; ++i) batch_.set(i, rim_[i].at->p_W + at_.R_WT * rim_[i].off_m, 0.0);
+    batch_.count = rims_;
+    batch_.pad();
+    rest_batch(body_, batch_);
+    for (std::size_t i = 0; i < rims_; ++i) put_rim(rim_[i], i);
   }
 
   /// @param lane  of the batch, which has the middle of the part
-  void put_rim(const CellPart& part, std::size_t lane) noexcept {
+  void put_rim(const Rim& part, std::size_t lane) noexcept {
     const PlacedCell& here = *part.at;
     const SurfaceCell& cell = *here.cell;
     const Slope slope = CellFinder::slope(here);
     // A curved surface may pass beneath the middle of the part under its tangent plane.
-    const RestDistance rest{std::min(batch_.distance_m[lane], -std::numeric_limits<double>::min()),
-                            Vec3(batch_.nx[lane], batch_.ny[lane], batch_.nz[lane])};
+    const double depth_m = std::max(-batch_.distance_m[lane], std::numeric_limits<double>::min());
     const Vec3 area_m2 = part_area_m2(cell, part.share, part.off_m);
     const double projected_m2 = area_m2.norm();
-    put(Vec3(batch_.x_m[lane], batch_.y_m[lane], batch_.z_m[lane]), cell.center_T_m + part.off_m,
-        projected_m2 > 0.0 ? Vec3(area_m2 / projected_m2) : cell.normal_T, cell.sample, projected_m2, rest,
-        {part.share * slope.up_m, slope.level_m},
-        {part.share * (slope.up1 * cell.turn[0] + slope.up2 * cell.turn[1]),
-         slope.up1 * cell.turn[1] - slope.up2 * cell.turn[0]},
-        nullptr);
+    put({{Vec3(batch_.x_m[lane], batch_.y_m[lane], batch_.z_m[lane]), cell.center_T_m + part.off_m,
+          projected_m2 > 0.0 ? Vec3(area_m2 / projected_m2) : cell.normal_T, projected_m2, depth_m, cell.sample},
+         Vec3(batch_.nx[lane], batch_.ny[lane], batch_.nz[lane]),
+         {part.share * slope.up_m, slope.level_m},
+         {part.share * (slope.up1 * cell.turn[0] + slope.up2 * cell.turn[1]),
+          slope.up1 * cell.turn[1] - slope.up2 * cell.turn[0]},
+         nullptr});
     if (part.share < 1.0)
       put_outside(here, -part.share / (1.0 - part.share) * part.off_m, (1.0 - part.share) * cell.area_m2);
   }
 
-  /// @param whole  the cell, if all of it is the point
-  void put(const Vec3& p_W, const Vec3& p_T, const Vec3& normal_T, std::int32_t sample, double area_m2,
-           const RestDistance& rest, const Spread& spread_m, const Turn& turn, const SurfaceCell* whole) noexcept {
-    const double depth_m = -rest.signed_distance_m;
-    if (!(plain_.weight_sum > 0.0)) normal_ = rest.normal;
-    one_face_ = one_face_ && (rest.normal - normal_).squaredNorm() < 1e-20;
-    plain_.add(rest.normal, depth_m, area_m2);
-    const MeanDepth mean = mean_depth(body_, at_.R_WT, p_W, rest, spread_m);
-    summary_.normal_sum += area_m2 * mean.along_normals_m;
-    summary_.weight_sum += area_m2 * mean.depth_m;
-    summary_.deepest_m = std::max(summary_.deepest_m, depth_m);
-    if (points_.count == points_.capacity) return;
-    points_.set(points_.count, p_W, p_T, normal_T, area_m2, rest.signed_distance_m, sample);
-    points_.set_spread(points_.count++, rest.normal, spread_m, turn, whole);
+  TOUCHSTONE_INLINE void put(const FoundPiece& piece) noexcept {
+    if (points_.count < points_.capacity) points_.set(points_.count++, piece);
+  }
+
+  void put_whole(const PlacedCell& here) noexcept {
+    const SurfaceCell& cell = *here.cell;
+    put({{here.p_W, cell.center_T_m, cell.normal_T, cell.area_m2, -here.rest.signed_distance_m, cell.sample},
+         here.rest.normal,
+         cell.spread_m,
+         cell.turn,
+         &cell});
   }
 
   void put_outside(const PlacedCell& here, const Vec3& off_m, double area_m2) noexcept {
-    if (!(margin_m_ > 0.0) || points_.count == points_.capacity) return;
+    if (!(margin_m_ > 0.0)) return;
+    const SurfaceCell& cell = *here.cell;
     const Vec3 p_W = here.p_W + at_.R_WT * off_m;
     const RestDistance rest = rest_distance(body_, p_W);
     if (!(rest.signed_distance_m < margin_m_)) return;
-    points_.set(points_.count, p_W, here.cell->center_T_m + off_m, here.cell->normal_T, area_m2,
-                std::max(0.0, rest.signed_distance_m), here.cell->sample);
-    points_.set_spread(points_.count++, rest.normal, here.cell->spread_m, here.cell->turn, nullptr);
+    const double depth_m = std::min(0.0, -rest.signed_distance_m);
+    put({{p_W, cell.center_T_m + off_m, cell.normal_T, area_m2, depth_m, cell.sample},
+         rest.normal,
+         cell.spread_m,
+         cell.turn,
+         nullptr});
   }
 
   const Body& body_;
@@ -472,14 +403,13 @@ class CellFinder {
   RegionPoints& points_;
   CellScratch& scratch_;
   CellBatch& batch_;
-  InsideSummary plain_, summary_;  ///< by the middles of the pieces, and with what of them is nearer to another face
-  bool one_face_ = true;           ///< is the nearest of all middles
-  Vec3 normal_;                    ///< of that
   std::array<const SurfaceCell*, CellBatch::size> cell_;  ///< asked for, not yet placed
   std::array<std::int32_t, CellBatch::size> index_;
   std::size_t asked_ = 0;
   int inside_ = 0;
-  std::array<Cut, CellBatch::size> cut_;
+  std::array<Cut, CellBatch::size> cut_;  ///< of a batch of placed cells
+  std::array<Rim, CellBatch::size> rim_;
+  std::size_t rims_ = 0;
 };
 
 /// How often all of `cells` are halved until they are so many.
@@ -529,8 +459,8 @@ InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, con
     for (const std::int32_t k : scratch.now) found.look_at(scratch.half(k), k);
     found.end_round();
   }
-  found.measure();
-  InsideSummary inside = found.take();
+  found.take();
+  InsideSummary inside = summarise_pieces(body, at.R_WT, points);
   steady_direction(tool, at.R_WT, points, inside);
   return inside;
 }
@@ -549,7 +479,6 @@ CellScratch::CellScratch(int samples, int room)
   now.reserve(room_);
   near.reserve(std::max(of_sample_.size(), room_));
   placed.reserve(near.capacity());
-  parts.reserve(near.capacity());
 }
 
 void CellScratch::begin() noexcept {
@@ -592,7 +521,7 @@ void CellScratch::halve(const ToolSamples& tool, bool of_tool) noexcept {
 std::size_t CellScratch::memory_bytes() const noexcept {
   return halves_.size() * (sizeof(SurfaceCell) + sizeof(std::int32_t)) +
          (of_sample_.size() + now.capacity() + near.capacity()) * sizeof(std::int32_t) +
-         placed.capacity() * sizeof(PlacedCell) + parts.capacity() * sizeof(CellPart);
+         placed.capacity() * sizeof(PlacedCell);
 }
 
 }  // namespace touchstone::fast

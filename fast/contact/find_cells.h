@@ -33,15 +33,6 @@ struct PlacedCell {
   [[nodiscard]] bool wholly_inside() const noexcept { return rest.signed_distance_m <= -cell->radius_m; }
 };
 
-/// What of a placed cell becomes a point.
-struct CellPart {
-  enum class Kind : std::int8_t { inside, rim, outside };
-  const PlacedCell* at;
-  Kind kind;
-  double share;       ///< of its area that is inside
-  scene::Vec3 off_m;  ///< from its centre to the middle of that share, tool frame
-};
-
 /// What find_cells() writes on its way. Halves are kept, since a contact mostly asks for those of the last tick; the
 /// answer never depends on which are.
 class CellScratch {
@@ -62,7 +53,6 @@ class CellScratch {
   std::vector<std::int32_t> now, near;  ///< cells of a round, and those of them that are near the body
   std::vector<PlacedCell> placed;       ///< those and what else is looked for
   CellBatch batch;
-  std::vector<CellPart> parts;  ///< what is inside of those, or nearly
 
  private:
   /// The first of the two halves of a sample's cell, or of a half; the second follows it.

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <utility>
 
 namespace touchstone::fast {
 namespace {
@@ -64,10 +65,13 @@ namespace {
 /// Mean of 1 / r over a polygon in the plane, r from the origin [1/m]: sums over its sides.
 double mean_over_polygon_per_m(std::span<const Eigen::Vector2d> corner_m) noexcept {
   double sum_m = 0.0, area_m2 = 0.0;
-  for (std::size_t k = 0; k < corner_m.size(); ++k) {
-    const Eigen::Vector2d &a = corner_m[k], &b = corner_m[k + 1 == corner_m.size() ? 0 : k + 1];
-    const double twice_m2 = a.x() * b.y() - a.y() * b.x(), dot_m2 = a.dot(b), product_m2 = a.norm() * b.norm();
-    const double side_m = (b - a).norm(), both_m = a.norm() + b.norm();
+  const Eigen::Vector2d* before = &corner_m.back();
+  double before_m = before->norm();
+  for (const Eigen::Vector2d& b : corner_m) {
+    const Eigen::Vector2d& a = *std::exchange(before, &b);
+    const double b_m = b.norm(), a_m = std::exchange(before_m, b_m);
+    const double twice_m2 = a.x() * b.y() - a.y() * b.x(), dot_m2 = a.dot(b), product_m2 = a_m * b_m;
+    const double side_m = (b - a).norm(), both_m = a_m + b_m;
     area_m2 += 0.5 * twice_m2;
     // A side in line with the origin adds nothing.
     if (!(std::abs(twice_m2) > 1e-14 * both_m * both_m)) continue;

@@ -19,6 +19,24 @@ struct Placement {
   scene::Vec3 origin_W_m = scene::Vec3::Zero();  ///< the tool's mass centre
 };
 
+/// A point of the tool's surface as detection finds it.
+struct FoundPoint {
+  scene::Vec3 p_W_m, p_T_m;
+  scene::Vec3 normal_T;
+  double area_m2;
+  double depth_m;  ///< to the rest surface, negative outside
+  std::int32_t sample;
+};
+
+/// A piece of it.
+struct FoundPiece {
+  FoundPoint middle;
+  scene::Vec3 rest_normal_W;  ///< of the rest surface at the closest point
+  Spread spread_T_m;
+  Turn turn_T;
+  const SurfaceCell* whole;  ///< the cell, if the piece is all of it
+};
+
 /// The points p_i of one contact region: a window on a PointStore.
 struct RegionPoints {
   int count = 0, capacity = 0;
@@ -41,6 +59,9 @@ struct RegionPoints {
   std::int32_t* sample = nullptr;                 ///< of ToolSamples; several may have one
 
   [[nodiscard]] scene::Vec3 p_W_m(std::size_t i) const noexcept { return {x_W_m[i], y_W_m[i], z_W_m[i]}; }
+  [[nodiscard]] scene::Vec3 rest_normal_W(std::size_t i) const noexcept {
+    return {rest_nx_W[i], rest_ny_W[i], rest_nz_W[i]};
+  }
   [[nodiscard]] scene::Vec3 p_T_m(std::size_t i) const noexcept { return {x_T_m[i], y_T_m[i], z_T_m[i]}; }
   /// Copies point `from` to the place `to`, as far as detection has filled it.
   void move(int from, int to) noexcept;
@@ -56,39 +77,38 @@ struct RegionPoints {
     rest_ny_W[k] = rest_normal_W.y();
     rest_nz_W[k] = rest_normal_W.z();
   }
-  /// More of a piece of surface. @param whole  the cell, if all of it is the point
-  void set_spread(int k, const scene::Vec3& rest_normal_W, const Spread& spread_T_m, const Turn& turn_T,
-                  const SurfaceCell* whole) noexcept {
-    set_rest_normal(k, rest_normal_W);
-    cell[k] = whole;
-    e1x_T_m[k] = spread_T_m[0].x();
-    e1y_T_m[k] = spread_T_m[0].y();
-    e1z_T_m[k] = spread_T_m[0].z();
-    e2x_T_m[k] = spread_T_m[1].x();
-    e2y_T_m[k] = spread_T_m[1].y();
-    e2z_T_m[k] = spread_T_m[1].z();
-    t1x_T[k] = turn_T[0].x();
-    t1y_T[k] = turn_T[0].y();
-    t1z_T[k] = turn_T[0].z();
-    t2x_T[k] = turn_T[1].x();
-    t2y_T[k] = turn_T[1].y();
-    t2z_T[k] = turn_T[1].z();
+  /// Fills place k as detection does.
+  TOUCHSTONE_INLINE void set(int k, const FoundPoint& point) noexcept {
+    x_W_m[k] = point.p_W_m.x();
+    y_W_m[k] = point.p_W_m.y();
+    z_W_m[k] = point.p_W_m.z();
+    x_T_m[k] = point.p_T_m.x();
+    y_T_m[k] = point.p_T_m.y();
+    z_T_m[k] = point.p_T_m.z();
+    nx_T[k] = point.normal_T.x();
+    ny_T[k] = point.normal_T.y();
+    nz_T[k] = point.normal_T.z();
+    area_m2[k] = point.area_m2;
+    depth_m[k] = point.depth_m;
+    sample[k] = point.sample;
   }
-  /// Fills place k as detection does. @param distance_m signed, to the rest surface
-  void set(int k, const scene::Vec3& at_W_m, const scene::Vec3& at_T_m, const scene::Vec3& normal_T, double part_m2,
-           double distance_m, std::int32_t of_sample) noexcept {
-    x_W_m[k] = at_W_m.x();
-    y_W_m[k] = at_W_m.y();
-    z_W_m[k] = at_W_m.z();
-    x_T_m[k] = at_T_m.x();
-    y_T_m[k] = at_T_m.y();
-    z_T_m[k] = at_T_m.z();
-    nx_T[k] = normal_T.x();
-    ny_T[k] = normal_T.y();
-    nz_T[k] = normal_T.z();
-    area_m2[k] = part_m2;
-    depth_m[k] = -distance_m;
-    sample[k] = of_sample;
+  /// The same, where `spread`.
+  TOUCHSTONE_INLINE void set(int k, const FoundPiece& piece) noexcept {
+    set(k, piece.middle);
+    set_rest_normal(k, piece.rest_normal_W);
+    cell[k] = piece.whole;
+    e1x_T_m[k] = piece.spread_T_m[0].x();
+    e1y_T_m[k] = piece.spread_T_m[0].y();
+    e1z_T_m[k] = piece.spread_T_m[0].z();
+    e2x_T_m[k] = piece.spread_T_m[1].x();
+    e2y_T_m[k] = piece.spread_T_m[1].y();
+    e2z_T_m[k] = piece.spread_T_m[1].z();
+    t1x_T[k] = piece.turn_T[0].x();
+    t1y_T[k] = piece.turn_T[0].y();
+    t1z_T[k] = piece.turn_T[0].z();
+    t2x_T[k] = piece.turn_T[1].x();
+    t2y_T[k] = piece.turn_T[1].y();
+    t2z_T[k] = piece.turn_T[1].z();
   }
   /// Puts point order[k] at place k, for all k; as far as detection has filled them. Points not named are gone.
   /// @param scratch room for as many numbers as `order` holds

@@ -153,6 +153,12 @@ namespace {
 /// How far an arc's middle stands off its chord, at most.
 double cell_sagitta_m(const Band& band) noexcept { return 0.125 * band.arc_radius_m * band.arc_angle * band.arc_angle; }
 
+/// Of the parabola over an arc's chord that leaves its ends in the arc's direction, and has all of the arc beneath it.
+double parabola_m(double radius_m, double angle) noexcept {
+  const double half = std::min(0.5 * angle, 1.5), sine = half * sinc(half);
+  return 0.5 * radius_m * sine * sine / std::sqrt(1.0 - sine * sine);
+}
+
 }  // namespace
 
 SurfaceCell band_cell(const Band& band) noexcept {
@@ -176,6 +182,8 @@ SurfaceCell band_cell(const Band& band) noexcept {
   const double r_m_most = std::max(band.start_m.x(), band.end_m.x());
   cell.bulge_m = 0.125 * ((r_m_most + cell_sagitta_m(band)) * band.turn * band.turn) + cell_sagitta_m(band);
   cell.radius_m = farthest_m(cell) + cell.bulge_m;
+  cell.sagitta_m = {parabola_m(r_m_most + cell_sagitta_m(band), band.turn),
+                    parabola_m(band.arc_radius_m, band.arc_angle)};
   const double around_m = 0.0625 * (band.start_m.x() + band.end_m.x()) * band.turn * band.turn;
   cell.sag_m = {Vec3(around_m * azimuth.x(), around_m * azimuth.y(), 0.0), cell_sagitta_m(band) * cell.normal_T};
   const CutPolygon::Moments polygon = CutPolygon(cell.corner_m).moments();
@@ -219,10 +227,17 @@ Outline outline(const SurfaceCell& cell) noexcept {
   const Band& band = cell.band;
   std::array<Vector2d, 5> azimuth{band.start_azimuth, {}, {}, {}, band.end_azimuth};
   azimuth[2] = (azimuth[0] + azimuth[4]).normalized();
-  azimuth[1] = (azimuth[0] + azimuth[2]).normalized();
-  azimuth[3] = (azimuth[2] + azimuth[4]).normalized();
-  for (std::size_t k = 0; k < azimuth.size(); ++k) add(turned(band, band.start_m, azimuth[k]));
-  for (std::size_t k = azimuth.size(); k-- > 0;) add(turned(band, band.end_m, azimuth[k]));
+  const std::size_t step = band.turn < 2.0 * wide ? 2 : 1;
+  if (step == 1) {
+    azimuth[1] = (azimuth[0] + azimuth[2]).normalized();
+    azimuth[3] = (azimuth[2] + azimuth[4]).normalized();
+  }
+  const auto add_arc = [&](const Vector2d& at_m, auto azimuth_of) {
+    if (at_m.x() == 0.0) return add(turned(band, at_m, azimuth[0]));
+    for (std::size_t k = 0; k < azimuth.size(); k += step) add(turned(band, at_m, azimuth[azimuth_of(k)]));
+  };
+  add_arc(band.start_m, [](std::size_t k) { return k; });
+  add_arc(band.end_m, [](std::size_t k) { return 4 - k; });
   return border;
 }
 

@@ -41,11 +41,14 @@ struct alignas(64) SurfaceCell {
   double radius_m = 0.0;   ///< about the centre, of a ball with all of it
   Spread spread_m;
   Turn turn{scene::Vec3::Zero(), scene::Vec3::Zero()};
-  std::int32_t sample = 0;              ///< of ToolSamples, whose cell this is or was cut from
-  std::int32_t group = -1;              ///< of CellGroups: neighbouring triangles of a fine mesh
-  std::int8_t corners = 4;              ///< 3 or 4
-  bool curved = false;                  ///< `band` says how; without group: flat
-  double bulge_m = 0.0;                 ///< no point of it is further from the polygon of its corners
+  std::int32_t sample = 0;  ///< of ToolSamples, whose cell this is or was cut from
+  std::int32_t group = -1;  ///< of CellGroups: neighbouring triangles of a fine mesh
+  std::int8_t corners = 4;  ///< 3 or 4
+  bool curved = false;      ///< `band` says how; without group: flat
+  double bulge_m = 0.0;     ///< no point of it is further from the polygon of its corners
+  /// Of a curved cell, for even and odd sides: at a share t of the way along, the surface is no further than
+  /// 4 t (1 - t) of this from the straight side.
+  std::array<double, 2> sagitta_m{};
   std::array<scene::Vec3, 4> corner_m;  ///< from the centre, in order; of a group: of a rectangle around it
   double polygon_m2 = 0.0;              ///< area of the polygon of its corners
   scene::Vec3 polygon_center_m;         ///< from the centre

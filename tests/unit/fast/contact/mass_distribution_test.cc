@@ -65,9 +65,12 @@ void put(const SurfaceCell& cell, test::OwnedPoints& points) {
   constexpr double rise = 0.3, fall = -0.2, at_axis_m = 0.002;
   const int k = points.count++;
   const Vec3& at_m = cell.center_T_m;
-  points.set(k, at_m, at_m, cell.normal_T, cell.area_m2, -(at_axis_m + rise * at_m.x() + fall * at_m.y()), 0);
   points.spread = true;
-  points.set_spread(k, Vec3::UnitZ(), cell.spread_m, cell.turn, &cell);
+  points.set(k, {{at_m, at_m, cell.normal_T, cell.area_m2, at_axis_m + rise * at_m.x() + fall * at_m.y(), 0},
+                 Vec3::UnitZ(),
+                 cell.spread_m,
+                 cell.turn,
+                 &cell});
   points.cos_theta[k] = 1.0;
   points.rise1_m[k] = rise * cell.spread_m[0].x() + fall * cell.spread_m[0].y();
   points.rise2_m[k] = rise * cell.spread_m[1].x() + fall * cell.spread_m[1].y();

@@ -1,5 +1,6 @@
 #include "fast/contact/surface_cells.h"
 
+#include "fast/contact/cell_batch.h"
 #include "fast/contact/contact_detection.h"
 #include "fast/contact/tool_samples.h"
 #include "fast/step/cell_rule.h"
@@ -10,11 +11,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace touchstone::fast {
 namespace {
@@ -91,6 +95,50 @@ TEST(CellsOfABall, AreCutWhereItsSurfaceIsNotAtTheirChords) {
   }
 }
 
+std::vector<SurfaceCell> halved(std::vector<SurfaceCell> cells, int times, const CellGroups& groups) {
+  for (; times > 0; --times) {
+    std::vector<SurfaceCell> next;
+    for (const SurfaceCell& cell : cells) {
+      for (const SurfaceCell& half : halves(cell, groups)) next.push_back(half);
+    }
+    cells = std::move(next);
+  }
+  return cells;
+}
+
+/// A cell whose surface is all above a plane is not looked at again, so no surface may be below what is said of it.
+TEST_P(CellsOf, DipNoFurtherBelowTheirCornersThanIsSaid) {
+  const ToolSamples samples = cell_tool(GetParam().tool, 100);
+  CellBatch batch;
+  double dips_m = 0.0, bulges_m = 0.0;
+  for (const SurfaceCell& whole : samples.cell) {
+    if (!whole.curved) continue;
+    for (const SurfaceCell& cell : {whole, halves(whole, samples.groups)[0]}) {
+      const std::vector<SurfaceCell> parts = halved({cell}, 8, samples.groups);
+      for (int k = 0; k < 6; ++k) {
+        const Vec3 tilt(std::sin(1.0 + k), std::sin(2.0 * k), std::sin(3.0 - 2.0 * k));
+        const Vec3 normal = (0.15 * k * tilt - cell.normal_T).normalized();
+        batch.count = 1;
+        batch.set_corners(0, cell);
+        batch.distance_m[0] = 0.0;
+        batch.nx[0] = normal.x();
+        batch.ny[0] = normal.y();
+        batch.nz[0] = normal.z();
+        level_batch(scene::Mat3::Identity(), batch);
+        double lowest_m = std::numeric_limits<double>::max();
+        for (const SurfaceCell& part : parts) {
+          for (const Vec3& corner_m : part.corner_m)
+            lowest_m = std::min(lowest_m, normal.dot(part.center_T_m + corner_m - cell.center_T_m));
+        }
+        EXPECT_GE(lowest_m, batch.lowest_m[0] - batch.dip_m[0] - 1e-12 * cell.radius_m);
+        dips_m += batch.dip_m[0];
+        bulges_m += cell.bulge_m;
+      }
+    }
+  }
+  EXPECT_LE(dips_m, 0.5 * bulges_m);
+}
+
 /// The area of a part, and where it looks, follow from those of the whole cell.
 TEST_P(CellsOf, HalvesHaveTheAreaOfPartsOfTheWhole) {
   const ToolSamples samples = cell_tool(GetParam().tool, 300);
@@ -121,9 +169,11 @@ TEST(PiecesOverAnEdge, HaveTheMeanDepth) {
       RegionPoints points = store.window();
       points.count = 1;
       points.spread = true;
-      points.set(0, middle_m, middle_m, d, 1e-6, -0.001, 0);
-      points.set_spread(0, Vec3::UnitX(), {along_m / std::sqrt(12.0), across_m / std::sqrt(12.0)},
-                        {Vec3::Zero(), Vec3::Zero()}, nullptr);
+      points.set(0, {{middle_m, middle_m, d, 1e-6, 0.001, 0},
+                     Vec3::UnitX(),
+                     {along_m / std::sqrt(12.0), across_m / std::sqrt(12.0)},
+                     {Vec3::Zero(), Vec3::Zero()},
+                     nullptr});
       (void)detection.measure_depths(*shape, scene::Mat3::Identity(), d, points);
       double sum_m = 0.0;
       constexpr int steps = 100;
