@@ -180,6 +180,12 @@ std::vector<Reason> status_paragraphs(const scene::Scene& scene, const fast::Run
   add(fast::StepStatus::size_unchecked, "The contact is larger, over the body's size," + unchecked);
   add(fast::StepStatus::edge_unchecked, "The contact is nearer to an edge, over its radius," + unchecked);
   add(fast::StepStatus::regions_unchecked, "Two contacts are nearer to each other, over their radii," + unchecked);
+  add(fast::StepStatus::curvature_unchecked, "The body is more curved, over the tip's radius," + unchecked);
+  add(fast::StepStatus::material_unchecked,
+      "The body's Poisson's ratio is below 0.5. The model was not compared with the reference for that with friction "
+      "or with another tip than a ball.");
+  add(fast::StepStatus::inclusion_unchecked,
+      "The body has inclusions. The model was not compared with the reference for such a body.");
   return out;
 }
 

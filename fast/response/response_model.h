@@ -21,6 +21,7 @@
 #include "fast/response/grid_weights.h"
 #include "fast/response/slip_springs.h"
 #include "fast/response/spread_load.h"
+#include "fast/step/status.h"
 #include "fast/surface/normals.h"
 #include "fast/surface/surface_patches.h"
 #include "scene/base/wrench.h"
@@ -45,6 +46,16 @@ struct TipLaw {
   int patches = 1;                   ///< of the load: round ones along a line
 };
 
+/// Within which the model was compared with the reference, see checked_range.h.
+struct CheckedRange {
+  double depth_over_radius = 0.0;     ///< of the tip, at most
+  double size_rel = 0.0;              ///< the contact's radius over the body's size, at most
+  double edge_over_radius = 0.0;      ///< distance of p0 to an edge over the contact's radius, at least
+  double apart_over_radii = 0.0;      ///< of two contacts' places over the sum of their radii, at least
+  double curvature_rel = 0.0;         ///< the body's largest curvature times the tip's radius, at most
+  StepStatus scene = StepStatus::ok;  ///< what holds for every contact of the scene
+};
+
 struct ResponseModel {
   /// @param scene    one of which scene::response_needs() nothing
   /// @param surface  its rest surface, whose points are the response's
@@ -61,7 +72,9 @@ struct ResponseModel {
   Eigen::VectorXd own_compliance;  ///< C at the grid's points [m/N]
   Eigen::Matrix3Xd sway, tilt;     ///< s [m/N] and the slope's direction b [1/N] there, world
   double body_size_m;
+  CheckedRange checked;
   Eigen::VectorXd edge_distance_m;  ///< from the grid's points to the nearest edge; infinite where there is none
+  Eigen::VectorXd largest_curvature_per_m;  ///< of the body there, over all directions, without its sign
   // Only with several tips:
   Eigen::MatrixXd
       cross_compliance;  ///< C_ij between grid points without the half space's part; its diagonal is C [m/N]

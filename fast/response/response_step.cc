@@ -433,7 +433,7 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
     const double high_m = tip.tip.ball() ? tip.tip.radius_m : tip.tables.front().largest_indentation_m();
     if (contact.depth_m > high_m) status |= StepStatus::tip_exceeded;
     if (!contact.weights.inside) status |= StepStatus::outside_grid;
-    status |= beyond(contact_range(model, state, contact, tip.tip));
+    status |= beyond(model.checked, contact_range(model, state, contact, tip.tip));
     finish_contact(model, tip, pose, contact, state);
   }
   state.lap(Stage::force);

@@ -23,6 +23,11 @@ std::string status_text(std::uint32_t status) {
   add(StepStatus::edge_unchecked, "nearer to an edge, over the contact's radius, than was compared with the reference");
   add(StepStatus::regions_unchecked,
       "two contacts nearer to each other, over their radii, than were compared with the reference");
+  add(StepStatus::curvature_unchecked,
+      "a more curved body, over the tip's radius, than was compared with the reference");
+  add(StepStatus::material_unchecked,
+      "a Poisson's ratio below 0.5, not compared with the reference for this tool or with friction");
+  add(StepStatus::inclusion_unchecked, "inclusions, which were not compared with the reference");
   return text.empty() ? "ok" : text;
 }
 
