@@ -1,6 +1,5 @@
 #include "fast/response/response_model.h"
 
-#include "fast/response/checked_range.h"
 #include "scene/response/find_tips.h"
 #include "scene/response/point_load.h"
 

@@ -17,11 +17,11 @@
 #pragma once
 
 #include "fast/realtime/stage_clock.h"
+#include "fast/response/checked_range.h"
 #include "fast/response/contact_table.h"
 #include "fast/response/grid_weights.h"
 #include "fast/response/slip_springs.h"
 #include "fast/response/spread_load.h"
-#include "fast/step/status.h"
 #include "fast/surface/normals.h"
 #include "fast/surface/surface_patches.h"
 #include "scene/base/wrench.h"
@@ -44,16 +44,6 @@ struct TipLaw {
   std::vector<LocalShape> local;     ///< of the body at the grid's points
   std::vector<ContactTable> tables;  ///< one per grid point; one alone where the body is the same everywhere
   int patches = 1;                   ///< of the load: round ones along a line
-};
-
-/// Within which the model was compared with the reference, see checked_range.h.
-struct CheckedRange {
-  double depth_over_radius = 0.0;     ///< of the tip, at most
-  double size_rel = 0.0;              ///< the contact's radius over the body's size, at most
-  double edge_over_radius = 0.0;      ///< distance of p0 to an edge over the contact's radius, at least
-  double apart_over_radii = 0.0;      ///< of two contacts' places over the sum of their radii, at least
-  double curvature_rel = 0.0;         ///< the body's largest curvature times the tip's radius, at most
-  StepStatus scene = StepStatus::ok;  ///< what holds for every contact of the scene
 };
 
 struct ResponseModel {

@@ -2,7 +2,6 @@
 
 #include "fast/realtime/flush_tiny_numbers.h"
 #include "fast/realtime/wide_loops.h"
-#include "fast/response/checked_range.h"
 #include "fast/response/grid_weights.h"
 
 #include <Eigen/LU>
@@ -11,6 +10,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <numbers>
 #include <numeric>
 #include <span>
 
@@ -401,6 +402,27 @@ void finish_contact(const ResponseModel& model, const TipLaw& tip, const scene::
 }
 
 }  // namespace
+
+ContactRange contact_range(const ResponseModel& model, const ResponseState& state, const ResponseContact& contact,
+                           const scene::ToolTip& tip) noexcept {
+  // Of a line the radius of a disc of its area, and the distance from its end.
+  const LocalContact& law = contact.law;
+  const double radius_m = std::sqrt(law.radius_m * (law.radius_m + 4.0 / std::numbers::pi * law.half_line_m));
+  ContactRange out;
+  out.depth_over_radius = contact.depth_m / tip.reach_m();
+  out.size_rel = radius_m / model.body_size_m;
+  const double edge_m = contact.weights.sum<double>([&](int k) { return model.edge_distance_m[k]; });
+  out.edge_over_radius = (edge_m - law.half_line_m) / law.radius_m;
+  out.curvature_rel =
+      contact.weights.sum<double>([&](int k) { return model.largest_curvature_per_m[k]; }) * tip.reach_m();
+  out.apart_over_radii = std::numeric_limits<double>::infinity();
+  for (const ResponseContact& other : state.contacts) {
+    if (&other == &contact || !other.touches()) continue;
+    const double apart_m = (contact.at.point_m - other.at.point_m).norm();
+    out.apart_over_radii = std::min(out.apart_over_radii, apart_m / (radius_m + other.law.radius_m));
+  }
+  return out;
+}
 
 StepStatus response_force(const ResponseModel& model, const scene::Pose& given, ResponseState& state) noexcept {
   if (!given.position_m.allFinite() || !given.orientation.coeffs().allFinite() || !(given.orientation.norm() > 1e-6)) {
