@@ -11,10 +11,10 @@ def scene_names():
     return sorted(path.stem for path in (root / "meshes/scenes").glob("*.toml"))
 
 
-def arguments(text, kind, names, out, page, **folders):
+def arguments(text, kind, names, out, page, presets=(), **folders):
     """The command line: names of one kind, all of them without any; what follows -- in `passed_on`.
 
-    page: where the tables stand, below reports/. folders: further options with a folder, and where it lies unless told.
+    page: where the tables stand, below reports/. presets: what --preset chooses from, all without any. folders: further options with a folder, and where it lies unless told.
     """
     parser = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--touchstone", type=pathlib.Path, default=root / "build/release/touchstone")
@@ -22,6 +22,8 @@ def arguments(text, kind, names, out, page, **folders):
     parser.add_argument("--out", type=pathlib.Path, default=root / out)
     for option, default in folders.items():
         parser.add_argument(f"--{option}", type=pathlib.Path, default=root / default)
+    if presets:
+        parser.add_argument("--preset", action="append", choices=presets)
     parser.add_argument("--page", type=pathlib.Path, default=root / "reports" / page, help=argparse.SUPPRESS)
     parser.add_argument("--only-read", action="store_true")
     parser.add_argument("names", nargs="*", metavar=kind.upper())

@@ -18,10 +18,10 @@ void copy_columns(const fast::Columns3& from, fast::Columns3& to) noexcept {
 
 }  // namespace
 
-CopyFloor::CopyFloor(const fast::SurfacePatches& rest) : from_(rest), to_(rest) {
+CopyFloor::CopyFloor(const fast::SurfaceField& at_rest) : from_(at_rest), to_(at_rest) {
   for (auto& column : to_.normal) std::fill(column.begin(), column.end(), 0.0f);
   // Not the zero displacements at rest, whose pages may share one zero page of memory.
-  for (std::size_t axis = 0; axis < 3; ++axis) from_.displacement_m[axis] = rest.rest_W_m[axis];
+  for (auto& column : from_.displacement_m) std::fill(column.begin(), column.end(), 1e-3f);
 }
 
 void CopyFloor::copy() noexcept {

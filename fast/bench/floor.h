@@ -8,7 +8,7 @@ namespace touchstone::bench {
 /// Copies six columns of floats, the displacement and the normal of every vertex, from one place in memory to another.
 class CopyFloor {
  public:
-  explicit CopyFloor(const fast::SurfacePatches& rest);
+  explicit CopyFloor(const fast::SurfaceField& at_rest);
   /// The compiler cannot leave it out or keep part of it for later.
   void copy() noexcept;
   [[nodiscard]] const fast::SurfaceField& from() const noexcept { return from_; }

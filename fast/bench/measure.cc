@@ -2,6 +2,7 @@
 
 #include "fast/bench/floor.h"
 #include "fast/bench/statistics.h"
+#include "fast/response/response_engine.h"
 #include "fast/step/skeleton_engine.h"
 #include "scene/base/index.h"
 #include "scene/base/stopwatch.h"
@@ -10,6 +11,8 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace touchstone::bench {
@@ -27,10 +30,22 @@ struct Samples {
   std::vector<double> step_cpu_us, floor_cpu_us, instructions, cycles;  ///< mean of each block
 };
 
+std::unique_ptr<fast::Engine> engine_of(const Case& which) {
+  const scene::Scene scene = scene_of(which);
+  if (!which.response) return std::make_unique<fast::SkeletonEngine>(scene);
+  scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
+  scene::Response response = made_up_response(scene, surface);
+  return std::make_unique<fast::ResponseEngine>(scene, std::move(surface), std::move(response));
+}
+
 class Measurement {
  public:
-  Measurement(const Case& which, fast::SkeletonEngine& engine, HardwareCounters& counters)
-      : which_(which), engine_(engine), floor_(engine.model().rest), counters_(counters) {}
+  Measurement(const Case& which, fast::Engine& engine, HardwareCounters& counters)
+      : which_(which),
+        engine_(engine),
+        skeleton_(dynamic_cast<const fast::SkeletonEngine*>(&engine)),
+        floor_(engine.field()),
+        counters_(counters) {}
 
   /// Presses the tool in. @returns the time of a step [us]
   double approach() {
@@ -106,7 +121,8 @@ class Measurement {
     }
     result.instructions = median(std::move(samples_.instructions));
     result.cycles = median(std::move(samples_.cycles));
-    const fast::FastState& state = engine_.state();
+    if (skeleton_ == nullptr) return;
+    const fast::FastState& state = skeleton_->state();
     for (int i = 0; i < state.region_count; ++i) result.points += nth(state.regions, i).points.count;
   }
 
@@ -114,16 +130,19 @@ class Measurement {
   scene::Pose next_pose() { return pose_at_tick(which_, tick_++); }
 
   void count_regions(CaseResult& result) const {
-    const fast::FastState& state = engine_.state();
-    const auto pressing =
-        static_cast<int>(std::count_if(state.regions.begin(), state.regions.begin() + state.region_count,
-                                       [](const fast::ContactRegion& r) { return r.pressing(); }));
+    int pressing = engine_.region_count();
+    if (skeleton_ != nullptr) {
+      const auto& regions = skeleton_->state().regions;
+      pressing = static_cast<int>(std::count_if(regions.begin(), regions.begin() + pressing,
+                                                [](const fast::ContactRegion& r) { return r.pressing(); }));
+    }
     result.regions_least = std::min(result.regions_least, pressing);
     result.regions_most = std::max(result.regions_most, pressing);
   }
 
   const Case& which_;
-  fast::SkeletonEngine& engine_;
+  fast::Engine& engine_;
+  const fast::SkeletonEngine* skeleton_;  // null for the response model
   CopyFloor floor_;
   HardwareCounters& counters_;
   Samples samples_;
@@ -164,19 +183,19 @@ bool CaseResult::as_planned() const noexcept {
 CaseResult measure(const Case& which, const Effort& effort, HardwareCounters& counters) {
   CaseResult result;
   result.which = which;
-  const scene::Scene scene = scene_of(which);
   const scene::Stopwatch watch;
-  fast::SkeletonEngine engine(scene);
-  const fast::FastModel& model = engine.model();
+  const std::unique_ptr<fast::Engine> engine = engine_of(which);
   result.setup_s = watch.wall_s();
-  result.triangles = model.surface.triangle_count();
-  result.vertices = model.surface.vertex_count();
-  if (model.tool.count() == 0) {
+  result.triangles = engine->surface().triangle_count();
+  result.vertices = engine->surface().vertex_count();
+  result.memory_bytes = engine->memory_bytes();
+  const auto* skeleton = dynamic_cast<const fast::SkeletonEngine*>(engine.get());
+  if (skeleton != nullptr && skeleton->model().tool.count() == 0) {
     result.available = false;
     result.why = "not available in this build: the tool has no samples";
     return result;
   }
-  Measurement measurement(which, engine, counters);
+  Measurement measurement(which, *engine, counters);
   const double step_us = measurement.approach();
   // Two steps per tick, and the copying of the output, which takes a fraction of a step.
   const double wished = 1e6 * effort.seconds_per_case / (2.3 * std::max(step_us, 0.1));

@@ -42,6 +42,7 @@ struct CaseResult {
   int points = 0;                           ///< contact points of all regions together, at the end
   std::uint32_t status = 0;                 ///< OR of the fast::StepStatus bits of the measured ticks
   double setup_s = 0.0;                     ///< building the model
+  std::size_t memory_bytes = 0;             ///< of the model and its state
   Durations floor, step;
   fast::Percentiles force;                                  ///< of step(), pose to force
   std::array<fast::Percentiles, fast::stage_count> stages;  ///< from ticks of their own, since reading the clock costs

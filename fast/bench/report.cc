@@ -38,6 +38,7 @@ void add_case(scene::Figures& figures, const CaseResult& c) {
   add("regions_most", c.regions_most, "");
   add("points", c.points, "");
   add("setup_s", c.setup_s, "s");
+  add("memory_bytes", static_cast<double>(c.memory_bytes), "bytes");
   fast::add_figures(key + ".step_us", c.step.wall, figures);
   fast::add_figures(key + ".floor_us", c.floor.wall, figures);
   fast::add_figures(key + ".force_us", c.force, figures);
@@ -164,6 +165,8 @@ std::vector<std::string> cases_behind(const std::string& key) {
   if (key == "step_over_floor_100k") return {"box/100k/1"};
   if (key == "bullet_over_step_1k") return {"box/1k/1"};
   if (key == "step_over_floor_4k") return {"box/4k/1"};
+  if (key == "response_step_us_p50_4k" || key == "response_force_us_p50_4k") return {"response/4k/1"};
+  if (key == "response_step_us_p50_100k") return {"response/100k/1"};
   return {"box/4k/1", "box/4k/10"};
 }
 
@@ -225,13 +228,22 @@ std::vector<Verdict> verdicts(const BenchResult& result) {
   for (const CaseResult& c : result.cases) {
     if (matches(c.which.name(), "box/4k")) force_us = std::fmax(force_us, c.force_us_per_region());
   }
+  const auto response_us = [&](const char* name, bool force) {
+    const CaseResult* c = result.find(name);
+    return c == nullptr ? not_measured : force ? c->force.p50_us : c->step.wall.p50_us;
+  };
   const PeerResult* peer = fastest(result.peers, "1k", "rubber");
-  return {{"step_over_floor_4k", over_floor("box/4k/1"), 10.0, true, "", "whole step over its floor, one region"},
-          {"step_over_floor_100k", over_floor("box/100k/1"), 3.0, true, "", "the same at 100k triangles"},
-          {"ten_regions_over_one_4k", ten_over_one, 6.0, true, "", "whole step with ten regions over that with one"},
-          {"force_us_p50_per_region", force_us, 10.0, true, "us", "pose to force, the worst of 4k (paper: 30 us)"},
-          {"bullet_over_step_1k", peer != nullptr ? peer->over_step() : not_measured, 50.0, false, "",
-           peer != nullptr ? "Bullet's step, " + peer->setting.name + ", over ours" : "Bullet's step over ours"}};
+  return {
+      {"step_over_floor_4k", over_floor("box/4k/1"), 10.0, true, "", "whole step over its floor, one region"},
+      {"step_over_floor_100k", over_floor("box/100k/1"), 3.0, true, "", "the same at 100k triangles"},
+      {"ten_regions_over_one_4k", ten_over_one, 6.0, true, "", "whole step with ten regions over that with one"},
+      {"force_us_p50_per_region", force_us, 10.0, true, "us", "pose to force, the worst of 4k (paper: 30 us)"},
+      {"response_step_us_p50_4k", response_us("response/4k/1", false), 30.0, true, "us", "response model, whole step"},
+      {"response_force_us_p50_4k", response_us("response/4k/1", true), 10.0, true, "us", "the same, pose to force"},
+      {"response_step_us_p50_100k", response_us("response/100k/1", false), 1000.0, true, "us",
+       "the same at 100k triangles: a tick of 1 ms"},
+      {"bullet_over_step_1k", peer != nullptr ? peer->over_step() : not_measured, 50.0, false, "",
+       peer != nullptr ? "Bullet's step, " + peer->setting.name + ", over ours" : "Bullet's step over ours"}};
 }
 
 scene::Figures figures(const BenchResult& result) {

@@ -91,7 +91,10 @@ Icosphere icosphere(int halvings) {
 }  // namespace
 
 std::string Case::name() const {
-  return std::string(body == BodyShape::box ? "box" : "ellipsoid") + "/" + size + "/" + std::to_string(regions);
+  return std::string(response                 ? "response"
+                     : body == BodyShape::box ? "box"
+                                              : "ellipsoid") +
+         "/" + size + "/" + std::to_string(regions);
 }
 
 int triangles_wished(const std::string& size) {
@@ -110,6 +113,9 @@ std::vector<Case> all_cases(bool quick) {
         if (!quick || regions == 1 || regions == 10) cases.push_back({body, size, regions});
       }
     }
+  }
+  for (const auto& [size, triangles] : sizes) {
+    if (!quick || std::string(size) != "20k") cases.push_back({BodyShape::box, size, 1, true});
   }
   return cases;
 }
@@ -184,7 +190,7 @@ scene::Scene scene_of(const Case& which) {
       static_cast<int>(std::lround(which.regions * samples_per_m2 * 4.0 * std::numbers::pi * radius_m * radius_m));
   scene.contact.k1_n_per_m = 40.0;
   scene.contact.k3_n_per_m3 = 3.0e8;
-  scene.fast.formulation = scene::Formulation::corrected;
+  scene.fast.formulation = which.response ? scene::Formulation::response : scene::Formulation::corrected;
   scene.fast.triangles = triangles_wished(which.size);
   scene.fast.max_regions = which.regions;
   scene.fast.rate_hz = 1000.0;
@@ -196,6 +202,16 @@ scene::Scene scene_of(const Case& which) {
   scene.compare.instants = 2;
   scene.track = {{0.0, pose_at_tick(which, 0)}, {1.0, pose_at_tick(which, approach_ticks)}};
   return scene;
+}
+
+scene::Response made_up_response(const scene::Scene& scene, const scene::Surface& surface) {
+  constexpr double own_m_per_n = 2e-5;
+  scene::Response out;
+  out.grid = scene::load_grid(scene).grid.value();
+  out.smooth_m_per_n.setConstant(3 * surface.points_m.cols(), out.grid.count(), static_cast<float>(0.1 * own_m_per_n));
+  out.own_m_per_n = -own_m_per_n * out.grid.normals;
+  out.tilt_per_n.setZero(2, out.grid.count());
+  return out;
 }
 
 scene::Pose pose_at_tick(const Case& which, std::int64_t tick) {

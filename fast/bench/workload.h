@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/model/scene.h"
+#include "scene/response/response.h"
 
 #include <cstdint>
 #include <string>
@@ -14,8 +15,9 @@ struct Case {
   scene::BodyShape body = scene::BodyShape::box;  ///< box or ellipsoid
   std::string size = "4k";                        ///< one of size_names
   int regions = 1;
+  bool response = false;  ///< the response model, in place of the corrected skeleton
 
-  /// "box/4k/1"
+  /// "box/4k/1", "response/4k/1"
   [[nodiscard]] std::string name() const;
 };
 
@@ -39,6 +41,9 @@ struct Case {
 /// The case's scene: the paper's rubber. One region: a ball of 10 mm, 2000 samples. Several: that many balls of 4 mm in
 /// one mesh, sampled as densely.
 [[nodiscard]] scene::Scene scene_of(const Case& which);
+
+/// Columns of the scene's body whose values are made up: the time of a step does not depend on them.
+[[nodiscard]] scene::Response made_up_response(const scene::Scene& scene, const scene::Surface& surface);
 
 /// Ticks of the approach, before anything is measured.
 inline constexpr std::int64_t approach_ticks = 64;

@@ -72,6 +72,20 @@ double to_edge_m(const scene::Shape& body, const Vec3& point_m, const Vec3& norm
   return nearest_m;
 }
 
+/// The largest curvature of a smooth face at a point, without its sign.
+double curvature_per_m(const scene::Shape& body, const Vec3& point_m, const Vec3& normal, double step_m) {
+  const Vec3 first = normal.unitOrthogonal(), second = normal.cross(first);
+  double largest_per_m = 0.0;
+  constexpr int directions = 16;
+  for (int d = 0; d < directions; ++d) {
+    const double angle = std::numbers::pi * d / directions;
+    const Vec3 along = std::cos(angle) * first + std::sin(angle) * second;
+    const scene::SurfaceQuery low = body.query(point_m - step_m * along), high = body.query(point_m + step_m * along);
+    largest_per_m = std::max(largest_per_m, std::abs((high.normal - low.normal).dot(along)) / (2.0 * step_m));
+  }
+  return largest_per_m;
+}
+
 /// Corners of the triangle of a surface that holds a point of it, and their shares.
 struct OnTriangle {
   std::array<std::int32_t, 3> corners{};
@@ -141,6 +155,7 @@ ResponseModel::ResponseModel(const scene::Scene& scene, scene::Surface at_rest, 
   const int n = grid.count();
   body_size_m = scene::body_size_m(scene.body);
   edge_distance_m.resize(n);
+  largest_curvature_per_m.resize(n);
   own_compliance.resize(n);
   sway.resize(3, n);
   tilt.resize(3, n);
@@ -151,10 +166,12 @@ ResponseModel::ResponseModel(const scene::Scene& scene, scene::Surface at_rest, 
     const Vec3 slope = grid.axes.leftCols<2>() * response.tilt_per_n.col(k);
     tilt.col(k) = slope - slope.dot(normal) * normal;
     edge_distance_m[k] = to_edge_m(*body, grid.points_m.col(k), normal, body_size_m);
+    largest_curvature_per_m[k] = curvature_per_m(*body, grid.points_m.col(k), normal, 0.01 * body_size_m);
   }
   for (const scene::ToolTip& tip : scene::tool_tips(scene).tips) {
     tips.push_back(tip_law(scene.body, *body, grid, tip));
   }
+  checked = checked_range(scene);
   if (tips.size() > 1) {
     cross_compliance = cross_compliance_m_per_n(response, surface, scene.body.material, half_space);
   }
@@ -176,7 +193,7 @@ ResponseModel::ResponseModel(const scene::Scene& scene, scene::Surface at_rest, 
 std::size_t ResponseModel::memory_bytes() const noexcept {
   std::size_t bytes = (rest_m[0].size() * 6 + free.size()) * sizeof(float) + normals.memory_bytes() +
                       static_cast<std::size_t>(response.smooth_m_per_n.size()) * sizeof(float) +
-                      static_cast<std::size_t>(own_compliance.size()) * (2 + 6 + 9) * sizeof(double) +
+                      static_cast<std::size_t>(own_compliance.size()) * (3 + 6 + 9) * sizeof(double) +
                       static_cast<std::size_t>(cross_compliance.size()) * sizeof(double);
   for (const TipLaw& law : tips) {
     bytes += law.local.size() * sizeof(LocalShape);

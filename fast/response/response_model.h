@@ -17,6 +17,7 @@
 #pragma once
 
 #include "fast/realtime/stage_clock.h"
+#include "fast/response/checked_range.h"
 #include "fast/response/contact_table.h"
 #include "fast/response/grid_weights.h"
 #include "fast/response/slip_springs.h"
@@ -61,7 +62,9 @@ struct ResponseModel {
   Eigen::VectorXd own_compliance;  ///< C at the grid's points [m/N]
   Eigen::Matrix3Xd sway, tilt;     ///< s [m/N] and the slope's direction b [1/N] there, world
   double body_size_m;
+  CheckedRange checked;
   Eigen::VectorXd edge_distance_m;  ///< from the grid's points to the nearest edge; infinite where there is none
+  Eigen::VectorXd largest_curvature_per_m;  ///< of the body there, over all directions, without its sign
   // Only with several tips:
   Eigen::MatrixXd
       cross_compliance;  ///< C_ij between grid points without the half space's part; its diagonal is C [m/N]

@@ -15,4 +15,8 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& pose, R
 /// Of the last force.
 void response_shape(const ResponseModel& model, ResponseState& state) noexcept;
 
+/// What a contact of the last step has of the checked range.
+[[nodiscard]] ContactRange contact_range(const ResponseModel& model, const ResponseState& state,
+                                         const ResponseContact& contact, const scene::ToolTip& tip) noexcept;
+
 }  // namespace touchstone::fast

@@ -182,11 +182,21 @@ std::int32_t spread_displacements_m(const SpreadLoad& load, const HalfSpace& hal
     uz[i] = radial * rz - inward * nz;
   }
   if (!load.shear_n().isZero(0.0)) add_shear_m(load, half_space, rest_m, out_m);
+  // Most blocks have none, which wide registers find out sooner.
+  constexpr std::int32_t block = 64;
   std::int32_t found = 0;
-  for (std::int32_t i = 0; i < count; ++i) {
-    const float dx = x[i] - px, dy = y[i] - py, dz = z[i] - pz;
-    near[found] = i;
-    found += dx * dx + dy * dy + dz * dz < near2 ? 1 : 0;
+  for (std::int32_t begin = 0; begin < count; begin += block) {
+    const std::int32_t end = std::min(begin + block, count);
+    const auto is_near = [&](std::int32_t i) {
+      const float dx = x[i] - px, dy = y[i] - py, dz = z[i] - pz;
+      return dx * dx + dy * dy + dz * dz < near2 ? 1 : 0;
+    };
+    std::int32_t here = 0;
+    for (std::int32_t i = begin; i < end; ++i) here += is_near(i);
+    for (std::int32_t i = begin; here > 0 && i < end; ++i) {
+      near[found] = i;
+      found += is_near(i);
+    }
   }
   return found;
 }

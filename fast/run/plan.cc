@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <initializer_list>
 #include <memory>
@@ -118,14 +119,25 @@ std::string tips_text(const std::vector<scene::ToolTip>& tips) {
 }
 
 /// What the response model was compared with the reference for, and what the track has beyond that.
-std::string checked_text(const std::vector<scene::ToolTip>& tips, StepStatus status) {
+std::string checked_text(const scene::Scene& scene, const std::vector<scene::ToolTip>& tips, StepStatus status) {
+  const CheckedRange checked = checked_range(scene);
+  const std::string bodies =
+      checked.curvature_rel < 0.01
+          ? "flat faces"
+          : fmt::format("faces with radii of curvature from {:.2g} times the tip's", 1.0 / checked.curvature_rel);
   std::string text = fmt::format(
-      "compared with the reference for depths up to {} of the tip's radius, contacts of a radius up to {} of the "
-      "body's size, {} contact radii and more from an edge",
-      CheckedRange::depth_over_radius, CheckedRange::size_rel, CheckedRange::edge_over_radius);
-  if (tips.size() > 1) text += fmt::format(", {} times the radii and more apart", CheckedRange::apart_over_radii);
-  constexpr auto unchecked = static_cast<std::uint32_t>(StepStatus::depth_unchecked | StepStatus::size_unchecked |
-                                                        StepStatus::edge_unchecked | StepStatus::regions_unchecked);
+      "with this Poisson's ratio{} compared with the reference for {}, depths up to {} of the tip's radius, contacts "
+      "of a radius up to {} of the body's size, {} contact radii and more from an edge",
+      scene.contact.friction ? " and friction" : "", bodies, checked.depth_over_radius, checked.size_rel,
+      checked.edge_over_radius);
+  if (tips.size() > 1 && std::isfinite(checked.apart_over_radii)) {
+    text += fmt::format(", {} times the radii and more apart", checked.apart_over_radii);
+  }
+  status |= checked.scene;
+  constexpr auto unchecked =
+      static_cast<std::uint32_t>(StepStatus::depth_unchecked | StepStatus::size_unchecked | StepStatus::edge_unchecked |
+                                 StepStatus::regions_unchecked | StepStatus::curvature_unchecked |
+                                 StepStatus::material_unchecked | StepStatus::inclusion_unchecked);
   const std::uint32_t beyond = static_cast<std::uint32_t>(status) & unchecked;
   return beyond == 0 ? text : text + "; THE TRACK GOES BEYOND: " + status_text(beyond);
 }
@@ -193,7 +205,7 @@ scene::Plan response_plan(const scene::Scene& scene) {
                cost({Stage::interpolation}));
   lines.models("local surface", "points under the tool lie on it", cost({Stage::local_factor}));
   lines.models("normals", "of the deformed surface", cost({Stage::normals}));
-  lines.models("checked range", checked_text(tips, engine ? measured.status : StepStatus::ok));
+  lines.models("checked range", checked_text(scene, tips, engine ? measured.status : StepStatus::ok));
   if (engine) lines.whole(measured, *engine);
   lines.leaves_out("time dependence", "the force is static; the track's speed does not enter");
   return lines.plan;

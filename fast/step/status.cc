@@ -30,6 +30,12 @@ std::string status_text(std::uint32_t status) {
       "the contact was nearer to an edge, over its radius, than any that was compared with the reference");
   add(StepStatus::regions_unchecked,
       "two contacts were nearer to each other, over their radii, than any that were compared with the reference");
+  add(StepStatus::curvature_unchecked,
+      "the body was more curved, over the tip's radius, than any that was compared with the reference");
+  add(StepStatus::material_unchecked,
+      "the body's Poisson's ratio is below 0.5, which was not compared with the reference for this tool or with "
+      "friction");
+  add(StepStatus::inclusion_unchecked, "the body has inclusions, and no such body was compared with the reference");
   return text.empty() ? "ok" : text;
 }
 

@@ -22,10 +22,13 @@ enum class StepStatus : std::uint32_t {
   tip_exceeded = 1u << 7,  ///< deeper than the tool's tip is high
   tilted = 1u << 8,        ///< a flat tip that does not lie flat
   // Beyond what the response model was compared with the reference for (fast/response/checked_range.h):
-  depth_unchecked = 1u << 9,    ///< deeper, over the tip's radius
-  size_unchecked = 1u << 10,    ///< a larger contact, over the body's size
-  edge_unchecked = 1u << 11,    ///< nearer to an edge of the body, over the contact's radius
-  regions_unchecked = 1u << 12  ///< two contacts nearer to each other, over their radii
+  depth_unchecked = 1u << 9,       ///< deeper, over the tip's radius
+  size_unchecked = 1u << 10,       ///< a larger contact, over the body's size
+  edge_unchecked = 1u << 11,       ///< nearer to an edge of the body, over the contact's radius
+  regions_unchecked = 1u << 12,    ///< two contacts nearer to each other, over their radii
+  curvature_unchecked = 1u << 13,  ///< a more curved body, over the tip's radius
+  material_unchecked = 1u << 14,   ///< a Poisson's ratio below 0.5 with friction or another tip than a ball
+  inclusion_unchecked = 1u << 15   ///< a body with inclusions
 };
 [[nodiscard]] constexpr StepStatus operator|(StepStatus a, StepStatus b) noexcept {
   return static_cast<StepStatus>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));

@@ -45,15 +45,37 @@ std::vector<NodeContact<dim>> ContactProblem<dim>::node_contacts(const State<dim
 }
 
 template <int dim>
+void ContactProblem<dim>::factorise_at_rest() {
+  if (holds_rest_factor_) return;
+  const State<dim> at_rest = rest();
+  body_.constrain(at_rest.u_m, {});
+  body_.assemble(at_rest, Stiffness::consistent, {}, 0.0);
+  if (!body_.solver().factorise(body_.matrix())) throw std::runtime_error("the stiffness at rest is singular");
+  holds_rest_factor_ = true;
+}
+
+template <int dim>
+Eigen::Matrix<double, dim, Eigen::Dynamic> ContactProblem<dim>::linear_displacement_m() {
+  factorise_at_rest();
+  body_.constrain(model_.prescribed_m, {});
+  // What the prescribed displacements alone do, then the balance of the rest.
+  State<dim> state = rest();
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(unknowns());
+  state.u_m = body_.displacement_m(x);
+  state.p_pa = body_.pressure_change_pa(state.u_m);
+  const auto forces_n = body_.forces(state).nodal_n;
+  for (Eigen::Index dof = 0; dof < forces_n.size(); ++dof) {
+    if (const int unknown = body_.unknown(static_cast<int>(dof)); unknown >= 0) x[unknown] = -forces_n.data()[dof];
+  }
+  body_.solver().solve(x);
+  return body_.displacement_m(x);
+}
+
+template <int dim>
 std::vector<Eigen::Matrix<double, dim, Eigen::Dynamic>> ContactProblem<dim>::linear_displacements_m(
     const std::vector<NodeForce>& forces) {
-  if (!holds_rest_factor_) {
-    const State<dim> at_rest = rest();
-    body_.constrain(at_rest.u_m, {});
-    body_.assemble(at_rest, Stiffness::consistent, {}, 0.0);
-    if (!body_.solver().factorise(body_.matrix())) throw std::runtime_error("the stiffness at rest is singular");
-    holds_rest_factor_ = true;
-  }
+  factorise_at_rest();
+  body_.constrain(rest().u_m, {});
   const auto count = static_cast<Eigen::Index>(forces.size());
   Eigen::MatrixXd x = Eigen::MatrixXd::Zero(unknowns(), count);
   for (Eigen::Index k = 0; k < count; ++k) {

@@ -107,6 +107,8 @@ class ContactProblem {
   /// @throws std::runtime_error when the stiffness is singular
   [[nodiscard]] std::vector<Eigen::Matrix<double, dim, Eigen::Dynamic>> linear_displacements_m(
       const std::vector<NodeForce>& forces);
+  /// The same under the dead forces and with the prescribed displacements of now.
+  [[nodiscard]] Eigen::Matrix<double, dim, Eigen::Dynamic> linear_displacement_m();
 
   /// The nodes that may come into contact, and the outward normal of the surface at rest at one of them.
   [[nodiscard]] const std::vector<int>& contact_nodes() const noexcept { return model_.nodes; }
@@ -123,6 +125,8 @@ class ContactProblem {
   static constexpr double force_tolerance = Balance{}.force.limit;
 
  private:
+  void factorise_at_rest();
+
   ElasticBody<dim> body_;
   ContactModel<dim> model_;
   NewtonSolver<dim> newton_;

@@ -1,6 +1,7 @@
 """reports/errors/measure with a fake program: its calls, calls that it does not repeat, and its output."""
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -105,11 +106,12 @@ class Measure(unittest.TestCase):
         self.run_on("ball-on-cube-slide", "ball-on-cube-press", "--", "--minutes", "7")
         slide, press = ([call for call in self.calls() if f"{name}.toml" in call] for name in
                         ("ball-on-cube-slide", "ball-on-cube-press"))
-        self.assertEqual((len(slide), len(press)), (2, 2))
+        self.assertEqual((len(slide), len(press)), (3, 3))
+        self.assertIn("--set fast.formulation=response", slide[2])
         self.assertIn("--set fast.formulation=published", slide[0])
         self.assertNotIn("k1_n_per_m", slide[0])
         # For the fast model alone: --set would give the tuned friction to the reference as well.
-        for call, study in ((slide[1], "friction"), (press[1], "ball-on-cube")):
+        for call, study in ((slide[1], "friction"), (press[1], "ball-on-cube")):  # without the response model
             self.assertRegex(call, rf"--parameters \S*{study}-tune/parameters-published-duffing.toml")
             self.assertNotIn("--set", call)
         self.assertTrue(all(call.endswith("--minutes 7") for call in slide + press))
@@ -119,7 +121,7 @@ class Measure(unittest.TestCase):
         self.run_on("mallet-head-on-cube")
         self.assertIn("not tuned yet", self.line("mallet-head-on-cube", "tuned published", "Force")[0])
         self.tuned("mallet", "published", "[contact]\nk1_per_radius_n_per_m2 = 456.5\n", "area_aware")
-        self.run_on("mallet-head-on-cube")
+        self.run_on("--preset", "tuned published", "mallet-head-on-cube")
         self.assertIn("mallet-tune/parameters-published-area_aware.toml", self.calls()[-1])
 
     def test_a_reason_names_no_place_of_this_machine(self):
@@ -148,13 +150,23 @@ class Measure(unittest.TestCase):
         self.tuned("ball-on-cube", "published", "[fast]\nC_n = 0.25\n")
         self.run_on("hertz-sphere")
         self.run_on("hertz-sphere")
-        self.assertEqual(len(self.calls()), 2)
+        self.assertEqual(len(self.calls()), 3)
         self.tuned("ball-on-cube", "published", "[fast]\nC_n = 0.5\n")
         self.run_on("hertz-sphere")
-        self.assertEqual(len(self.calls()), 3)
+        self.assertEqual(len(self.calls()), 4)
         (self.folder / "out/hertz-sphere/untuned/summary.json").unlink()
         self.run_on("hertz-sphere")
-        self.assertEqual(len(self.calls()), 4)
+        self.assertEqual(len(self.calls()), 5)
+
+    def test_rows_stay_where_nothing_is_measured_again(self):
+        self.run_on("compass-two-pins", "ball-on-cube-slide")
+        shutil.rmtree(self.folder / "out")
+        self.answer(figures | {"force.nrmse": 0.5})
+        self.run_on("--preset", "response", "compass-two-pins")
+        self.assertEqual(self.line("compass-two-pins", "response", "Force")[0], "50 % ± 1 %")
+        self.assertEqual(self.line("compass-two-pins", "untuned", "Force")[0], "25 % ± 1 %")
+        self.assertEqual(self.line("compass-two-pins", "untuned", "Single regions")[0], "1")
+        self.assertEqual(self.line("ball-on-cube-slide", "response", "Surface and contact")[0], "2 mm ± 1 mm")
 
     def test_only_reading_asks_nobody(self):
         self.run_on("hertz-sphere")

@@ -10,7 +10,7 @@ namespace {
 
 TEST(CopyFloor, CopiesAllSixColumnsOfEveryVertex) {
   const fast::FastModel model(scene_of({scene::BodyShape::box, "1k", 1}));
-  CopyFloor floor(model.rest);
+  CopyFloor floor{fast::SurfaceField(model.rest)};
   EXPECT_NE(floor.to().displacement_m, floor.from().displacement_m);
   EXPECT_NE(floor.to().normal, floor.from().normal);
   floor.copy();

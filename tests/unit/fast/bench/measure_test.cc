@@ -40,6 +40,22 @@ TEST(Measure, PressesInEveryRegionAndTimesEveryStage) {
   }
 }
 
+TEST(Measure, TheResponseModelsStages) {
+  HardwareCounters counters;
+  const CaseResult result = measure({scene::BodyShape::box, "1k", 1, true}, effort_of(true, 40), counters);
+  EXPECT_TRUE(result.as_planned()) << fast::status_text(result.status) << " " << result.regions_least;
+  EXPECT_EQ(result.triangles, 972);
+  EXPECT_LT(result.force.p50_us, result.step.wall.p50_us);
+  EXPECT_GT(result.memory_bytes, 100000u);
+  for (std::size_t s = 0; s < fast::stage_count; ++s) {
+    const auto stage = static_cast<fast::Stage>(s);
+    const bool has = stage == fast::Stage::detection || stage == fast::Stage::force ||
+                     stage == fast::Stage::interpolation || stage == fast::Stage::local_factor ||
+                     stage == fast::Stage::normals;
+    EXPECT_EQ(result.stages[s].max_us > 0.0, has) << fast::stage_names[s];
+  }
+}
+
 TEST(Measure, AThreadsOwnTimeDoesNotRunWhileItSleeps) {
   const double begin_us = thread_cpu_us();
   const auto wall = std::chrono::steady_clock::now() + std::chrono::milliseconds(20);

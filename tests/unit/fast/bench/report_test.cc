@@ -29,13 +29,22 @@ CaseResult result_of(const std::string& size, int regions, double step_us, doubl
   return c;
 }
 
-/// All five figures are exactly at their targets.
+CaseResult with_response(CaseResult c) {
+  c.which.response = true;
+  return c;
+}
+
+/// All figures are exactly at their targets.
 BenchResult at_the_targets() {
   BenchResult result;
   result.counters = "counted";
   result.peer_version = "Bullet 0.0";
-  result.cases = {result_of("1k", 1, 8.0, 0.5, 5.0), result_of("4k", 1, 20.0, 2.0, 10.0),
-                  result_of("4k", 10, 120.0, 2.0, 100.0), result_of("100k", 1, 150.0, 50.0, 6.0)};
+  result.cases = {result_of("1k", 1, 8.0, 0.5, 5.0),
+                  result_of("4k", 1, 20.0, 2.0, 10.0),
+                  result_of("4k", 10, 120.0, 2.0, 100.0),
+                  result_of("100k", 1, 150.0, 50.0, 6.0),
+                  with_response(result_of("4k", 1, 30.0, 2.0, 10.0)),
+                  with_response(result_of("100k", 1, 1000.0, 50.0, 6.0))};
   PeerResult peer;
   peer.size = "1k";
   peer.setting.name = "rubber.implicit";
@@ -54,7 +63,7 @@ const Verdict& verdict(const std::vector<Verdict>& all, const std::string& key) 
 
 TEST(Verdicts, AreMetAtTheTargetsAndMissedBeyond) {
   std::vector<Verdict> all = verdicts(at_the_targets());
-  ASSERT_EQ(all.size(), 5u);
+  ASSERT_EQ(all.size(), 8u);
   for (const Verdict& v : all) {
     EXPECT_TRUE(v.measured()) << v.key;
     EXPECT_DOUBLE_EQ(v.number, v.target) << v.key;

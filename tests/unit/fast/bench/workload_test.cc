@@ -18,7 +18,7 @@ using scene::Vec3;
 
 TEST(Workload, EveryCaseIsASceneThatBreaksNoRule) {
   const std::vector<Case> cases = all_cases(false);
-  EXPECT_EQ(cases.size(), 32u);
+  EXPECT_EQ(cases.size(), 36u);
   std::set<std::string> names;
   for (const Case& which : cases) {
     names.insert(which.name());
@@ -33,7 +33,8 @@ TEST(Workload, EveryCaseIsASceneThatBreaksNoRule) {
 TEST(Workload, TheQuickListHoldsEveryCaseThatATargetNeeds) {
   std::set<std::string> names;
   for (const Case& which : all_cases(true)) names.insert(which.name());
-  for (const char* needed : {"box/4k/1", "box/4k/10", "box/100k/1", "box/1k/1"}) EXPECT_TRUE(names.contains(needed));
+  for (const char* needed : {"box/4k/1", "box/4k/10", "box/100k/1", "box/1k/1", "response/4k/1", "response/100k/1"})
+    EXPECT_TRUE(names.contains(needed));
   EXPECT_LT(names.size(), 16u);
 }
 

@@ -34,6 +34,17 @@ StepStatus status_of(double radius_m, double depth_over_radius, double x_m = 0.0
   return response_step(model, test::at(x_m, 0.0, 0.06 + radius_m * (1.0 - depth_over_radius)), state);
 }
 
+/// Of a ball that is pressed on the top of a ball of 30 mm, to a depth over its radius.
+StepStatus status_on_sphere(double radius_m, double nu = 0.5) {
+  scene::Scene scene = test::ball_on_sphere();
+  scene.body.material.poissons_ratio = nu;
+  scene.tool.radius_m = radius_m;
+  scene.track = {{0.0, test::at(0.0, 0.0, 0.06 + radius_m)}, {1.0, test::at(0.0, 0.0, 0.06 + 0.9 * radius_m)}};
+  const ResponseModel model = model_of(scene);
+  ResponseState state(model);
+  return response_step(model, test::at(0.0, 0.0, 0.06 + 0.9 * radius_m), state);
+}
+
 /// Depth over radius at which a ball's contact has a radius, on a half space.
 double depth_for(double radius_m, double contact_m) {
   const ResponseModel model = model_of(ball(radius_m));
@@ -46,16 +57,69 @@ double depth_for(double radius_m, double contact_m) {
 }
 
 TEST(CheckedRange, TellsWhichLimitIsPassed) {
-  EXPECT_EQ(status_of(0.003, 0.99 * CheckedRange::depth_over_radius), StepStatus::ok);
-  EXPECT_EQ(status_of(0.003, 1.01 * CheckedRange::depth_over_radius), StepStatus::depth_unchecked);
-  EXPECT_EQ(status_of(0.028, depth_for(0.028, 0.99 * CheckedRange::size_rel * 0.06)), StepStatus::ok);
-  EXPECT_EQ(status_of(0.028, depth_for(0.028, 1.01 * CheckedRange::size_rel * 0.06)), StepStatus::size_unchecked);
+  const CheckedRange checked = checked_range(ball(0.010));
+  EXPECT_EQ(status_of(0.003, 0.99 * checked.depth_over_radius), StepStatus::ok);
+  EXPECT_EQ(status_of(0.003, 1.01 * checked.depth_over_radius), StepStatus::depth_unchecked);
+  EXPECT_EQ(status_of(0.028, depth_for(0.028, 0.99 * checked.size_rel * 0.06)), StepStatus::ok);
+  EXPECT_EQ(status_of(0.028, depth_for(0.028, 1.01 * checked.size_rel * 0.06)), StepStatus::size_unchecked);
   // 10 mm from the edge.
-  const double radius_m = 0.010 / CheckedRange::edge_over_radius;
+  const double radius_m = 0.010 / checked.edge_over_radius;
   EXPECT_EQ(status_of(0.010, depth_for(0.010, 0.99 * radius_m), 0.020), StepStatus::ok);
   EXPECT_EQ(status_of(0.010, depth_for(0.010, 1.01 * radius_m), 0.020), StepStatus::edge_unchecked);
   // Nothing touches, nothing is beyond.
   EXPECT_EQ(status_of(0.010, -0.1, 0.020), StepStatus::ok);
+}
+
+TEST(CheckedRange, CurvedBodies) {
+  const double limit_m = 0.030 * checked_range(test::ball_on_sphere()).curvature_rel;
+  EXPECT_EQ(status_on_sphere(0.99 * limit_m), StepStatus::ok);
+  EXPECT_EQ(status_on_sphere(1.01 * limit_m), StepStatus::curvature_unchecked);
+  // A cylinder's side is curved in one direction, its top in none.
+  scene::Scene scene = test::ball_on_sphere();
+  scene.body.shape = scene::BodyShape::revolution;
+  scene.body.profile.rz_m = {{0.0, 0.0}, {0.030, 0.0}, {0.030, 0.060}, {0.0, 0.060}};
+  EXPECT_LT(model_of(scene).largest_curvature_per_m.maxCoeff(), 1e-9);
+  scene.track = {{0.0, test::at(0.041, 0.0, 0.030)}, {1.0, test::at(0.039, 0.0, 0.030)}};
+  const ResponseModel side = model_of(scene);
+  EXPECT_NEAR(side.largest_curvature_per_m.minCoeff(), 1.0 / 0.030, 0.02 / 0.030);
+  EXPECT_NEAR(side.largest_curvature_per_m.maxCoeff(), 1.0 / 0.030, 0.02 / 0.030);
+  // With friction no curved body was compared.
+  scene.contact.friction.emplace();
+  EXPECT_LT(checked_range(scene).curvature_rel, 0.01);
+}
+
+TEST(CheckedRange, PoissonsRatiosBelowOneHalf) {
+  const auto status = [](double depth_over_radius, scene::Scene scene) {
+    scene.body.material.poissons_ratio = 0.3;
+    const ResponseModel model = model_of(scene);
+    ResponseState state(model);
+    return response_step(model, test::at(0.0, 0.0, 0.06 + scene.tool.radius_m * (1.0 - depth_over_radius)), state);
+  };
+  scene::Scene compressible = ball(0.003);
+  compressible.body.material.poissons_ratio = 0.3;
+  const CheckedRange checked = checked_range(compressible);
+  EXPECT_EQ(status(0.99 * checked.depth_over_radius, ball(0.003)), StepStatus::ok);
+  EXPECT_EQ(status(1.01 * checked.depth_over_radius, ball(0.003)), StepStatus::depth_unchecked);
+  EXPECT_EQ(status_on_sphere(0.003), StepStatus::ok);
+  EXPECT_EQ(status_on_sphere(0.003, 0.3), StepStatus::curvature_unchecked);
+  scene::Scene rubbed = ball(0.003);
+  rubbed.contact.friction.emplace();
+  EXPECT_EQ(status(0.1, rubbed), StepStatus::material_unchecked);
+}
+
+TEST(CheckedRange, Inclusions) {
+  scene::Scene scene = ball(0.003);
+  scene::Inclusion soft;
+  soft.shape = scene::BodyShape::sphere;
+  soft.radius_m = 0.005;
+  soft.center_m = Vec3(0.0, 0.0, 0.03);
+  soft.material = {1e5, 0.33};
+  scene.body.inclusions = {soft};
+  const ResponseModel model = model_of(scene);
+  ResponseState state(model);
+  EXPECT_EQ(response_step(model, test::at(0.0, 0.0, 0.0628), state), StepStatus::inclusion_unchecked);
+  // Only where it is touched.
+  EXPECT_EQ(response_step(model, test::at(0.0, 0.0, 0.07), state), StepStatus::ok);
 }
 
 TEST(CheckedRange, DistancesToEdges) {
@@ -85,10 +149,10 @@ TEST(CheckedRange, TwoContactsTooNear) {
   const ContactRange range = contact_range(model, state, state.contacts[0], model.tips[0].tip);
   const double radii_m = state.contacts[0].law.radius_m + state.contacts[1].law.radius_m;
   EXPECT_NEAR(range.apart_over_radii, test::apart_m / radii_m, 1e-3);
-  EXPECT_EQ(beyond({.depth_over_radius = 0.1,
-                    .size_rel = 0.01,
-                    .edge_over_radius = 10.0,
-                    .apart_over_radii = 0.99 * CheckedRange::apart_over_radii}),
+  EXPECT_EQ(beyond(model.checked, {.depth_over_radius = 0.1,
+                                   .size_rel = 0.01,
+                                   .edge_over_radius = 10.0,
+                                   .apart_over_radii = 0.99 * model.checked.apart_over_radii}),
             StepStatus::regions_unchecked);
 }
 

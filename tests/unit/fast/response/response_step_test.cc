@@ -61,6 +61,33 @@ TEST_F(ResponseStep, IndentationAndTheBodyAreInSeries) {
   EXPECT_NEAR(moved_y_m, F * 2e-5 * (0.010 * 25.0 + 0.2), 1e-9);
 }
 
+TEST_F(ResponseStep, FarAwayTheShapeIsTheHalfSpacesAndTheColumns) {
+  scene_.track = {{0.0, test::pressed(0.003)}, {1.0, test::pressed(0.004)}};
+  const ResponseModel model = this->model();
+  ResponseState state(model);
+  (void)response_step(model, test::pressed(0.002, 0.002, 0.001), state);
+  const SpreadLoad& load = state.contacts[0].load;
+  const GridWeights weights(model.response.grid, model.response.grid.place(load.center_m));
+  ASSERT_NE(weights.count % 4, 0) << "the columns that are added one by one are tested, too";
+  int compared = 0;
+  for (Eigen::Index i = 0; i < surface_.points_m.cols(); ++i) {
+    const scene::Vec3 x_m = surface_.points_m.col(i);
+    if (model.free[static_cast<std::size_t>(i)] == 0.0f || (x_m - load.center_m).norm() < 0.02) continue;
+    scene::Vec3 expected_m = spread_displacement_m(load, model.half_space, x_m);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      expected_m[axis] += load.force_n * weights.sum<double>([&](int k) {
+        return static_cast<double>(model.response.smooth_m_per_n(axis * surface_.points_m.cols() + i, k));
+      });
+    }
+    const auto k = static_cast<std::size_t>(i);
+    const scene::Vec3 found_m(state.field.displacement_m[0][k], state.field.displacement_m[1][k],
+                              state.field.displacement_m[2][k]);
+    EXPECT_LT((found_m - expected_m).norm(), 1e-3 * expected_m.norm()) << x_m.transpose();
+    ++compared;
+  }
+  EXPECT_GT(compared, 300);
+}
+
 TEST_F(ResponseStep, ForceAndLateralForceHaveOnePotential) {
   for (const double radius_m : {0.010, 0.006}) {
     for (scene::Waypoint& waypoint : scene_.track) waypoint.pose.position_m.z() += radius_m - scene_.tool.radius_m;
