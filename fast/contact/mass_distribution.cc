@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -32,7 +34,7 @@ void normalise(RegionPoints& points, double sum) noexcept {
 
 }  // namespace
 
-void distribute_mass_published(const Vec3& d_T, const CellGroups&, RegionPoints& points) noexcept {
+void distribute_mass_published(const Vec3& d_T, const CellGroups&, CellIntegrals&, RegionPoints& points) noexcept {
   double sum = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
     points.share[i] = std::sqrt(lever_arm2_m2(points, i, d_T)) * points.cos_theta[i];
@@ -131,14 +133,23 @@ double over_distance_m(const SurfaceCell& cell, const CellGroups& groups, const 
 
 }  // namespace
 
-void distribute_mass_corrected(const Vec3& d_T, const CellGroups& groups, RegionPoints& points) noexcept {
+double CellIntegrals::over_distance_m(const SurfaceCell& cell, const CellGroups& groups, const Vec3& d_T) noexcept {
+  // By its place in memory, which says nothing about the cell that is there now.
+  Kept& kept = kept_[std::bit_cast<std::uintptr_t>(&cell) / sizeof(SurfaceCell) % kept_.size()];
+  if (kept.area_m2 != cell.area_m2 || kept.center_T_m != cell.center_T_m || kept.d_T != d_T)
+    kept = {cell.center_T_m, d_T, cell.area_m2, fast::over_distance_m(cell, groups, d_T)};
+  return kept.over_distance_m;
+}
+
+void distribute_mass_corrected(const Vec3& d_T, const CellGroups& groups, CellIntegrals& integrals,
+                               RegionPoints& points) noexcept {
   set_shares(d_T, points);
   double sum = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
     if (points.share[i] == near_the_line) {
       const double area_m2 = points.area_m2[i] * points.cos_theta[i];
       points.share[i] = points.cell[i] != nullptr
-                            ? over_distance_m(*points.cell[i], groups, d_T)
+                            ? integrals.over_distance_m(*points.cell[i], groups, d_T)
                             : area_m2 * mean_inverse_distance_per_m(
                                             Projected(area_m2, points.p_T_m(i), points.spread_T_m(i), d_T).r2_m2,
                                             std::sqrt(area_m2 / std::numbers::pi));

@@ -55,7 +55,8 @@ StepStatus step(const FastModel& model, const scene::Pose& pose, FastState& stat
 
         // Mass weights of the points.
         if (region.pressing())
-          formulas.distribute_mass(state.motion.at.R_WT.transpose() * region.d, model.tool.groups, region.points);
+          formulas.distribute_mass(state.motion.at.R_WT.transpose() * region.d, model.tool.groups, state.integrals,
+                                   region.points);
       }
       if (has(parts, Parts::load)) {
         // Contact force by the law at the region's size.

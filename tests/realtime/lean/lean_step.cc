@@ -33,7 +33,7 @@ void bare_tick(const FastModel& model, const scene::Pose& pose, FastState& state
   region.extent = model.detection.measure_depths(*model.body, at.R_WT, region.d, region.points);
   region.origin = fast::deformation_origin(*model.body, model.detection.exit_distance_m, region.d, region.extent);
   fast::limit_depths(fast::depth_limit_rel * region.extent.thickness_m, region.points);
-  model.formulas.distribute_mass(at.R_WT.transpose() * region.d, model.tool.groups, region.points);
+  model.formulas.distribute_mass(at.R_WT.transpose() * region.d, model.tool.groups, state.integrals, region.points);
   const fast::DuffingLaw law = model.law.at(fast::contact_radius_m(region.extent.area_m2));
   region.force = fast::region_force(law, at.R_WT, region.d, region.points);
   region.displacement_m = law.depth_m(region.force.magnitude_n) * region.d;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -17,6 +18,8 @@ namespace {
 using scene::Vec3;
 
 const Vec3 down = -Vec3::UnitZ();
+/// Every test finds what others have left in it.
+CellIntegrals integrals;
 
 /// Points of a flat tool 10 mm under its mass centre, facing down.
 test::OwnedPoints flat(const std::vector<Vec3>& places_m) {
@@ -37,9 +40,31 @@ double sum(const RegionPoints& points) { return std::accumulate(points.share, po
 TEST(MassDistribution, CorrectedBalancesTheLever) {
   // Supports at lever arms 1 : 3 carry 3/4 and 1/4, and the load's centre is the mass centre (errata E6).
   test::OwnedPoints points = flat({Vec3(0.01, 0.0, 0.0), Vec3(-0.03, 0.0, 0.0)});
-  distribute_mass_corrected(down, {}, points);
+  distribute_mass_corrected(down, {}, integrals, points);
   EXPECT_NEAR(points.share[0], 0.75, 1e-12);
   EXPECT_NEAR(points.share[1], 0.25, 1e-12);
+}
+
+TEST(CellIntegrals, DependOnTheCellAndTheDirectionAlone) {
+  struct Case {
+    double turned, size_m, off_m;
+  };
+  SurfaceCell cell;  // always at the same place in memory
+  std::vector<double> seen_m;
+  // From one to the next one thing changes.
+  for (const auto& [turned, size_m, off_m] :
+       {Case{0.0, 2e-3, 0.0}, Case{0.1, 2e-3, 0.0}, Case{0.1, 1e-3, 0.0}, Case{0.1, 1e-3, 1e-4}}) {
+    const Vec3 d_T(std::sin(turned), 0.0, std::cos(turned)), middle_m(off_m, 0.0, 0.01);
+    const Vec3 x_m = 0.5 * size_m * Vec3::UnitX(), y_m = 0.5 * size_m * Vec3::UnitY();
+    const std::array<Vec3, 4> corners{middle_m - x_m - y_m, middle_m + x_m - y_m, middle_m + x_m + y_m,
+                                      middle_m - x_m + y_m};
+    cell = flat_cell(corners);
+    for (int again = 0; again < 2; ++again) {
+      seen_m.push_back(integrals.over_distance_m(cell, {}, d_T));
+      EXPECT_EQ(seen_m.back(), CellIntegrals().over_distance_m(cell, {}, d_T));
+    }
+  }
+  for (std::size_t k = 2; k < seen_m.size(); k += 2) EXPECT_NE(seen_m[k], seen_m[k - 1]);
 }
 
 TEST(MassDistribution, MeanOfTheInverseDistanceOverADisc) {
@@ -85,7 +110,7 @@ std::pair<double, double> share_and_depth_m(const std::vector<SurfaceCell>& part
   far.area_m2 = 1e-6;
   far.spread_m = {Vec3::Zero(), Vec3::Zero()};
   put(far, points);
-  distribute_mass_corrected(down, {}, points);
+  distribute_mass_corrected(down, {}, integrals, points);
   double share = 0.0, depth_m = 0.0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     share += points.share[i];
@@ -115,7 +140,7 @@ TEST(MassDistribution, ACellIsAsItsManyParts) {
 
 TEST(MassDistribution, PublishedSwapsTheLever) {
   test::OwnedPoints points = flat({Vec3(0.01, 0.0, 0.0), Vec3(-0.03, 0.0, 0.0)});
-  distribute_mass_published(down, {}, points);
+  distribute_mass_published(down, {}, integrals, points);
   EXPECT_NEAR(points.share[0], 0.25, 1e-12);
   EXPECT_NEAR(points.share[1], 0.75, 1e-12);
 }
@@ -126,14 +151,14 @@ TEST(MassDistribution, SumsToOneAndFollowsTheFormulas) {
   points.area_m2[2] = 3e-6;
   const double r1 = std::hypot(0.001, 0.002), r2 = std::hypot(0.004, 0.001);
 
-  distribute_mass_corrected(down, {}, points);
+  distribute_mass_corrected(down, {}, integrals, points);
   EXPECT_NEAR(sum(points), 1.0, 1e-15);
   EXPECT_NEAR(points.share[2] / points.share[1], (3e-6 / r2) / (0.5e-6 / r1), 1e-12);
   // A point under the mass centre is a disc.
   const double disc_m = 1e-6 * mean_inverse_distance_per_m(0.0, std::sqrt(1e-6 / std::numbers::pi));
   EXPECT_NEAR(points.share[0] / points.share[1], disc_m / (0.5e-6 / r1), 1e-12);
 
-  distribute_mass_published(down, {}, points);
+  distribute_mass_published(down, {}, integrals, points);
   EXPECT_NEAR(sum(points), 1.0, 1e-15);
   EXPECT_EQ(points.share[0], 0.0);
   EXPECT_NEAR(points.share[2] / points.share[1], r2 / (0.5 * r1), 1e-12);
@@ -142,7 +167,7 @@ TEST(MassDistribution, SumsToOneAndFollowsTheFormulas) {
 TEST(MassDistribution, LeverArmsAreTakenAcrossTheDirection) {
   test::OwnedPoints points = flat({Vec3(0.01, 0.0, 0.0), Vec3(0.0, 0.01, 0.0)});
   // Seen along x, the second point's arm is sqrt(0.01^2 + 0.01^2), the first one's 0.01 (both are 10 mm low).
-  distribute_mass_published(Vec3::UnitX(), {}, points);
+  distribute_mass_published(Vec3::UnitX(), {}, integrals, points);
   EXPECT_NEAR(points.share[1] / points.share[0], std::sqrt(2.0), 1e-12);
 }
 
@@ -150,7 +175,7 @@ TEST(MassDistribution, IsUniformWhereAllWeightsVanish) {
   for (const DistributeMass distribute : {distribute_mass_published, distribute_mass_corrected}) {
     test::OwnedPoints points = flat({Vec3(0.001, 0.0, 0.0), Vec3(0.0, 0.002, 0.0)});
     points.cos_theta[0] = points.cos_theta[1] = 0.0;
-    distribute(down, {}, points);
+    distribute(down, {}, integrals, points);
     EXPECT_EQ(points.share[0], 0.5);
     EXPECT_EQ(points.share[1], 0.5);
   }
@@ -159,7 +184,7 @@ TEST(MassDistribution, IsUniformWhereAllWeightsVanish) {
 TEST(MassDistribution, OnePointUnderTheMassCentreCarriesAll) {
   for (const DistributeMass distribute : {distribute_mass_published, distribute_mass_corrected}) {
     test::OwnedPoints points = flat({Vec3::Zero()});
-    distribute(down, {}, points);
+    distribute(down, {}, integrals, points);
     EXPECT_EQ(points.share[0], 1.0);
   }
 }
