@@ -105,9 +105,9 @@ void steady_direction(const ToolSamples& tool, const Mat3& R_WT, const RegionPoi
     const double depth_m = points.depth_m[i];
     if (!(depth_m > 0.0)) continue;
     const Vec3 n_T(points.nx_T[i], points.ny_T[i], points.nz_T[i]);
-    const Vec3 n_W(points.rest_nx_W[i], points.rest_ny_W[i], points.rest_nz_W[i]);
     sum_T += points.area_m2[i] * depth_m *
-             (n_W.dot(R_WT * n_T) - depth_m * nth(tool.mean_curvature_per_m, points.sample[i])) * n_T;
+             (points.rest_normal_W(i).dot(R_WT * n_T) - depth_m * nth(tool.mean_curvature_per_m, points.sample[i])) *
+             n_T;
   }
   const double x = std::clamp((lever - lever_from) / (lever_to - lever_from), 0.0, 1.0);
   inside.normal_sum += x * x * (3.0 - 2.0 * x) * (R_WT * sum_T - inside.normal_sum);
