@@ -178,8 +178,14 @@ class CellFinder {
       const std::size_t end = std::min(placed.size(), begin + CellBatch::size);
       cut_by_planes({placed.data() + begin, end - begin});
       rims_ = 0;
-      for (std::size_t k = begin, lane = 0; k < end; ++k) measure(placed[k], cut_[k - begin], lane);
-      put_rims();
+      for (std::size_t k = begin, lane = 0; k < end; ++k) part_[k - begin] = measure(placed[k], cut_[k - begin], lane);
+      place_rims();
+      // In the order of the cells: what else is near does not change a sum.
+      for (std::size_t k = begin, rim = 0; k < end; ++k) {
+        if (part_[k - begin] == Part::all) put_whole(placed[k]);
+        if (part_[k - begin] == Part::some) put_rim(rim++);
+        if (part_[k - begin] == Part::none) put_outside(placed[k], Vec3::Zero(), placed[k].cell->area_m2);
+      }
     }
   }
 
@@ -267,24 +273,25 @@ class CellFinder {
     return here.rest.signed_distance_m - std::numbers::sqrt3 * slope.rise_m;
   }
 
-  /// What of a placed cell is inside, where another part is not.
+  /// What of a placed cell is inside.
+  enum class Part : std::int8_t { none, some, all };
+  /// Where only some is.
   struct Rim {
     const PlacedCell* at;
     double share;  ///< of its area
     Vec3 off_m;    ///< from its centre to the middle of that share, tool frame
   };
 
-  void put_outside(const PlacedCell& here) noexcept { put_outside(here, Vec3::Zero(), here.cell->area_m2); }
-
   /// The cut of a surface whose shape is not known: that of a rectangle with two level sides, of the same area, middle
   /// and spread.
-  void measure_group(const PlacedCell& here) noexcept {
+  [[nodiscard]] Part measure_group(const PlacedCell& here) noexcept {
     const Slope slope = CellFinder::slope(here);
     const double half_m = std::numbers::sqrt3 * slope.rise_m, middle_m = here.rest.signed_distance_m;
     const double lowest_m = lowest_of_group_m(here, slope);
-    if (lowest_m >= 0.0) return put_outside(here);
-    if (middle_m + half_m <= 0.0) return put_whole(here);
+    if (lowest_m >= 0.0) return Part::none;
+    if (middle_m + half_m <= 0.0) return Part::all;
     rim_[rims_++] = {&here, -lowest_m / (2.0 * half_m), (0.5 * lowest_m - middle_m) / slope.rise_m * slope.up_m};
+    return Part::some;
   }
 
   /// How a cell is cut.
@@ -314,44 +321,45 @@ class CellFinder {
   }
 
   /// @param lane  of the batch, for the next cell that a plane cuts
-  void measure(const PlacedCell& here, Cut cut, std::size_t& lane) noexcept {
-    if (here.wholly_inside()) return put_whole(here);
+  [[nodiscard]] Part measure(const PlacedCell& here, Cut cut, std::size_t& lane) noexcept {
+    if (here.wholly_inside()) return Part::all;
     if (here.cell->group >= 0) return measure_group(here);
-    if (!(here.lowest_m < 0.0)) return put_outside(here);
-    if (cut == Cut::no) return put_whole(here);
+    if (!(here.lowest_m < 0.0)) return Part::none;
+    if (cut == Cut::no) return Part::all;
     if (cut == Cut::by_faces) return measure_cut(here);
     const Vec3 center_m(batch_.x_m[lane], batch_.y_m[lane], batch_.z_m[lane]);
-    measure_part(here, batch_.area_m2[lane++], center_m);
+    return measure_part(here, batch_.area_m2[lane++], center_m);
   }
 
-  void measure_cut(const PlacedCell& here) noexcept {
+  [[nodiscard]] Part measure_cut(const PlacedCell& here) noexcept {
     CutPolygon polygon(*here.cell);
     fast::cut(body_, at_.R_WT, here, polygon);
-    if (!polygon.is_cut() && here.rest.signed_distance_m < 0.0) return put_whole(here);
+    if (!polygon.is_cut() && here.rest.signed_distance_m < 0.0) return Part::all;
     const CutPolygon::Moments part = polygon.moments();
-    measure_part(here, part.area_m2, part.center_m);
+    return measure_part(here, part.area_m2, part.center_m);
   }
 
   /// @param area_m2  that is left of the polygon of the cell's corners; @param center_m  its middle
-  void measure_part(const PlacedCell& here, double area_m2, const Vec3& center_m) noexcept {
+  [[nodiscard]] Part measure_part(const PlacedCell& here, double area_m2, const Vec3& center_m) noexcept {
     const SurfaceCell& cell = *here.cell;
     const double share = cell.polygon_m2 > 0.0 ? std::min(1.0, area_m2 / cell.polygon_m2) : 0.0;
-    if (!(share > 0.0)) return put_outside(here);
+    if (!(share > 0.0)) return Part::none;
     // The polygon's, moved to the surface that bulges from it.
     rim_[rims_++] = {&here, share, center_m - cell.polygon_center_m};
+    return Part::some;
   }
 
-  void put_rims() noexcept {
+  void place_rims() noexcept {
     if (rims_ == 0) return;
     for (std::size_t i = 0; i < rims_; ++i) batch_.set(i, rim_[i].at->p_W + at_.R_WT * rim_[i].off_m, 0.0);
     batch_.count = rims_;
     batch_.pad();
     rest_batch(body_, batch_);
-    for (std::size_t i = 0; i < rims_; ++i) put_rim(rim_[i], i);
   }
 
-  /// @param lane  of the batch, which has the middle of the part
-  void put_rim(const Rim& part, std::size_t lane) noexcept {
+  /// @param lane  of rim_ and of the batch, which has the middle of the part
+  void put_rim(std::size_t lane) noexcept {
+    const Rim& part = rim_[lane];
     const PlacedCell& here = *part.at;
     const SurfaceCell& cell = *here.cell;
     const Slope slope = CellFinder::slope(here);
@@ -408,6 +416,7 @@ class CellFinder {
   std::size_t asked_ = 0;
   int inside_ = 0;
   std::array<Cut, CellBatch::size> cut_;  ///< of a batch of placed cells
+  std::array<Part, CellBatch::size> part_;
   std::array<Rim, CellBatch::size> rim_;
   std::size_t rims_ = 0;
 };

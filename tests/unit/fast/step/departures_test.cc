@@ -723,7 +723,7 @@ TEST(Departures, RollingBallFeelsNoFriction) {
     return walk.region().force.tangential_n.norm();
   };
   states("none | IV-B, step", "2.5 N", tangential_n(false));
-  states("none | IV-B, step", "0.0009 N", tangential_n(true));
+  states("none | IV-B, step", "0.0007 N", tangential_n(true));
 }
 
 TEST(Departures, AnchorPointsNeverOutrunTheContact) {
