@@ -14,7 +14,8 @@ def scene_names():
 def arguments(text, kind, names, out, page, presets=(), **folders):
     """The command line: names of one kind, all of them without any; what follows -- in `passed_on`.
 
-    page: where the tables stand, below reports/. presets: what --preset chooses from, all without any. folders: further options with a folder, and where it lies unless told.
+    page: where the tables stand, below reports/. presets: what --preset chooses from, all without any. folders: further options
+    with a folder, and where it lies unless told.
     """
     parser = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--touchstone", type=pathlib.Path, default=root / "build/release/touchstone")

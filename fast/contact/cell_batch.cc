@@ -105,13 +105,13 @@ void rest_batch(const scene::Ellipsoid& body, CellBatch& batch) noexcept {
 
 namespace {
 
-/// The smaller of two slopes in size; 0 where they have two signs.
+/// The slope that is smaller in magnitude; 0 where the two have different signs.
 TOUCHSTONE_INLINE double common_slope(double a, double b) noexcept {
   const double least = smaller(std::abs(a), std::abs(b));
   return a * b > 0.0 ? least : 0.0;
 }
 
-/// The least of slope t - 4 t (1 - t) sagitta_m, as a depth.
+/// How far slope_m t - 4 t (1 - t) sagitta_m falls below 0 for t from 0 to 1.
 TOUCHSTONE_INLINE double dip(double slope_m, double sagitta_m) noexcept {
   const double rest_m = larger(0.0, 4.0 * sagitta_m - slope_m);
   return sagitta_m > 0.0 ? rest_m * rest_m / (16.0 * sagitta_m) : 0.0;
@@ -137,7 +137,7 @@ void level_batch(const scene::Mat3& R_WT, CellBatch& batch) noexcept {
     batch.nz_T[i] = nz;
     batch.lowest_m[i] = batch.distance_m[i] + smaller(smaller(c0, c1), smaller(c2, c3));
     batch.highest_m[i] = batch.distance_m[i] + larger(larger(c0, c1), larger(c2, c3));
-    // Circles about the axis are level, arcs of the meridian any way.
+    // A circle about the tool's z axis leaves its chord across that axis only, an arc of the meridian in any direction.
     batch.dip_m[i] = dip(common_slope(c1 - c0, c2 - c3), batch.sagitta_m[0][i] * std::sqrt(nx * nx + ny * ny)) +
                      dip(common_slope(c3 - c0, c2 - c1), batch.sagitta_m[1][i]);
   }

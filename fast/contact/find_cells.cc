@@ -113,7 +113,7 @@ void steady_direction(const ToolSamples& tool, const Mat3& R_WT, const RegionPoi
   inside.normal_sum += x * x * (3.0 - 2.0 * x) * (R_WT * sum_T - inside.normal_sum);
 }
 
-/// What pieces of surface say about the rest surface above them.
+/// Depth and normals of the rest surface over all pieces: at their middles, or under several faces by mean_depth().
 template <class Body>
 InsideSummary summarise_pieces(const Body& body, const Mat3& R_WT, const RegionPoints& points) noexcept {
   InsideSummary by_middles, by_parts;
@@ -180,7 +180,7 @@ class CellFinder {
       rims_ = 0;
       for (std::size_t k = begin, lane = 0; k < end; ++k) part_[k - begin] = measure(placed[k], cut_[k - begin], lane);
       place_rims();
-      // In the order of the cells: what else is near does not change a sum.
+      // In the order of the cells, so that sums over the points do not change with what else is near, in any bit.
       for (std::size_t k = begin, rim = 0; k < end; ++k) {
         if (part_[k - begin] == Part::all) put_whole(placed[k]);
         if (part_[k - begin] == Part::some) put_rim(rim++);

@@ -153,7 +153,7 @@ namespace {
 /// How far an arc's middle stands off its chord, at most.
 double cell_sagitta_m(const Band& band) noexcept { return 0.125 * band.arc_radius_m * band.arc_angle * band.arc_angle; }
 
-/// Of the parabola over an arc's chord that leaves its ends in the arc's direction, and has all of the arc beneath it.
+/// Height of the parabola over an arc's chord that is tangent to the arc at both ends; the arc lies below it.
 double parabola_m(double radius_m, double angle) noexcept {
   const double half = std::min(0.5 * angle, 1.5), sine = half * sinc(half);
   return 0.5 * radius_m * sine * sine / std::sqrt(1.0 - sine * sine);

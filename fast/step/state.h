@@ -73,7 +73,7 @@ struct FastState {
 
   PointStore store;
   CellScratch cells;
-  CellIntegrals integrals;
+  CellIntegrals integrals;             ///< kept from tick to tick, for the mass weights
   PointStore probe;                    ///< for looking at poses between two ticks
   std::vector<ContactRegion> regions;  ///< by creation; the first `region_count` are active
   int region_count = 0;
