@@ -461,11 +461,11 @@ InsideSummary find_cells(const scene::Shape& shape, const ToolSamples& tool, con
     while (times > 0 && made_by(times, near.size()) > room) --times;
     if (times == 0) break;
     room -= made_by(times, near.size());
-    if (of_tool) scratch.begin();
+    if (of_tool) scratch.halves.begin();
     scratch.now.assign(near.begin(), near.end());
-    for (; times > 0; --times, of_tool = false) scratch.halve(tool, of_tool);
+    for (; times > 0; --times, of_tool = false) scratch.halves.halve(tool, of_tool, scratch.now);
     found.begin_round();
-    for (const std::int32_t k : scratch.now) found.look_at(scratch.half(k), k);
+    for (const std::int32_t k : scratch.now) found.look_at(scratch.halves.half(k), k);
     found.end_round();
   }
   found.take();
@@ -480,23 +480,19 @@ FindCells find_cells_for(const scene::Shape& shape) noexcept {
   return scene::as_solid<FindCells>(shape, []<class Body>() -> FindCells { return &find_cells<Body>; });
 }
 
-CellScratch::CellScratch(int samples, int room)
+CellHalves::CellHalves(int samples, int room)
     : room_(static_cast<std::size_t>(room)),
-      halves_(2 * room_),
+      halves_(4 * room_),
       of_half_(halves_.size(), -1),
-      of_sample_(static_cast<std::size_t>(samples), -1) {
-  now.reserve(room_);
-  near.reserve(std::max(of_sample_.size(), room_));
-  placed.reserve(near.capacity());
-}
+      of_sample_(static_cast<std::size_t>(samples), -1) {}
 
-void CellScratch::begin() noexcept {
+void CellHalves::begin() noexcept {
   if (used_ + room_ <= halves_.size()) return;
   std::fill(of_sample_.begin(), of_sample_.end(), -1);
   used_ = 0;
 }
 
-std::int32_t CellScratch::halves_of(const ToolSamples& tool, const SurfaceCell& cell, std::int32_t& first) noexcept {
+std::int32_t CellHalves::halves_of(const ToolSamples& tool, const SurfaceCell& cell, std::int32_t& first) noexcept {
   if (first < 0) {
     first = static_cast<std::int32_t>(used_);
     for (const SurfaceCell& half : fast::halves(cell, tool.groups)) {
@@ -507,29 +503,38 @@ std::int32_t CellScratch::halves_of(const ToolSamples& tool, const SurfaceCell& 
   return first;
 }
 
-std::int32_t CellScratch::halves_of_sample(const ToolSamples& tool, std::int32_t sample) noexcept {
+std::int32_t CellHalves::halves_of_sample(const ToolSamples& tool, std::int32_t sample) noexcept {
   const auto i = static_cast<std::size_t>(sample);
   return halves_of(tool, tool.cell[i], of_sample_[i]);
 }
 
-std::int32_t CellScratch::halves_of_half(const ToolSamples& tool, std::int32_t half) noexcept {
+std::int32_t CellHalves::halves_of_half(const ToolSamples& tool, std::int32_t half) noexcept {
   const auto i = static_cast<std::size_t>(half);
   return halves_of(tool, halves_[i], of_half_[i]);
 }
 
-void CellScratch::halve(const ToolSamples& tool, bool of_tool) noexcept {
-  const std::size_t count = now.size();
-  now.resize(2 * count);
+void CellHalves::halve(const ToolSamples& tool, bool of_tool, std::vector<std::int32_t>& cells) noexcept {
+  const std::size_t count = cells.size();
+  cells.resize(2 * count);
   for (std::size_t i = count; i-- > 0;) {
-    const std::int32_t first = of_tool ? halves_of_sample(tool, now[i]) : halves_of_half(tool, now[i]);
-    now[2 * i] = first;
-    now[2 * i + 1] = first + 1;
+    const std::int32_t first = of_tool ? halves_of_sample(tool, cells[i]) : halves_of_half(tool, cells[i]);
+    cells[2 * i] = first;
+    cells[2 * i + 1] = first + 1;
   }
 }
 
+std::size_t CellHalves::memory_bytes() const noexcept {
+  return halves_.size() * (sizeof(SurfaceCell) + sizeof(std::int32_t)) + of_sample_.size() * sizeof(std::int32_t);
+}
+
+CellScratch::CellScratch(CellHalves begin_with) : halves(std::move(begin_with)) {
+  now.reserve(halves.room());
+  near.reserve(std::max(halves.samples(), halves.room()));
+  placed.reserve(near.capacity());
+}
+
 std::size_t CellScratch::memory_bytes() const noexcept {
-  return halves_.size() * (sizeof(SurfaceCell) + sizeof(std::int32_t)) +
-         (of_sample_.size() + now.capacity() + near.capacity()) * sizeof(std::int32_t) +
+  return halves.memory_bytes() + (now.capacity() + near.capacity()) * sizeof(std::int32_t) +
          placed.capacity() * sizeof(PlacedCell);
 }
 

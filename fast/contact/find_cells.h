@@ -33,26 +33,27 @@ struct PlacedCell {
   [[nodiscard]] bool wholly_inside() const noexcept { return rest.signed_distance_m <= -cell->radius_m; }
 };
 
-/// What find_cells() writes on its way. Halves are kept, since a contact mostly asks for those of the last tick; the
+/// Halves of a tool's cells, and theirs. They are kept, since a contact mostly asks for those of the last tick; the
 /// answer never depends on which are.
-class CellScratch {
+class CellHalves {
  public:
-  /// Takes nothing: for samples in place of cells.
-  CellScratch() = default;
-  /// @param samples of the tool; @param room  of CellRule
-  CellScratch(int samples, int room);
+  /// Of no cell: for samples in place of cells.
+  CellHalves() = default;
+  /// Has space for four ticks' halves: all that a shipped track asks for. @param samples of the tool; @param room  of
+  /// CellRule
+  CellHalves(int samples, int room);
   /// Makes room for a tick's halves.
   void begin() noexcept;
-  /// Puts the halves of its cells into `now`. @param of_tool  those are samples' cells, not halves
-  void halve(const ToolSamples& tool, bool of_tool) noexcept;
+  /// Puts the halves of its cells into `cells`. @param of_tool  those are samples' cells, not halves
+  void halve(const ToolSamples& tool, bool of_tool, std::vector<std::int32_t>& cells) noexcept;
   [[nodiscard]] const SurfaceCell& half(std::int32_t index) const noexcept {
     return halves_[static_cast<std::size_t>(index)];
   }
+  [[nodiscard]] std::size_t samples() const noexcept { return of_sample_.size(); }
+  [[nodiscard]] std::size_t room() const noexcept { return room_; }
+  /// How many are kept.
+  [[nodiscard]] std::size_t kept() const noexcept { return used_; }
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
-
-  std::vector<std::int32_t> now, near;  ///< cells of a round, and those of them that are near the body
-  std::vector<PlacedCell> placed;       ///< those and what else is looked for
-  CellBatch batch;
 
  private:
   /// The first of the two halves of a sample's cell, or of a half; the second follows it.
@@ -63,6 +64,17 @@ class CellScratch {
   std::vector<SurfaceCell> halves_;
   std::vector<std::int32_t> of_half_, of_sample_;  ///< the first half of each, -1 for not known
   std::size_t used_ = 0;
+};
+
+/// What find_cells() writes on its way.
+struct CellScratch {
+  explicit CellScratch(CellHalves begin_with = {});
+  [[nodiscard]] std::size_t memory_bytes() const noexcept;
+
+  CellHalves halves;
+  std::vector<std::int32_t> now, near;  ///< cells of a round, and those of them that are near the body
+  std::vector<PlacedCell> placed;       ///< those and what else is looked for
+  CellBatch batch;
 };
 
 /// Fills `points` with what lies inside the rest surface of the tool's cells, one point for each at the middle of that

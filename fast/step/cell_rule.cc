@@ -14,6 +14,8 @@ constexpr std::array points_tried{CellRule{}.points, 64, 96, 128, 192, 256, 384,
 /// Poses of the track, evenly spaced in time, and those in contact that are then looked at, at most.
 constexpr int poses_tried = 64;
 constexpr std::size_t poses_kept = 8;
+/// Those whose halves are made at set-up.
+constexpr int poses_halved = 256;
 /// A load below this share of the track's largest may change as much as that one.
 constexpr double small_load_rel = 0.2;
 
@@ -63,16 +65,20 @@ class Softened {
   Softened(const Softened&) = delete;
   Softened& operator=(const Softened&) = delete;
 
+  /// Leaves the halves that these poses ask for in `halves`.
   std::vector<Load> loads(const CellRule& rule, const std::vector<scene::Pose>& poses) {
-    model_.cells = ContactCells{rule, 0.0};
+    model_.cells = ContactCells{rule, {}};
     FastState state(model_);
     std::vector<Load> loads;
     for (const scene::Pose& pose : poses) {
       step_force(model_, pose, state);
       loads.push_back(load_of(state));
     }
+    halves = std::move(state.cells.halves);
     return loads;
   }
+
+  CellHalves halves;
 
  private:
   FastModel& model_;
@@ -81,13 +87,17 @@ class Softened {
   ResolveFriction resolve_friction_;
 };
 
-/// Some poses of the track that are in contact.
-std::vector<scene::Pose> poses_in_contact(const std::vector<scene::Waypoint>& track, Softened& model) {
-  std::vector<scene::Pose> all, touching, kept;
-  if (track.empty()) return kept;
+std::vector<scene::Pose> poses_on(const std::vector<scene::Waypoint>& track, int count) {
+  std::vector<scene::Pose> poses;
+  if (track.empty()) return poses;
   const double begin_s = track.front().time_s, length_s = track.back().time_s - begin_s;
-  for (int k = 0; k < poses_tried; ++k)
-    all.push_back(scene::pose_at(track, begin_s + length_s * k / (poses_tried - 1)));
+  for (int k = 0; k < count; ++k) poses.push_back(scene::pose_at(track, begin_s + length_s * k / (count - 1)));
+  return poses;
+}
+
+/// Some of them that are in contact.
+std::vector<scene::Pose> poses_in_contact(const std::vector<scene::Pose>& all, Softened& model) {
+  std::vector<scene::Pose> touching, kept;
   const std::vector<Load> loads = model.loads(rule_of(points_tried[0]), all);
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (loads[k].linear_m > 0.0) touching.push_back(all[k]);
@@ -118,8 +128,8 @@ double error_rel(const std::vector<Load>& loads, const std::vector<Load>& limit)
 
 ContactCells choose_cells(const std::vector<scene::Waypoint>& track, FastModel& model) {
   Softened softened(model);
-  const std::vector<scene::Pose> poses = poses_in_contact(track, softened);
-  ContactCells chosen{rule_of(points_tried[0]), 0.0};
+  const std::vector<scene::Pose> poses = poses_in_contact(poses_on(track, poses_tried), softened);
+  ContactCells chosen{rule_of(points_tried[0]), softened.halves};
   if (poses.empty()) return chosen;
   const std::vector<Load> limit = softened.loads(limit_rule, poses);
   for (const int points : points_tried) {
@@ -127,6 +137,8 @@ ContactCells choose_cells(const std::vector<scene::Waypoint>& track, FastModel& 
     chosen.error_rel = error_rel(softened.loads(chosen.rule, poses), limit);
     if (chosen.error_rel <= cell_tolerance_rel) break;
   }
+  softened.loads(chosen.rule, poses_on(track, poses_halved));
+  chosen.halves = std::move(softened.halves);
   return chosen;
 }
 

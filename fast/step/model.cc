@@ -66,7 +66,7 @@ std::size_t FastModel::memory_bytes() const noexcept {
   const auto vertices = static_cast<std::size_t>(surface.vertex_count());
   return sizeof(FastModel) + tool.memory_bytes() + rest.memory_bytes() + normals.memory_bytes() +
          skeleton.anchor_m.size() * (sizeof(scene::Vec3) + sizeof(double)) + vertices * 7 * sizeof(double) +
-         surface.triangles.size() * sizeof(surface.triangles[0]);
+         surface.triangles.size() * sizeof(surface.triangles[0]) + (cells ? cells->halves.memory_bytes() : 0);
 }
 
 }  // namespace touchstone::fast

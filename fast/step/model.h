@@ -27,6 +27,7 @@ namespace touchstone::fast {
 /// Cells of a scene's contact.
 struct ContactCells {
   CellRule rule;
+  CellHalves halves;  ///< by this rule, those that the track asks for, so that its ticks need not make them; or none
   /// How far the load is from its limit of ever smaller cells, at most over the track, relative to that limit or, where
   /// that is less, a fifth of the track's largest; 0 where that is not known.
   double error_rel = 0.0;
@@ -75,7 +76,9 @@ struct FastModel {
   }
   /// For find_points().
   [[nodiscard]] CellScratch cell_scratch() const {
-    return cells ? CellScratch(tool.count(), cells->rule.room) : CellScratch();
+    if (!cells) return CellScratch();
+    const bool made = cells->halves.room() == static_cast<std::size_t>(cells->rule.room);
+    return CellScratch(made ? cells->halves : CellHalves(tool.count(), cells->rule.room));
   }
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 };

@@ -39,7 +39,7 @@ TEST_P(DetectionWithoutHeap, FindsSplitsFollowsAndTakesBack) {
   PullBackScratch scratch_back(tool.count());
   RegionTracker tracker(tool.count(), 20, 10);
   test::OwnedPoints points(tool.count()), fine_points(2 * rule.room);
-  CellScratch cells(tool.count(), rule.room);
+  CellScratch cells(CellHalves(tool.count(), rule.room));
   std::vector<Cluster> clusters(20);
   std::vector<TrackedRegion> regions(10);
   const double top_m = body->bounds().upper_m.z();

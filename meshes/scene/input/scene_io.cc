@@ -519,7 +519,8 @@ void take_in_included(const std::filesystem::path& file, toml::table& document) 
     const toml::source_position where = node->source().begin;
     throw InputError({{file.string(), static_cast<int>(where.line), static_cast<int>(where.column), message}});
   };
-  if (!node->is_string()) refuse("include = " + written(*node) + "; expected the path of a TOML file, from this one");
+  if (node->value_or(std::string()).empty())
+    refuse("include = " + written(*node) + "; expected the path of a TOML file, from this one");
   const std::filesystem::path included = file.parent_path() / node->value_or(std::string());
   const Input input = read_input(included, toml_input);
   if (!input.fault.empty()) refuse("include: cannot read " + included.string() + ": " + input.fault);

@@ -95,12 +95,12 @@ scene::TriangleMesh brick(const Vec3& size_m) {
   return mesh;
 }
 
-struct NamedTool {
+struct SampledTool {
   std::string name;
   scene::Tool tool;
 };
 
-std::vector<NamedTool> every_tool() {
+std::vector<SampledTool> every_tool() {
   scene::Tool sphere, capsule, cylinder, sharp, box, brick_mesh, fine_mesh, plate;
   sphere.radius_m = 0.01;
   capsule.shape = scene::ToolShape::capsule;
@@ -137,9 +137,9 @@ std::vector<NamedTool> every_tool() {
           {"ConvexThinPlate", known_convex(plate)}};
 }
 
-void PrintTo(const NamedTool& tool, std::ostream* out) { *out << tool.name; }
+void PrintTo(const SampledTool& tool, std::ostream* out) { *out << tool.name; }
 
-class EveryTool : public testing::TestWithParam<NamedTool> {
+class EveryTool : public testing::TestWithParam<SampledTool> {
  protected:
   const scene::Tool& tool = GetParam().tool;
   [[nodiscard]] double surface_m2() const {
@@ -217,8 +217,8 @@ TEST_P(EveryTool, IsSampledTheSameEveryTime) {
   EXPECT_EQ(a.area_m2, b.area_m2);
 }
 
-std::string name_of(const testing::TestParamInfo<NamedTool>& info) { return info.param.name; }
-INSTANTIATE_TEST_SUITE_P(ToolSamples, EveryTool, testing::ValuesIn(every_tool()), name_of);
+std::string sampled_tool_name(const testing::TestParamInfo<SampledTool>& info) { return info.param.name; }
+INSTANTIATE_TEST_SUITE_P(ToolSamples, EveryTool, testing::ValuesIn(every_tool()), sampled_tool_name);
 
 TEST(ToolSamples, OfABallToolAreTheBalls) {
   scene::Tool ball;

@@ -14,7 +14,7 @@ namespace {
 using scene::Mat3;
 using scene::Vec3;
 
-struct Cube {
+struct StressedCube {
   scene::Scene scene = test::ball_on_cube();
   scene::Box box{Vec3(0.0, 0.0, 0.03), scene.body.size_m};
   BoxAnchors anchors{box};
@@ -83,7 +83,7 @@ TEST(BeamStress, InverseElasticityIsSymmetricAndRightUpToIncompressible) {
 
 TEST(BeamStress, BelongsToTheForcesOfTheSplit) {
   for (const SplitForce split : {split_force_published, split_force_corrected}) {
-    Cube cube;
+    StressedCube cube;
     const Vec3 F(0.4, -0.3, -3.0);
     split(cube.skeleton, Vec3(0.008, -0.011, 0.06), F, 0.001 * F, cube.ends);
     beam_stresses(cube.skeleton, cube.ends, cube.stress);
@@ -111,14 +111,14 @@ TEST(BeamStress, BelongsToTheForcesOfTheSplit) {
 }
 
 TEST(BeamStress, PressedBeamsAreUnderPressure) {
-  Cube cube;
+  StressedCube cube;
   split_force_corrected(cube.skeleton, Vec3(0.0, 0.0, 0.06), Vec3(0, 0, -3.0), Vec3(0, 0, -0.01), cube.ends);
   beam_stresses(cube.skeleton, cube.ends, cube.stress);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_LT(cube.stress[i].stress_pa[0], 0.0);  // those to the bottom
 }
 
 TEST(BeamStress, SurvivesBeamsWithoutForceAndForcesAlongABeam) {
-  Cube cube;
+  StressedCube cube;
   split_force_corrected(cube.skeleton, Vec3(0.0, 0.0, 0.06), Vec3::Zero(), Vec3::Zero(), cube.ends);
   beam_stresses(cube.skeleton, cube.ends, cube.stress);
   for (const BeamStress& end : cube.stress) {
@@ -135,7 +135,7 @@ TEST(BeamStress, SurvivesBeamsWithoutForceAndForcesAlongABeam) {
 }
 
 TEST(InterpolatedStress, IsTheAnchorsOwnAtAnAnchorAndTheirMeanInTheMiddle) {
-  Cube cube;
+  StressedCube cube;
   split_force_corrected(cube.skeleton, Vec3(0.008, -0.011, 0.06), Vec3(0.4, -0.3, -3.0), Vec3(0, 0, -0.01), cube.ends);
   beam_stresses(cube.skeleton, cube.ends, cube.stress);
   const auto& top = cube.anchors.patches()[5];

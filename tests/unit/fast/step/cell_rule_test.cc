@@ -57,6 +57,24 @@ TEST(ChooseCells, LeavesTheModelAsItWas) {
   EXPECT_EQ(model.law.at(0.001).force_n(0.002), force_n);
 }
 
+TEST(ChooseCells, MakesTheHalvesOfTheTrackAtSetUp) {
+  const scene::Scene scene = press();
+  const FastModel model = model_of(scene);
+  FastModel unprepared = model_of(scene);
+  unprepared.cells->halves = CellHalves(unprepared.tool.count(), unprepared.cells->rule.room);
+  FastState state(model), other(unprepared);
+  const std::size_t kept = state.cells.halves.kept();
+  EXPECT_GT(kept, 48U);
+  for (int k = 0; k < 256; ++k) {
+    const scene::Pose pose = scene::pose_at(scene.track, k / 255.0);
+    step(model, pose, state);
+    step(unprepared, pose, other);
+    ASSERT_EQ(total_force_n(state), total_force_n(other)) << k;
+  }
+  EXPECT_EQ(state.cells.halves.kept(), kept) << "made in a tick";
+  EXPECT_EQ(other.cells.halves.kept(), kept);
+}
+
 TEST(ChooseCells, WithoutContactOnTheTrackHasAFixedNumber) {
   scene::Scene scene = press();
   scene.track = {{0.0, test::pressed(-0.002, 0.0, 0.0)}, {1.0, test::pressed(-0.001, 0.0, 0.0)}};

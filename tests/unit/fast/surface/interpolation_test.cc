@@ -14,8 +14,8 @@ namespace {
 
 using scene::Vec3;
 
-struct Rig {
-  explicit Rig(const scene::Scene& scene) : model(scene), field(model.rest), anchor_m(model.skeleton.anchor_m.size()) {
+struct SurfaceRig {
+  explicit SurfaceRig(const scene::Scene& scene) : model(scene), field(model.rest), anchor_m(model.skeleton.anchor_m.size()) {
     for (std::size_t i = 0; i < anchor_m.size(); ++i) {
       anchor_m[i] = model.skeleton.held[i]
                         ? Vec3(Vec3::Zero())
@@ -57,7 +57,7 @@ constexpr Interpolate both[] = {interpolate_published, interpolate_corrected};
 TEST(Interpolation, ReproducesTheAnchorsDisplacements) {
   for (const auto& scene : {test::ball_on_cube(), test::ball_on_sphere()}) {
     for (const Interpolate interpolate : both) {
-      Rig s(scene);
+      SurfaceRig s(scene);
       interpolate(s.model.rest, s.anchor_m, s.contact, s.field);
       int found = 0;
       for (int v = 0; v < s.model.surface.vertex_count(); ++v) {
@@ -78,7 +78,7 @@ TEST(Interpolation, ReproducesTheAnchorsDisplacements) {
 
 TEST(Interpolation, ReproducesAConstantOnFreePatches) {
   for (const Interpolate interpolate : both) {
-    Rig s(test::ball_on_cube());
+    SurfaceRig s(test::ball_on_cube());
     const Vec3 constant(1e-4, -3e-4, -9e-4);
     for (std::size_t i = 4; i < 8; ++i) s.anchor_m[i] = constant;
     s.touch(Vec3(0.01, -0.004, 0.06), constant);
@@ -86,7 +86,7 @@ TEST(Interpolation, ReproducesAConstantOnFreePatches) {
     const Patch& top = s.model.rest.patches[5];
     for (int v = top.begin; v < top.end; ++v) EXPECT_LT((s.displacement_m(v) - constant).norm(), 1e-9);
   }
-  Rig s(test::ball_on_sphere());
+  SurfaceRig s(test::ball_on_sphere());
   const Vec3 constant(1e-4, -3e-4, -9e-4);
   for (std::size_t i = 0; i < 5; ++i) s.anchor_m[i] = constant;
   interpolate_corrected(s.model.rest, s.anchor_m, s.contact, s.field);
@@ -96,7 +96,7 @@ TEST(Interpolation, ReproducesAConstantOnFreePatches) {
 TEST(Interpolation, ContactPointTakesItsOwnDisplacement) {
   for (const auto& scene : {test::ball_on_cube(), test::ball_on_sphere()}) {
     for (const Interpolate interpolate : both) {
-      Rig s(scene);
+      SurfaceRig s(scene);
       for (Vec3& u : s.anchor_m) u *= 0.1;
       // A vertex well inside a free patch as the origin of deformation.
       const Patch& patch = s.model.rest.patches[scene.body.shape == scene::BodyShape::box ? 5 : 0];
@@ -116,7 +116,7 @@ TEST(Interpolation, ContactPointTakesItsOwnDisplacement) {
 }
 
 TEST(Interpolation, PatchesStayJoinedWhereverTheContactIs) {
-  Rig s(test::ball_on_cube());
+  SurfaceRig s(test::ball_on_cube());
   for (const Vec3& p0 : {Vec3(0.0, 0.0, 0.06), Vec3(0.0299, 0.01, 0.06), Vec3(0.03, 0.01, 0.06), Vec3(0.03, 0.03, 0.06),
                          Vec3(0.03, 0.0, 0.001)}) {
     s.touch(p0, Vec3(0.0, 0.0, -0.002));
@@ -133,7 +133,7 @@ TEST(Interpolation, HeldSurfaceStaysPut) {
   for (const auto& scene : {test::ball_on_cube(), test::ball_on_sphere()}) {
     const double support_m = scene.body.support_height_m;
     for (const Interpolate interpolate : both) {
-      Rig s(scene);
+      SurfaceRig s(scene);
       for (const Vec3& out : {Vec3(0.3, 0.2, 1.0), Vec3(1.0, 0.1, -0.2), Vec3(0.5, 0.4, -0.3)}) {
         const Vec3 p0 = s.model.body->query(Vec3(0.0, 0.0, 0.03) + 0.1 * out.normalized()).point_m;
         s.touch(p0, -0.002 * out.normalized());
@@ -155,7 +155,7 @@ TEST(Interpolation, HeldSurfaceStaysPut) {
 
 TEST(Interpolation, PublishedKeepsLengthsAndAnglesOfItsVectors) {
   // One displacement, straight into the top: the printed form and the vector form agree.
-  Rig s(test::ball_on_cube());
+  SurfaceRig s(test::ball_on_cube());
   for (std::size_t i = 4; i < 8; ++i) s.anchor_m[i] = Vec3(0.0, 0.0, -4e-4);
   s.touch(Vec3(0.006, 0.0, 0.06), Vec3(0.0, 0.0, -0.002));
   interpolate_published(s.model.rest, s.anchor_m, s.contact, s.field);
@@ -170,7 +170,7 @@ TEST(Interpolation, PublishedKeepsLengthsAndAnglesOfItsVectors) {
 
 TEST(Interpolation, PublishedPointsAsTheVectorsDoBesideTheSupport) {
   // All free anchors move down equally: the lengths decrease towards the support, the direction stays.
-  Rig s(test::ball_on_sphere());
+  SurfaceRig s(test::ball_on_sphere());
   for (std::size_t i = 0; i < 5; ++i) s.anchor_m[i] = Vec3(0.0, 0.0, -1e-3);
   interpolate_corrected(s.model.rest, s.anchor_m, s.contact, s.field);
   const Columns3 corrected = s.field.displacement_m;
@@ -190,7 +190,7 @@ TEST(Interpolation, PublishedPointsAsTheVectorsDoBesideTheSupport) {
 
 TEST(Interpolation, PublishedLosesTheAzimuth) {
   // Two corners move apart laterally: the vectors cancel half way, the lengths do not (errata E15).
-  Rig s(test::ball_on_cube());
+  SurfaceRig s(test::ball_on_cube());
   for (std::size_t i = 4; i < 8; ++i) s.anchor_m[i] = Vec3(i & 1 ? 1e-3 : -1e-3, 0.0, -1e-4);
   interpolate_corrected(s.model.rest, s.anchor_m, s.contact, s.field);
   const Patch& top = s.model.rest.patches[5];

@@ -122,9 +122,13 @@ TEST_F(InputFile, OfEveryKindIsOpenedTheSameWay) {
   EXPECT_EQ(told([&] { return load_scene(folder_); }),
             folder + ": cannot read the scene: it is a folder; expected a TOML file of at most 4 MiB");
   const std::string file = (folder_ / "a.toml").string();
-  for (const std::string included : {".", "", "/dev/zero", "/proc/self/environ"}) {
+  for (const std::string included : {".", "/dev/zero", "/proc/self/environ"}) {
     EXPECT_THAT(refusal("include = \"" + included + "\"\n" + good, file),
                 AllOf(StartsWith(file + ":1:11: include: cannot read "), HasSubstr("expected a TOML file")));
+  }
+  for (const std::string nothing : {"\"\"", "7", "[]"}) {
+    EXPECT_THAT(refusal("include = " + nothing + "\n" + good, file),
+                HasSubstr(":1:11: include = " + nothing + "; expected the path of a TOML file"));
   }
   const std::string mesh = "[tool]\nshape = \"mesh\"\nunit = \"mm\"\n";
   for (const std::string name : {".", "none.obj", "/proc/self/mem", "/dev/zero"}) {
