@@ -125,7 +125,7 @@ TEST_F(BenchVerb, OneCaseLeavesItsFolder) {
 TEST_F(BenchVerb, RefusesACaseThatThereIsNot) {
   const Answer answer = bench("--only box/5k");
   EXPECT_EQ(answer.exit_code, 2);
-  EXPECT_THAT(answer.output, HasSubstr("box/5k: no such case"));
+  EXPECT_THAT(answer.output, HasSubstr("box/5k: no such case; did you mean \"box/1k\"?"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "summary.json"));
   EXPECT_EQ(bench("--ticks 0").exit_code, 2);
 }
