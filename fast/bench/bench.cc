@@ -37,9 +37,10 @@ BenchResult run_bench(const BenchOptions& options, const std::function<void(cons
     for (const PeerSetting& setting : peer_settings()) peer_chosen = meets(peer_name(size, setting)) || peer_chosen;
   }
   if (cases.empty() && !peer_chosen) {
-    throw scene::InputError("--only " + options.only + ": no such case" + scene::did_you_mean(options.only, known) +
-                            "; expected the first parts of a name such as box/4k/10, ellipsoid/100k/1 or "
-                            "bullet/1k/rubber.implicit, with * for any part");
+    throw scene::InputError("--only " + options.only +
+                            ": no such case; expected the first parts of a name such as box/4k/10, ellipsoid/100k/1 or "
+                            "bullet/1k/rubber.implicit, with * for any part" +
+                            scene::did_you_mean(options.only, known));
   }
   HardwareCounters counters;
   BenchResult result;

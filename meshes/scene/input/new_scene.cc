@@ -7,6 +7,7 @@
 #include "scene/model/solid_kinds.h"
 
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -50,8 +51,10 @@ std::string body_text(const Body& body) {
   Inclusion solid;  // whose keys have no prefix
   static_cast<Solid&>(solid) = body;
   for (const Field<Inclusion>& field : inclusion_fields()) {
-    if (field.only_when && applies(field, solid) && must_be_given(field))
-      out += line(std::string(field.key) + " = " + value_text(field, solid), std::string(field.doc));
+    if (!field.only_when || !applies(field, solid) || !must_be_given(field)) continue;
+    std::string comment(field.doc.substr(0, field.doc.size() - 1));  // without its full stop
+    comment.front() = static_cast<char>(std::tolower(comment.front()));
+    out += line(std::string(field.key) + " = " + value_text(field, solid), comment);
   }
   return out;
 }

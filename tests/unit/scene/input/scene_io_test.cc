@@ -113,7 +113,7 @@ TEST(BodyText, IsOfEveryKindOfSolid) {
   const std::string held = "held below 0.5\n";
   const std::vector<std::string> expected = {"box 1 2 4\n", "sphere 1\n" + held, "ellipsoid 1 2 4\n" + held,
                                              "revolution (0 0) (1 1) (0 2) 0 3\n" + held,
-                                             "revolution (0 0) (1 0) (1 2) (0 2)\n"};
+                                             "revolution ( 0 -1) ( 1 -1) (1 1) (0 1) 0 0 0\n"};
   ASSERT_EQ(solid_kinds().size(), expected.size());
   for (std::size_t k = 0; k < expected.size(); ++k) {
     const SolidKind& kind = solid_kinds()[k];
