@@ -35,12 +35,6 @@ enum class StepStatus : std::uint32_t {
 }
 constexpr StepStatus& operator|=(StepStatus& a, StepStatus b) noexcept { return a = a | b; }
 
-/// Of the bits, those that say "beyond what was compared with the reference".
-inline constexpr std::uint32_t unchecked_bits =
-    static_cast<std::uint32_t>(StepStatus::depth_unchecked | StepStatus::size_unchecked | StepStatus::edge_unchecked |
-                               StepStatus::regions_unchecked | StepStatus::curvature_unchecked |
-                               StepStatus::material_unchecked | StepStatus::inclusion_unchecked);
-
 /// Status bits in words, "ok" for none.
 [[nodiscard]] std::string status_text(std::uint32_t status);
 
