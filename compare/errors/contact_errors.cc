@@ -1,7 +1,6 @@
 #include "compare/errors/contact_errors.h"
 
 #include "compare/errors/measure.h"
-#include "scene/base/index.h"
 
 #include <algorithm>
 #include <limits>
@@ -168,8 +167,9 @@ void compare_tractions(const scene::Answer& answer, const std::vector<scene::Ref
     const scene::ReferenceInstant& instant = reference[t];
     if (fast.traction_pa.cols() != points || instant.traction_pa.cols() != points) return;
     for (Eigen::Index i = 0; i < points; ++i) {
-      sums.add(nth(answer.surface.vertex_area_m2, i), (fast.traction_pa.col(i) - instant.traction_pa.col(i)).norm(),
-               instant.traction_uncertainty_pa[i], instant.traction_pa.col(i).norm());
+      sums.add(answer.surface.vertex_area_m2[static_cast<std::size_t>(i)],
+               (fast.traction_pa.col(i) - instant.traction_pa.col(i)).norm(), instant.traction_uncertainty_pa[i],
+               instant.traction_pa.col(i).norm());
     }
     if (instant.pressure_peak_pa > peak_pa) band_at_peak_pa = instant.pressure_peak_uncertainty_pa;
     keep_larger(peak_fast_pa, fast.pressure_peak_pa);

@@ -1,7 +1,5 @@
 #include "compare/model/growing_cholesky.h"
 
-#include "scene/base/index.h"
-
 #include <Eigen/Cholesky>
 
 #include <cmath>
@@ -27,7 +25,7 @@ bool GrowingCholesky::assign(const std::vector<Eigen::Index>& part) {
 bool GrowingCholesky::add(Eigen::Index index) {
   const auto m = static_cast<Eigen::Index>(part_.size());
   auto column = upper_.col(m).head(m);
-  for (Eigen::Index i = 0; i < m; ++i) column[i] = matrix_(nth(part_, i), index);
+  for (Eigen::Index i = 0; i < m; ++i) column[i] = matrix_(part_[static_cast<std::size_t>(i)], index);
   if (m > 0) upper_.topLeftCorner(m, m).triangularView<Eigen::Upper>().transpose().solveInPlace(column);
   const double left = matrix_(index, index) - column.squaredNorm();
   if (!(left > 1e-14 * matrix_(index, index))) return false;

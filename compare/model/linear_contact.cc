@@ -1,7 +1,6 @@
 #include "compare/model/linear_contact.h"
 
 #include "reference/tool/tool_distance.h"
-#include "scene/base/index.h"
 
 #include <cmath>
 #include <limits>
@@ -85,7 +84,7 @@ void LinearContact::change_worst() {
   Eigen::Index row = -1, node = -1;
   for (std::size_t k = 0; k < part.size(); ++k) {
     const double force_n = node_force_n_[part[k]];
-    if (force_n < 0.0 && (row < 0 || force_n < node_force_n_[nth(part, row)])) {
+    if (force_n < 0.0 && (row < 0 || force_n < node_force_n_[part[static_cast<std::size_t>(row)]])) {
       row = static_cast<Eigen::Index>(k);
     }
   }

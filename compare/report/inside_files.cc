@@ -2,7 +2,6 @@
 
 #include "compare/report/vtk_out.h"
 #include "scene/base/files.h"
-#include "scene/base/index.h"
 #include "scene/base/text.h"
 
 #include <array>
@@ -23,7 +22,7 @@ std::string probes_csv(const scene::Scene& scene, const reference::Result& resul
     const reference::ProbeInstant& now = probes[i];
     const Eigen::RowVectorXd pressures_pa = reference::pressure_pa(now.values.stress_pa);
     for (Eigen::Index k = 0; k < now.values.displacement_m.cols(); ++k) {
-      const scene::Probe& probe = nth(scene.probes, k);
+      const scene::Probe& probe = scene.probes[static_cast<std::size_t>(k)];
       text += scene::number_text(result.instants[i].time_s) + "," + probe.name;
       for (const double x_m : probe.position_m) add(x_m);
       for (const double u_m : now.values.displacement_m.col(k)) add(u_m);

@@ -9,7 +9,6 @@
 #include "fast/command/command_line.h"
 #include "fast/step/state.h"
 #include "scene/base/error.h"
-#include "scene/base/index.h"
 
 #include <fmt/format.h>
 
@@ -46,8 +45,8 @@ Trial tried(const scene::Scene& changed, const reference::Result& result, const 
     const scene::InstantRecord &f = run.instants[t], &r = result.instants[t];
     force.add((f.force_n() - r.force_n()).norm(), 0.0);
     for (Eigen::Index i = 0; i < f.displacement_m.cols(); ++i) {
-      shape.add(nth(run.surface.vertex_area_m2, i), (f.displacement_m.col(i) - r.displacement_m.col(i)).norm(), 0.0,
-                r.displacement_m.col(i).norm());
+      shape.add(run.surface.vertex_area_m2[static_cast<std::size_t>(i)],
+                (f.displacement_m.col(i) - r.displacement_m.col(i)).norm(), 0.0, r.displacement_m.col(i).norm());
     }
   }
   const double infinite = std::numeric_limits<double>::infinity();

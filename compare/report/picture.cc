@@ -2,7 +2,6 @@
 
 #include "compare/format/text.h"
 #include "compare/report/section.h"
-#include "scene/base/index.h"
 
 #include <fmt/format.h>
 
@@ -361,7 +360,7 @@ namespace {
 
 bool is_node(const reference::BoundarySurface& own, const EdgePoint& p) {
   const bool at_a = p.share < 0.5;
-  return (at_a ? p.share : 1.0 - p.share) < 1e-3 && nth(own.is_node, at_a ? p.a : p.b);
+  return (at_a ? p.share : 1.0 - p.share) < 1e-3 && own.is_node[static_cast<std::size_t>(at_a ? p.a : p.b)];
 }
 
 }  // namespace

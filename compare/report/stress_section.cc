@@ -4,7 +4,6 @@
 #include "compare/format/text.h"
 #include "compare/report/picture.h"
 #include "compare/report/section.h"
-#include "scene/base/index.h"
 
 #include <fmt/format.h>
 
@@ -107,7 +106,7 @@ std::string stress_section_svg(const scene::Scene& scene, const scene::Surface& 
       const Eigen::Index a = column * grid.rows + row, b = a + grid.rows;
       const double mean_pa = 0.25 * (stress_pa[a] + stress_pa[a + 1] + stress_pa[b] + stress_pa[b + 1]);
       const double share = full_pa > 0.0 ? std::clamp(mean_pa / full_pa, 0.0, 1.0) : 0.0;
-      nth(paths, std::min(share * section_colours, section_colours - 1.0)) +=
+      paths[static_cast<std::size_t>(std::min(share * section_colours, section_colours - 1.0))] +=
           "M" + corner(a) + "L" + corner(b) + "L" + corner(b + 1) + "L" + corner(a + 1) + "Z";
     }
   }
@@ -116,8 +115,8 @@ std::string stress_section_svg(const scene::Scene& scene, const scene::Surface& 
   out += fmt::format("<svg width=\"{}\" height=\"{}\" overflow=\"hidden\">\n<g stroke-width=\"0.6\">\n", section_px,
                      section_drawing_px);
   for (int i = 0; i < section_colours; ++i) {
-    if (nth(paths, i).empty()) continue;
-    out += fmt::format("<path d=\"{0}\" fill=\"{1}\" stroke=\"{1}\"/>\n", nth(paths, i),
+    if (paths[static_cast<std::size_t>(i)].empty()) continue;
+    out += fmt::format("<path d=\"{0}\" fill=\"{1}\" stroke=\"{1}\"/>\n", paths[static_cast<std::size_t>(i)],
                        colour_at(ColourMap::displacement, (i + 0.5) / section_colours));
   }
   out += "</g>\n";

@@ -4,7 +4,6 @@
 #include "compare/report/comparison_drawings.h"
 #include "fast/step/status.h"
 #include "reference/verification/closed_forms.h"
-#include "scene/base/index.h"
 
 #include <fmt/format.h>
 
@@ -224,7 +223,7 @@ double moved_share(const fast::Run& run, const reference::Result& result) {
   for (std::size_t t = 0; t < run.instants.size(); ++t) {
     const Eigen::Matrix3Xd &f = run.instants[t].displacement_m, &r = result.instants[t].displacement_m;
     for (Eigen::Index i = 0; i < r.cols(); ++i) {
-      const double area_m2 = nth(run.surface.vertex_area_m2, i);
+      const double area_m2 = run.surface.vertex_area_m2[static_cast<std::size_t>(i)];
       along += area_m2 * f.col(i).dot(r.col(i));
       scale += area_m2 * r.col(i).squaredNorm();
     }

@@ -7,7 +7,6 @@
 #include "compare/report/headline.h"
 #include "compare/report/picture.h"
 #include "compare/study/study_parameters.h"
-#include "scene/base/index.h"
 
 #include <fmt/format.h>
 
@@ -161,7 +160,7 @@ const char* ink_on(const std::array<int, 3>& rgb) {
 std::array<int, 3> colour_at(double share) {
   const auto& steps = colour_table(ColourMap::error);
   const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(steps.size() - 1);
-  return nth(steps, std::lround(at));
+  return steps[static_cast<std::size_t>(std::lround(at))];
 }
 
 /// Two parameters against each other; each cell shows the value and its colour.

@@ -4,7 +4,6 @@
 #include "scene/base/build_info.h"
 #include "scene/base/files.h"
 #include "scene/base/hash.h"
-#include "scene/base/index.h"
 #include "scene/base/json_text.h"
 #include "scene/input/scene_io.h"
 #include "scene/output/results.h"
@@ -151,7 +150,7 @@ int run_case(const StudyManifest& manifest, const ManifestCase& one, const CaseR
 
 const char* state_name(CaseState state) {
   constexpr std::array names = {"done", "failed", "running", "interrupted", "waiting"};
-  return nth(names, state);
+  return names[static_cast<std::size_t>(state)];
 }
 
 CaseStatus case_status(const StudyManifest& manifest, const ManifestCase& one) {

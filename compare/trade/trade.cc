@@ -2,7 +2,6 @@
 #include "compare/trade/trade.h"
 
 #include "compare/format/text.h"
-#include "scene/base/index.h"
 
 #include <fmt/format.h>
 
@@ -68,7 +67,8 @@ std::string paper_sentence(const Trade& trade, TradeError error, const std::stri
                : "No row of the " + what + " is the paper's model; the absent rows say why.";
   }
   const std::string best = fmt::format("In {} the best of the paper's model is {}", what, with_numbers(*paper, error));
-  const std::optional<std::size_t> by = nth(dominating(trade.rows, error), paper - trade.rows.data());
+  const std::optional<std::size_t> by =
+      dominating(trade.rows, error)[static_cast<std::size_t>(paper - trade.rows.data())];
   if (by && !of_paper(trade.rows[*by])) {
     std::string text = fmt::format("{}. It is dominated: {} is no slower and no less accurate.", best,
                                    with_numbers(trade.rows[*by], error));

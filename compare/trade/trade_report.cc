@@ -5,7 +5,6 @@
 #include "compare/trade/trade.h"
 #include "fast/bench/report.h"
 #include "scene/base/files.h"
-#include "scene/base/index.h"
 
 #include <fmt/format.h>
 
@@ -224,7 +223,7 @@ scene::Figures trade_figures(const Trade& trade) {
       const Measure& error = row.*one.error;
       add(one.key, error.value.value_or(NAN), "", "not known");
       add(std::string(one.key) + "_uncertainty", error.uncertainty.value_or(NAN), "", "not known");
-      const auto by = nth(dominating(trade.rows, one.error), &row - trade.rows.data());
+      const auto by = dominating(trade.rows, one.error)[static_cast<std::size_t>(&row - trade.rows.data())];
       if (by) out.push_back({key + "dominated_" + one.what + "_by", 0.0, trade.rows[*by].key, ""});
     }
   }

@@ -1,7 +1,5 @@
 #include "compare/tune/fit.h"
 
-#include "scene/base/index.h"
-
 #include <Eigen/SVD>
 
 #include <ceres/ceres.h>
@@ -178,7 +176,7 @@ void determine(const std::vector<FitParameter>& parameters, const Residuals& res
     if (width > open_share) {
       std::vector<std::size_t>& parts = fit.open_directions.emplace_back();
       for (Eigen::Index i = 0; i < direction.size(); ++i) {
-        if (std::abs(direction[i]) >= part_of_direction) parts.push_back(nth(inner, i));
+        if (std::abs(direction[i]) >= part_of_direction) parts.push_back(inner[static_cast<std::size_t>(i)]);
       }
     }
     // Cap the standard error of a direction without effect, so that the covariance stays finite.
@@ -188,8 +186,8 @@ void determine(const std::vector<FitParameter>& parameters, const Residuals& res
   fit.condition =
       fit.rank < fit.free ? std::numeric_limits<double>::infinity() : singular[0] / singular[singular.size() - 1];
   for (Eigen::Index i = 0; i < singular.size(); ++i) {
-    Determination& one = fit.parameters[nth(inner, i)];
-    const FitParameter& parameter = parameters[nth(inner, i)];
+    Determination& one = fit.parameters[inner[static_cast<std::size_t>(i)]];
+    const FitParameter& parameter = parameters[inner[static_cast<std::size_t>(i)]];
     const double width = std::sqrt(covariance(i, i));
     one.open = width > open_share;
     if (!one.open)

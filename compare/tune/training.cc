@@ -2,7 +2,6 @@
 
 #include "compare/model/replay.h"
 #include "compare/tune/findings.h"
-#include "scene/base/index.h"
 #include "scene/model/rules.h"
 
 #include <algorithm>
@@ -47,7 +46,7 @@ class Training {
       for (const std::size_t t : one.touching) {
         const Eigen::Matrix3Xd& u_m = data.result.instants[t].displacement_m;
         for (Eigen::Index i = 0; i < u_m.cols(); ++i) {
-          one.shape_scale += nth(data.surface.vertex_area_m2, i) * u_m.col(i).squaredNorm();
+          one.shape_scale += data.surface.vertex_area_m2[static_cast<std::size_t>(i)] * u_m.col(i).squaredNorm();
         }
       }
       one.shape_scale = std::sqrt(one.shape_scale / static_cast<double>(one.touching.size()));

@@ -4,7 +4,6 @@
 #include "compare/format/svg_plot.h"
 #include "compare/format/text.h"
 #include "compare/report/comparison_drawings.h"
-#include "scene/base/index.h"
 #include "scene/input/fields.h"
 
 #include <fmt/format.h>
@@ -260,7 +259,7 @@ Plot regime_plot(const TunedModel& model, const std::string& y_label,
     for (const RegimePoint& point : outcome.regime) {
       const auto limit = std::find_if(std::begin(regime_limits), std::end(regime_limits),
                                       [&](double each) { return point.force_error_rel <= each; });
-      Curve& curve = nth(plot.curves, limit - std::begin(regime_limits));
+      Curve& curve = plot.curves[static_cast<std::size_t>(limit - std::begin(regime_limits))];
       curve.x.insert(curve.x.end(), {point.depth_over_radius, no_value});
       curve.y.insert(curve.y.end(), {y_of(point), no_value});
     }

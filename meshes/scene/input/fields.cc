@@ -41,6 +41,9 @@ Choice<T> solid_choice() {
   return out;
 }
 
+template <auto member>
+struct Of {};
+
 /// The keys of a convex solid's lengths, each valid for the shapes that use it.
 /// @param table  prefix of the keys
 template <class T, Solid& (*solid)(T&)>
@@ -48,27 +51,27 @@ std::vector<Field<T>> solid_fields(const std::string& table) {
   static std::list<std::string> texts;  // of keys and conditions
   const auto key = [&](std::string_view name) -> std::string_view { return texts.emplace_back(table).append(name); };
   const std::string_view shape = key("shape");
-  const auto only = [&](SolidLength length) {
+  const auto only = [&]<auto length>(Of<length>) {
     std::string words;
     for (const SolidKind& kind : solid_kinds()) {
       if (kind.uses(length)) words += (words.empty() ? "" : " or ") + toml_quoted(kind.word);
     }
-    return Condition<T>{shape, key("shape = " + words), [length](const T& t) { return kind_of(solid(const_cast<T&>(t))).uses(length); }};
+    return Condition<T>{shape, key("shape = " + words), [](const T& t) { return kind_of(solid(const_cast<T&>(t))).uses(length); }};
   };
   return {
       {shape, "", Range{}, {}, Side::both, solid_choice<T, solid>(), {},
            "Shape of the elastic solid, convex; a body's lowest point is on z = 0, its centre on the z axis."},
-      {key("size_m"), "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> Vec3& { return solid(t).size_m; }, only(&Solid::size_m),
+      {key("size_m"), "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> Vec3& { return solid(t).size_m; }, only(Of<&Solid::size_m>()),
            "Edge lengths of the box along x, y, z."},
-      {key("radius_m"), "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> double& { return solid(t).radius_m; }, only(&Solid::radius_m),
+      {key("radius_m"), "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> double& { return solid(t).radius_m; }, only(Of<&Solid::radius_m>()),
            "Radius of the sphere or cylinder."},
-      {key("length_m"), "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> double& { return solid(t).length_m; }, only(&Solid::length_m),
+      {key("length_m"), "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> double& { return solid(t).length_m; }, only(Of<&Solid::length_m>()),
            "Length of the cylinder along z, from end to end."},
-      {key("semi_axes_m"), "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> Vec3& { return solid(t).semi_axes_m; }, only(&Solid::semi_axes_m),
+      {key("semi_axes_m"), "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> Vec3& { return solid(t).semi_axes_m; }, only(Of<&Solid::semi_axes_m>()),
            "Semi-axes of the ellipsoid along x, y, z."},
-      {key("profile_rz_m"), "m", between(-10.0, 10.0), {}, Side::both, +[](T& t) -> std::vector<Eigen::Vector2d>& { return solid(t).profile.rz_m; }, only(&Solid::profile),
+      {key("profile_rz_m"), "m", between(-10.0, 10.0), {}, Side::both, +[](T& t) -> std::vector<Eigen::Vector2d>& { return solid(t).profile.rz_m; }, only(Of<&Solid::profile>()),
            "Corners [r, z] of the profile, from its lowest point on the axis up to its highest; r = 0 at both."},
-      {key("profile_arc_radius_m"), "m", between(0.0, 100.0), "[]", Side::both, +[](T& t) -> std::vector<double>& { return solid(t).profile.arc_radius_m; }, only(&Solid::profile),
+      {key("profile_arc_radius_m"), "m", between(0.0, 100.0), "[]", Side::both, +[](T& t) -> std::vector<double>& { return solid(t).profile.arc_radius_m; }, only(Of<&Solid::profile>()),
            "For each piece between two corners the radius of an arc that bulges outwards, 0 for a straight piece; empty: all straight."},
   };
 }

@@ -79,7 +79,7 @@ template <class T>
 struct Condition {
   std::string_view key;   ///< of the value it depends on
   std::string_view text;  ///< in TOML: body.shape = "box"
-  std::function<bool(const T&)> holds;
+  bool (*holds)(const T&) = nullptr;
 };
 
 /// A table that a scene may leave out altogether; its keys apply only where it is given.
