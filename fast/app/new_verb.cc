@@ -6,6 +6,7 @@
 #include "scene/base/nearest_name.h"
 #include "scene/input/new_scene.h"
 #include "scene/input/scene_io.h"
+#include "scene/model/solid_kinds.h"
 
 #include <algorithm>
 #include <array>
@@ -87,18 +88,17 @@ scene::Body body_of(const std::vector<std::string>& given) {
   const ShapeWords& shape = shape_of(given, body_shapes, "--body");
   const std::vector<double> m = sizes_m(given, shape, "--body");
   scene::Body body;
-  if (shape.name == "box") {
-    body.size_m = Vec3(m[0], m[1], m[2]);
-  } else if (shape.name == "sphere") {
-    body.shape = scene::BodyShape::sphere;
-    body.radius_m = m[0];
-  } else if (shape.name == "ellipsoid") {
-    body.shape = scene::BodyShape::ellipsoid;
-    body.semi_axes_m = Vec3(m[0], m[1], m[2]);
-  } else {
-    body.shape = scene::BodyShape::revolution;
-    body.profile.rz_m = {{0.0, 0.0}, {m[0], 0.0}, {m[0], m[1]}, {0.0, m[1]}};
+  const scene::SolidKind& kind = *std::ranges::find(scene::solid_kinds(), shape.name, &scene::SolidKind::word);
+  body.shape = kind.shape;
+  if (kind.named()) body.named = kind.word;
+  auto next = m.begin();
+  for (const scene::SolidLength& length : kind.lengths) {
+    if (const auto* one = std::get_if<double scene::Solid::*>(&length)) body.*(*one) = *next++;
+    if (const auto* three = std::get_if<Vec3 scene::Solid::*>(&length)) {
+      for (double& component_m : body.*(*three)) component_m = *next++;
+    }
   }
+  scene::complete(body);
   return body;
 }
 

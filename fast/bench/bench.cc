@@ -1,6 +1,7 @@
 #include "fast/bench/bench.h"
 
 #include "scene/base/error.h"
+#include "scene/base/nearest_name.h"
 
 namespace touchstone::bench {
 namespace {
@@ -22,20 +23,24 @@ BenchResult run_bench(const BenchOptions& options, const std::function<void(cons
     if (progress) progress(text);
   };
   std::vector<Case> cases;
+  std::vector<std::string> known;  // what may stand behind --only
+  const auto meets = [&](const std::string& name) {
+    for (std::size_t end = 0; end != std::string::npos;) known.push_back(name.substr(0, end = name.find('/', end + 1)));
+    return chosen(name, options.only);
+  };
   // A case that is named need not be on the quick list.
   for (const Case& which : all_cases(options.quick && options.only.empty())) {
-    if (chosen(which.name(), options.only)) cases.push_back(which);
+    if (meets(which.name())) cases.push_back(which);
   }
   bool peer_chosen = false;
   for (const std::string& size : peer_sizes(options.quick)) {
-    for (const PeerSetting& setting : peer_settings()) {
-      peer_chosen = peer_chosen || chosen(peer_name(size, setting), options.only);
-    }
+    for (const PeerSetting& setting : peer_settings()) peer_chosen = meets(peer_name(size, setting)) || peer_chosen;
   }
   if (cases.empty() && !peer_chosen) {
     throw scene::InputError("--only " + options.only +
                             ": no such case; expected the first parts of a name such as box/4k/10, ellipsoid/100k/1 or "
-                            "bullet/1k/rubber.implicit, with * for any part");
+                            "bullet/1k/rubber.implicit, with * for any part" +
+                            scene::did_you_mean(options.only, known));
   }
   HardwareCounters counters;
   BenchResult result;

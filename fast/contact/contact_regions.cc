@@ -159,7 +159,7 @@ ClusterCount cluster(const ClusterGrid& grid, RegionPoints& all, ClusterScratch&
     for (std::size_t o = 0; o < occupied; ++o) {
       const std::int32_t a = scratch.occupied_[o];
       const auto begin = static_cast<std::size_t>(nth(grid.neighbour_begin, a)),
-                 end = static_cast<std::size_t>(grid.neighbour_begin[static_cast<std::size_t>(a) + 1]);
+                 end = static_cast<std::size_t>(nth(grid.neighbour_begin, a + 1));
       for (std::size_t n = begin; n < end; ++n) {
         const ClusterGrid::Neighbour& neighbour = grid.neighbours[n];
         const ClusterScratch::Cell& b = nth(cells, neighbour.cell);

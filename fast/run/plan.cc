@@ -118,28 +118,18 @@ std::string tips_text(const std::vector<scene::ToolTip>& tips) {
   return fmt::format("{} balls of {} mm radius", tips.size(), radii);
 }
 
-/// What the response model was compared with the reference for, and what the track has beyond that.
-std::string checked_text(const scene::Scene& scene, const std::vector<scene::ToolTip>& tips, StepStatus status) {
+/// What the response model was compared with the reference for, or what the track has beyond that. The whole range is
+/// in reports/response.md.
+std::string checked_text(const scene::Scene& scene, StepStatus status) {
+  // StepStatus ends with these bits.
+  constexpr std::uint32_t unchecked_bits = ~(static_cast<std::uint32_t>(StepStatus::depth_unchecked) - 1u);
   const CheckedRange checked = checked_range(scene);
-  const std::string bodies =
-      checked.curvature_rel < 0.01
-          ? "flat faces"
-          : fmt::format("faces with radii of curvature from {:.2g} times the tip's", 1.0 / checked.curvature_rel);
-  std::string text = fmt::format(
-      "with this Poisson's ratio{} compared with the reference for {}, depths up to {} of the tip's radius, contacts "
-      "of a radius up to {} of the body's size, {} contact radii and more from an edge",
-      scene.contact.friction ? " and friction" : "", bodies, checked.depth_over_radius, checked.size_rel,
-      checked.edge_over_radius);
-  if (tips.size() > 1 && std::isfinite(checked.apart_over_radii)) {
-    text += fmt::format(", {} times the radii and more apart", checked.apart_over_radii);
-  }
-  status |= checked.scene;
-  constexpr auto unchecked =
-      static_cast<std::uint32_t>(StepStatus::depth_unchecked | StepStatus::size_unchecked | StepStatus::edge_unchecked |
-                                 StepStatus::regions_unchecked | StepStatus::curvature_unchecked |
-                                 StepStatus::material_unchecked | StepStatus::inclusion_unchecked);
-  const std::uint32_t beyond = static_cast<std::uint32_t>(status) & unchecked;
-  return beyond == 0 ? text : text + "; THE TRACK GOES BEYOND: " + status_text(beyond);
+  const std::uint32_t beyond = static_cast<std::uint32_t>(status | checked.scene) & unchecked_bits;
+  if (beyond != 0) return "THE TRACK GOES BEYOND: " + status_text(beyond);
+  return fmt::format(
+      "against the reference: depth to {} of the tip's radius, contact radius to {} of the body's size, "
+      "{} contact radii from an edge",
+      checked.depth_over_radius, checked.size_rel, checked.edge_over_radius);
 }
 
 /// A plan as it is written.
@@ -172,9 +162,8 @@ scene::Plan response_plan(const scene::Scene& scene) {
   lines.models("contact detection", tips_text(tips) + " against the exact rest shape", cost({Stage::detection}));
   if (tips.size() > 1) {
     lines.models("several regions",
-                 fmt::format("{} parts of the tool touch on this track{}; each lowers the body under the others, and "
-                             "their forces are found together",
-                             tips.size(), engine ? fmt::format(", {} at its instants", measured.regions) : ""),
+                 fmt::format("{} parts of the tool touch on this track{}; their forces are found together", tips.size(),
+                             engine ? fmt::format(", {} at its instants", measured.regions) : ""),
                  cost({Stage::regions}));
   } else {
     lines.leaves_out("several regions",
@@ -205,7 +194,7 @@ scene::Plan response_plan(const scene::Scene& scene) {
                cost({Stage::interpolation}));
   lines.models("local surface", "points under the tool lie on it", cost({Stage::local_factor}));
   lines.models("normals", "of the deformed surface", cost({Stage::normals}));
-  lines.models("checked range", checked_text(scene, tips, engine ? measured.status : StepStatus::ok));
+  lines.models("checked range", checked_text(scene, engine ? measured.status : StepStatus::ok));
   if (engine) lines.whole(measured, *engine);
   lines.leaves_out("time dependence", "the force is static; the track's speed does not enter");
   return lines.plan;
@@ -236,16 +225,13 @@ scene::Plan plan(const scene::Scene& scene) {
                         : ""),
                measured.cost({Stage::detection}));
   if (model.max_regions > 1) {
-    lines.models(
-        "several regions",
-        fmt::format("the tool's mesh is not convex: up to {}, {} at the track's instants, separated at {:.3g} mm; each "
-                    "is evaluated on the body deformed by the earlier ones",
-                    model.max_regions, measured.regions, scene.contact.r_th_m * 1e3) +
-            (scene.contact.r_th_m < 2.0 * model.tool.spacing_m
-                 ? "; ONE CONTACT MAY SPLIT INTO SEVERAL: contact.r_th_m is less than twice the distance between " +
-                       elements + "; raise fast.tool_samples"
-                 : ""),
-        measured.cost({Stage::regions}));
+    lines.models("several regions",
+                 fmt::format("mesh not convex: up to {}, {} at the track's instants, {:.3g} mm or more apart",
+                             model.max_regions, measured.regions, scene.contact.r_th_m * 1e3) +
+                     (scene.contact.r_th_m < 2.0 * model.tool.spacing_m
+                          ? "; ONE CONTACT MAY SPLIT INTO SEVERAL, raise fast.tool_samples"
+                          : ""),
+                 measured.cost({Stage::regions}));
   } else {
     lines.leaves_out("several regions", one_region_text(scene.tool));
   }

@@ -332,7 +332,7 @@ double RevolutionAnchors::arc_at_height_m(int piece, double height_m) const {
 
 Vec3 RevolutionAnchors::on_surface_m(double arc_m, double quarters) const {
   int piece = 0;
-  while (piece + 1 < revolution_.piece_count() && parts_[static_cast<std::size_t>(piece) + 1].arc_begin_m <= arc_m) {
+  while (piece + 1 < revolution_.piece_count() && nth(parts_, piece + 1).arc_begin_m <= arc_m) {
     ++piece;
   }
   const double s = (arc_m - nth(parts_, piece).arc_begin_m) / revolution_.piece(piece).length_m;

@@ -68,7 +68,7 @@ class CurveRule {
   }
 
   void joint(int k) {
-    const CurvePiece &before = nth(pieces_, k), &after = pieces_[static_cast<std::size_t>(k) + 1];
+    const CurvePiece &before = nth(pieces_, k), &after = nth(pieces_, k + 1);
     const CurvePiece::Point end = before.at(1.0), begin = after.at(0.0);
     if ((end.normal - begin.normal).norm() > smooth_turn) {
       found_.push_back({k, 1.0, AnchorReason::profile_corner});

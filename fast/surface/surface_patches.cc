@@ -57,7 +57,7 @@ SurfacePatches surface_patches(const scene::Surface& surface, const AnchorPoints
   for (int p = 0; p + 1 < static_cast<int>(surface.patch_begin.size()); ++p) {
     Patch patch;
     patch.begin = nth(surface.patch_begin, p);
-    patch.end = surface.patch_begin[static_cast<std::size_t>(p) + 1];
+    patch.end = nth(surface.patch_begin, p + 1);
     patch.corners = anchors.around(p).size();
     patch.anchor = nth(anchors.patches(), p);
     for (std::size_t k = 0; k < patch.anchor.size(); ++k) {

@@ -1,12 +1,15 @@
 #include "scene/input/fields.h"
 
+#include "scene/base/index.h"
 #include "scene/base/text.h"
+#include "scene/model/solid_kinds.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <list>
 
 namespace touchstone::scene {
 namespace {
@@ -25,48 +28,50 @@ Choice<T> choice(std::vector<std::string_view> names, Enum& (*member)(T&)) {
 // One key per row is easier to read.
 // clang-format off
 
-/// The words of BodyShape, then the named profiles, which are bodies of revolution.
 template <class T, Solid& (*solid)(T&)>
 Choice<T> solid_choice() {
-  static constexpr int shapes = 4;
-  Choice<T> out{{"box", "sphere", "ellipsoid", "revolution"},
-                [](const T& t) {
-                  const Solid& s = solid(const_cast<T&>(t));
-                  const auto found = std::ranges::find(named_profiles(), s.named, &NamedProfile::name);
-                  return s.named.empty() ? static_cast<int>(s.shape) : shapes + static_cast<int>(found - named_profiles().begin());
-                },
+  Choice<T> out{{},
+                [](const T& t) { return static_cast<int>(&kind_of(solid(const_cast<T&>(t))) - solid_kinds().data()); },
                 [](T& t, int value) {
-                  solid(t).shape = value < shapes ? static_cast<BodyShape>(value) : BodyShape::revolution;
-                  solid(t).named = value < shapes ? std::string_view() : named_profiles()[static_cast<std::size_t>(value - shapes)].name;
+                  const SolidKind& kind = nth(solid_kinds(), value);
+                  solid(t).shape = kind.shape;
+                  solid(t).named = kind.named() ? kind.word : std::string_view();
                 }};
-  for (const NamedProfile& profile : named_profiles()) out.names.push_back(profile.name);
+  for (const SolidKind& kind : solid_kinds()) out.names.push_back(kind.word);
   return out;
 }
 
-/// The keys of a convex solid's dimensions, each valid for its shapes only.
-/// @param keys  shape and the dimensions, with the prefix of their table
+template <auto member>
+struct Of {};
+
+/// The keys of a convex solid's lengths, each valid for the shapes that use it.
+/// @param table  prefix of the keys
 template <class T, Solid& (*solid)(T&)>
-std::vector<Field<T>> solid_fields(const std::array<std::string_view, 7>& keys, const std::array<std::string_view, 5>& conditions) {
-  const std::string_view shape = keys[0];
-  const Condition<T> box{shape, conditions[0], [](const T& t) { return solid(const_cast<T&>(t)).shape == BodyShape::box; }},
-      ball{shape, conditions[1], [](const T& t) { const Solid& s = solid(const_cast<T&>(t)); return s.shape == BodyShape::sphere || s.named == "cylinder"; }},
-      ellipsoid{shape, conditions[2], [](const T& t) { return solid(const_cast<T&>(t)).shape == BodyShape::ellipsoid; }},
-      revolution{shape, conditions[3], [](const T& t) { const Solid& s = solid(const_cast<T&>(t)); return s.shape == BodyShape::revolution && s.named.empty(); }},
-      cylinder{shape, conditions[4], [](const T& t) { return solid(const_cast<T&>(t)).named == "cylinder"; }};
+std::vector<Field<T>> solid_fields(const std::string& table) {
+  static std::list<std::string> texts;  // of keys and conditions
+  const auto key = [&](std::string_view name) -> std::string_view { return texts.emplace_back(table).append(name); };
+  const std::string_view shape = key("shape");
+  const auto only = [&]<auto length>(Of<length>) {
+    std::string words;
+    for (const SolidKind& kind : solid_kinds()) {
+      if (kind.uses(length)) words += (words.empty() ? "" : " or ") + toml_quoted(kind.word);
+    }
+    return Condition<T>{shape, key("shape = " + words), [](const T& t) { return kind_of(solid(const_cast<T&>(t))).uses(length); }};
+  };
   return {
       {shape, "", Range{}, {}, Side::both, solid_choice<T, solid>(), {},
            "Shape of the elastic solid, convex; a body's lowest point is on z = 0, its centre on the z axis."},
-      {keys[1], "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> Vec3& { return solid(t).size_m; }, box,
+      {key("size_m"), "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> Vec3& { return solid(t).size_m; }, only(Of<&Solid::size_m>()),
            "Edge lengths of the box along x, y, z."},
-      {keys[2], "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> double& { return solid(t).radius_m; }, ball,
+      {key("radius_m"), "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> double& { return solid(t).radius_m; }, only(Of<&Solid::radius_m>()),
            "Radius of the sphere or cylinder."},
-      {keys[6], "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> double& { return solid(t).length_m; }, cylinder,
+      {key("length_m"), "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> double& { return solid(t).length_m; }, only(Of<&Solid::length_m>()),
            "Length of the cylinder along z, from end to end."},
-      {keys[3], "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> Vec3& { return solid(t).semi_axes_m; }, ellipsoid,
+      {key("semi_axes_m"), "m", between(1e-4, 10.0), {}, Side::both, +[](T& t) -> Vec3& { return solid(t).semi_axes_m; }, only(Of<&Solid::semi_axes_m>()),
            "Semi-axes of the ellipsoid along x, y, z."},
-      {keys[4], "m", between(-10.0, 10.0), {}, Side::both, +[](T& t) -> std::vector<Eigen::Vector2d>& { return solid(t).profile.rz_m; }, revolution,
+      {key("profile_rz_m"), "m", between(-10.0, 10.0), {}, Side::both, +[](T& t) -> std::vector<Eigen::Vector2d>& { return solid(t).profile.rz_m; }, only(Of<&Solid::profile>()),
            "Corners [r, z] of the profile, from its lowest point on the axis up to its highest; r = 0 at both."},
-      {keys[5], "m", between(0.0, 100.0), "[]", Side::both, +[](T& t) -> std::vector<double>& { return solid(t).profile.arc_radius_m; }, revolution,
+      {key("profile_arc_radius_m"), "m", between(0.0, 100.0), "[]", Side::both, +[](T& t) -> std::vector<double>& { return solid(t).profile.arc_radius_m; }, only(Of<&Solid::profile>()),
            "For each piece between two corners the radius of an arc that bulges outwards, 0 for a straight piece; empty: all straight."},
   };
 }
@@ -205,18 +210,14 @@ std::vector<Field<Scene>> make_scene_fields() {
       {"compare.instants", "", between(2, 2000), "25", both, +[](S& s) -> int& { return s.compare.instants; }, always,
            "Evenly spaced track instants at which both sides are recorded."},
   };
-  const auto body = solid_fields<S, solid_of>(
-      {"body.shape", "body.size_m", "body.radius_m", "body.semi_axes_m", "body.profile_rz_m", "body.profile_arc_radius_m", "body.length_m"},
-      {"body.shape = \"box\"", "body.shape = \"sphere\" or \"cylinder\"", "body.shape = \"ellipsoid\"", "body.shape = \"revolution\"", "body.shape = \"cylinder\""});
+  const auto body = solid_fields<S, solid_of>("body.");
   fields.insert(fields.begin() + 1, body.begin(), body.end());
   return fields;
 }
 
 std::vector<Field<Inclusion>> make_inclusion_fields() {
   using I = Inclusion;
-  std::vector<Field<I>> fields = solid_fields<I, solid_of>(
-      {"shape", "size_m", "radius_m", "semi_axes_m", "profile_rz_m", "profile_arc_radius_m", "length_m"},
-      {"shape = \"box\"", "shape = \"sphere\" or \"cylinder\"", "shape = \"ellipsoid\"", "shape = \"revolution\"", "shape = \"cylinder\""});
+  std::vector<Field<I>> fields = solid_fields<I, solid_of>("");
   fields.push_back({"center_m", "m", between(-10.0, 10.0), {}, Side::both, +[](I& i) -> Vec3& { return i.center_m; }, {},
        "Centre of the inclusion's bounding box in the body at rest."});
   fields.push_back({"material.youngs_modulus_pa", "Pa", above(0.0, 1e13), {}, Side::both, +[](I& i) -> double& { return i.material.youngs_modulus_pa; }, {},
@@ -348,7 +349,7 @@ std::string value_text(const Field<T>& field, const T& object) {
       return numbers(std::array{q.w(), q.x(), q.y(), q.z()});
     }
     std::string operator()(const Choice<T>& access) const {
-      return toml_quoted(std::string(access.names[static_cast<std::size_t>(access.get(o))]));
+      return toml_quoted(std::string(nth(access.names, access.get(o))));
     }
   };
   return std::visit(Visitor{o}, field.access);
@@ -409,7 +410,7 @@ std::string reference_rows(const std::vector<Field<T>>& fields, const std::strin
             : field.default_of  ? "`" + std::string(field.default_words) + "`"
             : optional(field)   ? "absent"
                                 : "required") +
-           " | " + side_names[static_cast<std::size_t>(field.side)] + " | " + std::string(field.doc);
+           " | " + nth(side_names, field.side) + " | " + std::string(field.doc);
     if (field.only_when) out += " Only with `" + std::string(field.only_when->text) + "`.";
     out += " |\n";
   }

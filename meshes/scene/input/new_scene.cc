@@ -1,10 +1,13 @@
 #include "scene/input/new_scene.h"
 
+#include "scene/base/index.h"
 #include "scene/base/text.h"
 #include "scene/input/fields.h"
 #include "scene/model/area_law.h"
+#include "scene/model/solid_kinds.h"
 
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -43,25 +46,17 @@ std::string line(const std::string& text, const std::string& comment) {
 }
 
 std::string body_text(const Body& body) {
-  switch (body.shape) {
-    case BodyShape::box:
-      return line("shape = \"box\"", "standing on z = 0, its middle on the z axis") +
-             line("size_m = " + list(body.size_m), "edge lengths along x, y and z");
-    case BodyShape::sphere:
-      return line("shape = \"sphere\"", "its lowest point is at z = 0, its middle on the z axis") +
-             "radius_m = " + plain(body.radius_m) + "\n";
-    case BodyShape::ellipsoid:
-      return line("shape = \"ellipsoid\"", "its lowest point is at z = 0, its middle on the z axis") +
-             line("semi_axes_m = " + list(body.semi_axes_m), "along x, y and z");
-    case BodyShape::revolution: {
-      std::string corners;
-      for (const Eigen::Vector2d& corner : body.profile.rz_m)
-        corners += (corners.empty() ? "" : ", ") + list({corner.x(), corner.y()});
-      return line("shape = \"revolution\"", "a profile turned about the z axis") +
-             line("profile_rz_m = [" + corners + "]", "its corners [r, z], from the bottom up");
-    }
+  std::string out =
+      line("shape = " + toml_quoted(kind_of(body).word), "its lowest point is at z = 0, its middle on the z axis");
+  Inclusion solid;  // whose keys have no prefix
+  static_cast<Solid&>(solid) = body;
+  for (const Field<Inclusion>& field : inclusion_fields()) {
+    if (!field.only_when || !applies(field, solid) || !must_be_given(field)) continue;
+    std::string comment(field.doc.substr(0, field.doc.size() - 1));  // without its full stop
+    comment.front() = static_cast<char>(std::tolower(comment.front()));
+    out += line(std::string(field.key) + " = " + value_text(field, solid), comment);
   }
-  return "";
+  return out;
 }
 
 std::string tool_text(const Tool& tool) {
@@ -80,7 +75,7 @@ std::string tool_text(const Tool& tool) {
     case ToolShape::mesh:
       return line("shape = \"mesh\"", "a closed triangle mesh, in the file's own axes") +
              line("file = \"" + tool.file + "\"", "from this file's folder; .stl, .obj or .ply") +
-             line(std::string("unit = \"") + units[static_cast<std::size_t>(tool.unit)] + "\"",
+             line(std::string("unit = \"") + nth(units, tool.unit) + "\"",
                   "of the file's coordinates: m, cm, mm or in");
   }
   return "";

@@ -1,6 +1,7 @@
 #include "scene/input/scene_io.h"
 
 #include "scene/base/hash.h"
+#include "scene/base/index.h"
 #include "scene/base/input.h"
 #include "scene/base/nearest_name.h"
 #include "scene/base/text.h"
@@ -19,6 +20,7 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include <type_traits>
 
 namespace touchstone::scene {
 namespace {
@@ -254,8 +256,7 @@ class Reader {
     const std::filesystem::path file = file_.parent_path() / scene.tool.file;
     std::optional<std::string> content = read_named(file, mesh_input, "tool.file");
     if (!content) return;
-    scene.tool.mesh =
-        mesh_of_file(*std::move(content), file, units_m[static_cast<std::size_t>(scene.tool.unit)], faults_);
+    scene.tool.mesh = mesh_of_file(*std::move(content), file, nth(units_m, scene.tool.unit), faults_);
   }
 
   template <class T>
@@ -283,106 +284,85 @@ class Reader {
     return did_you_mean(node.value_or(std::string()), {choice->names.begin(), choice->names.end()});
   }
 
-  template <class T>
-  static bool assign(const Field<T>& field, double& (*const& member)(T&), const toml::node& node, T& object) {
-    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-    if (!value || !field.range.contains(*value)) return false;
-    member(object) = *value;
-    return true;
-  }
-  template <class T>
-  static bool assign(const Field<T>& field, std::optional<double>& (*const& member)(T&), const toml::node& node,
-                     T& object) {
-    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-    if (!value || !field.range.contains(*value)) return false;
-    member(object) = *value;
-    return true;
-  }
-  template <class T>
-  static bool assign(const Field<T>& field, int& (*const& member)(T&), const toml::node& node, T& object) {
-    const auto value = node.is_integer() ? node.value<std::int64_t>() : std::nullopt;
-    if (!value || !field.range.contains(static_cast<double>(*value))) return false;
-    member(object) = static_cast<int>(*value);
-    return true;
-  }
-  template <class T>
-  static bool assign(const Field<T>& field, std::optional<int>& (*const& member)(T&), const toml::node& node,
-                     T& object) {
-    const auto value = node.is_integer() ? node.value<std::int64_t>() : std::nullopt;
-    if (!value || !field.range.contains(static_cast<double>(*value))) return false;
-    member(object) = static_cast<int>(*value);
-    return true;
-  }
-  template <class T>
-  static bool assign(const Field<T>& field, std::string& (*const& member)(T&), const toml::node& node, T& object) {
-    const auto value = node.is_string() ? node.value<std::string>() : std::nullopt;
-    if (!value || !is_plain_text(*value) || (value->empty() && !field.default_value)) return false;
-    member(object) = *value;
-    return true;
-  }
-  /// The numbers of an array, or nothing if it does not consist of `count` numbers in range.
-  template <class T>
-  static std::optional<std::vector<double>> numbers(const Field<T>& field, const toml::node& node,
+  /// Numbers of an array, or nothing if it does not consist of `count` numbers in range.
+  static std::optional<std::vector<double>> numbers(const Range& range, const toml::node& node,
                                                     std::optional<std::size_t> count = std::nullopt) {
     const toml::array* array = node.as_array();
     if (array == nullptr || (count && array->size() != *count)) return std::nullopt;
     std::vector<double> values;
     for (const toml::node& element : *array) {
       const auto value = element.is_number() ? element.value<double>() : std::nullopt;
-      if (!value || !field.range.contains(*value)) return std::nullopt;
+      if (!value || !range.contains(*value)) return std::nullopt;
       values.push_back(*value);
     }
     return values;
   }
-  template <class T>
-  static bool assign(const Field<T>& field, Vec3& (*const& member)(T&), const toml::node& node, T& object) {
-    const auto v = numbers(field, node, 3);
-    if (!v) return false;
-    member(object) = Vec3((*v)[0], (*v)[1], (*v)[2]);
+  /// Sets the value from the node. @returns false if the node is not one of its kind and in range
+  static bool set(double& to, const Range& range, const toml::node& node) {
+    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+    if (!value || !range.contains(*value)) return false;
+    to = *value;
     return true;
   }
-  template <class T>
-  static bool assign(const Field<T>& field, OpenPosition& (*const& member)(T&), const toml::node& node, T& object) {
-    const auto v = numbers(field, node);
-    if (!v || (v->size() != 2 && v->size() != 3)) return false;
-    member(object) = {Vec3((*v)[0], (*v)[1], v->size() == 3 ? (*v)[2] : 0.0), v->size() == 2};
+  static bool set(int& to, const Range& range, const toml::node& node) {
+    const auto value = node.is_integer() ? node.value<std::int64_t>() : std::nullopt;
+    if (!value || !range.contains(static_cast<double>(*value))) return false;
+    to = static_cast<int>(*value);
     return true;
   }
-  template <class T>
-  static bool assign(const Field<T>& field, std::optional<Vec3>& (*const& member)(T&), const toml::node& node,
-                     T& object) {
-    const auto v = numbers(field, node, 3);
-    if (v) member(object) = Vec3((*v)[0], (*v)[1], (*v)[2]);
+  static bool set(std::string& to, const Range&, const toml::node& node) {
+    const auto value = node.is_string() ? node.value<std::string>() : std::nullopt;
+    if (!value || !is_plain_text(*value)) return false;
+    to = *value;
+    return true;
+  }
+  static bool set(Vec3& to, const Range& range, const toml::node& node) {
+    const auto v = numbers(range, node, 3);
+    if (v) to = Vec3((*v)[0], (*v)[1], (*v)[2]);
     return v.has_value();
   }
-  template <class T>
-  static bool assign(const Field<T>& field, std::vector<double>& (*const& member)(T&), const toml::node& node,
-                     T& object) {
-    auto values = numbers(field, node);
-    if (values) member(object) = std::move(*values);
+  static bool set(OpenPosition& to, const Range& range, const toml::node& node) {
+    const auto v = numbers(range, node);
+    if (!v || (v->size() != 2 && v->size() != 3)) return false;
+    to = {Vec3((*v)[0], (*v)[1], v->size() == 3 ? (*v)[2] : 0.0), v->size() == 2};
+    return true;
+  }
+  static bool set(std::vector<double>& to, const Range& range, const toml::node& node) {
+    auto values = numbers(range, node);
+    if (values) to = std::move(*values);
     return values.has_value();
   }
-  template <class T>
-  static bool assign(const Field<T>& field, std::vector<Eigen::Vector2d>& (*const& member)(T&), const toml::node& node,
-                     T& object) {
+  static bool set(std::vector<Eigen::Vector2d>& to, const Range& range, const toml::node& node) {
     const toml::array* array = node.as_array();
     if (array == nullptr) return false;
-    member(object).clear();
+    to.clear();
     for (const toml::node& element : *array) {
-      const auto pair = numbers(field, element, 2);
+      const auto pair = numbers(range, element, 2);
       if (!pair) return false;
-      member(object).emplace_back((*pair)[0], (*pair)[1]);
+      to.emplace_back((*pair)[0], (*pair)[1]);
     }
     return true;
   }
-  template <class T>
-  static bool assign(const Field<T>& field, Eigen::Quaterniond& (*const& member)(T&), const toml::node& node,
-                     T& object) {
-    const auto v = numbers(field, node, 4);
-    if (!v) return false;
-    const auto orientation = orientation_of({(*v)[0], (*v)[1], (*v)[2], (*v)[3]});
-    if (orientation) member(object) = *orientation;
+  static bool set(Eigen::Quaterniond& to, const Range& range, const toml::node& node) {
+    const auto v = numbers(range, node, 4);
+    const auto orientation = v ? orientation_of({(*v)[0], (*v)[1], (*v)[2], (*v)[3]}) : std::nullopt;
+    if (orientation) to = *orientation;
     return orientation.has_value();
+  }
+  template <class Value>
+  static bool set(std::optional<Value>& to, const Range& range, const toml::node& node) {
+    Value value{};
+    if (!set(value, range, node)) return false;
+    to = value;
+    return true;
+  }
+
+  template <class T, class Value>
+  static bool assign(const Field<T>& field, Value& (*const& member)(T&), const toml::node& node, T& object) {
+    if constexpr (std::is_same_v<Value, std::string>) {
+      if (!field.default_value && node.value_or(std::string()).empty()) return false;
+    }
+    return set(member(object), field.range, node);
   }
   template <class T>
   static bool assign(const Field<T>&, const Choice<T>& access, const toml::node& node, T& object) {

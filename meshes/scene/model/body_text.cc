@@ -1,28 +1,29 @@
 #include "scene/model/body_text.h"
 
+#include "scene/base/index.h"
+#include "scene/model/solid_kinds.h"
+
 #include <iomanip>
 #include <sstream>
 
 namespace touchstone::scene {
 namespace {
 
+/// A solid with a name counts as its profile.
 void add_solid(const Solid& solid, std::ostream& text) {
-  switch (solid.shape) {
-    case BodyShape::box:
-      text << "box " << solid.size_m.transpose();
-      break;
-    case BodyShape::sphere:
-      text << "sphere " << solid.radius_m;
-      break;
-    case BodyShape::ellipsoid:
-      text << "ellipsoid " << solid.semi_axes_m.transpose();
-      break;
-    case BodyShape::revolution:
-      text << "revolution";
-      for (const Eigen::Vector2d& corner_m : solid.profile.rz_m) text << " (" << corner_m.transpose() << ')';
-      for (const double radius_m : solid.profile.arc_radius_m) text << ' ' << radius_m;
-      break;
-  }
+  const SolidKind& kind = nth(solid_kinds(), solid.shape);
+  struct Visitor {
+    const Solid& solid;
+    std::ostream& text;
+    void operator()(double Solid::*length_m) const { text << ' ' << solid.*length_m; }
+    void operator()(Vec3 Solid::*lengths_m) const { text << ' ' << (solid.*lengths_m).transpose(); }
+    void operator()(Profile Solid::*profile) const {
+      for (const Eigen::Vector2d& corner_m : (solid.*profile).rz_m) text << " (" << corner_m.transpose() << ')';
+      for (const double radius_m : (solid.*profile).arc_radius_m) text << ' ' << radius_m;
+    }
+  };
+  text << kind.word;
+  for (const SolidLength& length : kind.lengths) std::visit(Visitor{solid, text}, length);
   text << '\n';
 }
 

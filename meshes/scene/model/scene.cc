@@ -5,64 +5,6 @@
 
 namespace touchstone::scene {
 
-namespace {
-
-const NamedProfile* profile_of(const Solid& solid) {
-  const auto all = named_profiles();
-  const auto found = std::ranges::find(all, solid.named, &NamedProfile::name);
-  return found != all.end() ? &*found : nullptr;
-}
-
-}  // namespace
-
-std::span<const NamedProfile> named_profiles() {
-  static constexpr NamedProfile all[] = {
-      {"cylinder", true, [](const Solid& solid) { return cylinder_profile(solid.radius_m, solid.length_m, 0.0); }},
-  };
-  return all;
-}
-
-void complete(Solid& solid) {
-  if (const NamedProfile* found = profile_of(solid)) solid.profile = found->profile(solid);
-}
-
-bool Body::flat_bottom() const noexcept {
-  if (shape != BodyShape::revolution) return shape == BodyShape::box;
-  const NamedProfile* found = profile_of(*this);
-  return found != nullptr ? found->flat_bottom : scene::flat_bottom(profile);
-}
-
-std::unique_ptr<const Shape> solid_shape(const Solid& solid, const Vec3& center_m) {
-  switch (solid.shape) {
-    case BodyShape::box:
-      return std::make_unique<Box>(center_m, solid.size_m);
-    case BodyShape::sphere:
-      return std::make_unique<Sphere>(center_m, solid.radius_m);
-    case BodyShape::ellipsoid:
-      return std::make_unique<Ellipsoid>(center_m, solid.semi_axes_m);
-    case BodyShape::revolution: {
-      const double middle_m = 0.5 * (solid.profile.rz_m.front().y() + solid.profile.rz_m.back().y());
-      return std::make_unique<Revolution>(solid.profile, center_m - Vec3(0.0, 0.0, middle_m));
-    }
-  }
-  return nullptr;
-}
-
-std::unique_ptr<const Shape> body_shape(const Body& body) {
-  switch (body.shape) {
-    case BodyShape::box:
-      return solid_shape(body, Vec3(0.0, 0.0, 0.5 * body.size_m.z()));
-    case BodyShape::sphere:
-      return solid_shape(body, Vec3(0.0, 0.0, body.radius_m));
-    case BodyShape::ellipsoid:
-      return solid_shape(body, Vec3(0.0, 0.0, body.semi_axes_m.z()));
-    case BodyShape::revolution:
-      // Not through the centre, so that the bottom is exactly at zero.
-      return std::make_unique<Revolution>(body.profile, Vec3(0.0, 0.0, -body.profile.rz_m.front().y()));
-  }
-  return nullptr;
-}
-
 std::unique_ptr<const Shape> tool_shape(const Tool& tool) {
   const Vec3 center_T_m = -tool.mass_center_m.value_or(Vec3::Zero());
   switch (tool.shape) {

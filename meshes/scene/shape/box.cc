@@ -1,5 +1,6 @@
 #include "scene/shape/box.h"
 
+#include "scene/base/index.h"
 #include "scene/shape/crossing.h"
 #include "scene/shape/surface_builder.h"
 
@@ -90,7 +91,7 @@ Surface Box::tessellated(int triangles) const {
         vertex.push_back(builder.add_vertex(p.point_m, p.normal));
       }
     }
-    const auto vertex_at = [&](int i, int j) { return vertex[static_cast<std::size_t>(j * (nu + 1) + i)]; };
+    const auto vertex_at = [&](int i, int j) { return nth(vertex, j * (nu + 1) + i); };
     for (int j = 0; j < nv; ++j) {
       for (int i = 0; i < nu; ++i) {
         // Alternate the diagonal so that the pattern has no preferred direction.

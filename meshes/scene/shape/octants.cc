@@ -1,5 +1,6 @@
 #include "scene/shape/octants.h"
 
+#include "scene/base/index.h"
 #include "scene/shape/surface_builder.h"
 
 #include <algorithm>
@@ -37,7 +38,7 @@ Surface octant_surface(int triangles, const std::function<SurfacePoint(const Vec
       mirrored ? builder.add_triangle(a, c, b) : builder.add_triangle(a, b, c);
     };
     for (int j = 0; j < n; ++j) {
-      const int low = row_begin[static_cast<std::size_t>(j)], high = row_begin[static_cast<std::size_t>(j) + 1];
+      const int low = nth(row_begin, j), high = nth(row_begin, j + 1);
       for (int i = 0; i < n - j; ++i) {
         add(low + i, low + i + 1, high + i);
         if (i + 1 < n - j) add(low + i + 1, high + i + 1, high + i);

@@ -13,6 +13,7 @@
 
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 struct Answer {
@@ -125,7 +126,7 @@ TEST_F(BenchVerb, OneCaseLeavesItsFolder) {
 TEST_F(BenchVerb, RefusesACaseThatThereIsNot) {
   const Answer answer = bench("--only box/5k");
   EXPECT_EQ(answer.exit_code, 2);
-  EXPECT_THAT(answer.output, HasSubstr("box/5k: no such case"));
+  EXPECT_THAT(answer.output, AllOf(HasSubstr("box/5k: no such case"), HasSubstr("did you mean \"box/1k\"?")));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "summary.json"));
   EXPECT_EQ(bench("--ticks 0").exit_code, 2);
 }

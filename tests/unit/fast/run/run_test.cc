@@ -263,7 +263,7 @@ TEST(Plan, SaysWhatIsModelledAndWhatIsNot) {
   const scene::Plan compass = plan(test::shipped_scene("compass-two-pins", scene::Formulation::corrected));
   EXPECT_TRUE(line(compass, "several regions").modelled);
   EXPECT_NE(line(compass, "several regions").reason.find("2 at the track's instants"), std::string::npos);
-  EXPECT_EQ(line(compass, "several regions").reason.find("FALL"), std::string::npos);
+  EXPECT_EQ(line(compass, "several regions").reason.find("SPLIT"), std::string::npos);
   scene::Scene coarse = test::shipped_scene("compass-two-pins", scene::Formulation::corrected);
   coarse.fast.tool_samples = 500;
   EXPECT_NE(line(plan(coarse), "several regions").reason.find("ONE CONTACT MAY SPLIT INTO SEVERAL"), std::string::npos);

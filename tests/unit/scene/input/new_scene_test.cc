@@ -5,6 +5,7 @@
 
 #include "scene/input/scene_io.h"
 #include "scene/model/first_contact.h"
+#include "scene/model/solid_kinds.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -67,20 +68,22 @@ TEST(NewScene, TheLawFollowsFromTheMaterial) {
 }
 
 TEST(NewScene, EveryBodyWithEveryTool) {
-  for (const BodyShape body : {BodyShape::box, BodyShape::sphere, BodyShape::ellipsoid, BodyShape::revolution}) {
+  for (const SolidKind& body : solid_kinds()) {
     for (const ToolShape tool : {ToolShape::sphere, ToolShape::capsule, ToolShape::cylinder, ToolShape::box}) {
       NewScene asked = ball_on_block();
-      asked.body.shape = body;
-      asked.body.radius_m = 0.03;
+      asked.body.shape = body.shape;
+      asked.body.named = body.named() ? body.word : "";
+      asked.body.radius_m = asked.body.length_m = 0.03;
       asked.body.semi_axes_m = Vec3(0.04, 0.05, 0.03);
       asked.body.profile.rz_m = {{0.0, 0.0}, {0.03, 0.0}, {0.03, 0.04}, {0.0, 0.04}};
+      complete(asked.body);
       asked.tool.shape = tool;
       asked.tool.length_m = 0.02;
       asked.tool.size_m = Vec3(0.01, 0.01, 0.02);
       asked.place_m = {0.004, -0.002};
       asked.slide_m = 0.005;
       const Scene scene = loaded(asked);
-      EXPECT_EQ(scene.body.shape, body);
+      EXPECT_EQ(kind_of(scene.body).word, body.word);
       EXPECT_EQ(scene.tool.shape, tool);
       ASSERT_EQ(scene.track.size(), 3u);
       EXPECT_EQ(scene.track[0].pose.position_m.head<2>(), Eigen::Vector2d(0.004, -0.002));

@@ -1,6 +1,8 @@
 #include "scene/input/scene_io.h"
 
 #include "scene/input/fields.h"
+#include "scene/model/body_text.h"
+#include "scene/model/solid_kinds.h"
 #include "support/source_folder.h"
 
 #include <gmock/gmock.h>
@@ -97,6 +99,31 @@ TEST(SceneFile, ANamedShapeIsABodyOfRevolution) {
   EXPECT_EQ(scene_hash(parse_scene(resolved, "a.toml")), scene_hash(s));
   EXPECT_THAT(message_for("shape = \"box\"", "shape = \"cylinder\"\nradius_m = 0.03"),
               AllOf(HasSubstr("body.length_m: missing"), HasSubstr("body.size_m: only applies with")));
+}
+
+// What stored results are found by: it must stay as it is.
+TEST(BodyText, IsOfEveryKindOfSolid) {
+  Body body;
+  body.size_m = body.semi_axes_m = Vec3(1.0, 2.0, 4.0);
+  body.radius_m = 1.0;
+  body.length_m = 2.0;
+  body.profile = {{{0.0, 0.0}, {1.0, 1.0}, {0.0, 2.0}}, {0.0, 3.0}};
+  body.support_height_m = 0.5;
+  body.material = {1e6, 0.5};
+  const std::string held = "held below 0.5\n";
+  const std::vector<std::string> expected = {"box 1 2 4\n", "sphere 1\n" + held, "ellipsoid 1 2 4\n" + held,
+                                             "revolution (0 0) (1 1) (0 2) 0 3\n" + held,
+                                             "revolution ( 0 -1) ( 1 -1) (1 1) (0 1) 0 0 0\n"};
+  ASSERT_EQ(solid_kinds().size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    const SolidKind& kind = solid_kinds()[k];
+    EXPECT_TRUE(kind.named() || kind.shape == static_cast<BodyShape>(k)) << kind.word;
+    body.shape = kind.shape;
+    body.named = kind.named() ? kind.word : "";
+    complete(body);
+    EXPECT_EQ(&kind_of(body), &kind);
+    EXPECT_EQ(body_text(body), "body " + expected[k] + "E 1000000 nu 0.5\n");
+  }
 }
 
 TEST(SceneFile, ReadsValuesAndFillsDefaults) {
