@@ -270,7 +270,7 @@ TEST_F(UncertaintyBand, HoldsTheHalfAxesOfAnEllipse) {
       verification::hertz_semi_axes_m(scene_.body.material.contact_modulus_pa(), 1.0 / (1.0 / 0.05 + 0.03 / 0.0036),
                                       1.0 / (1.0 / 0.05 + 0.03 / 0.0004), result.instants.back().force_n().z());
   EXPECT_GT(long_m, 2.0 * short_m);
-  expect_half_axes(result.instants.back(), {long_m, short_m}, 0.05);
+  expect_half_axes(result.instants.back(), {long_m, short_m}, 0.07);  // four cells to the short one
 }
 
 TEST_F(UncertaintyBand, HoldsTheErrorInSpace) {
