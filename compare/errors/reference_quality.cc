@@ -36,6 +36,13 @@ ReferenceQuality reference_quality(const std::vector<scene::ReferenceInstant>& i
       quality.pressure_peak_pa = instant.pressure_peak_pa;
       quality.pressure_peak_uncertainty_rel = instant.pressure_peak_uncertainty_pa / instant.pressure_peak_pa;
     }
+    if (instant.contact_half_axes_m[0] > quality.contact_half_axes_m[0]) {
+      quality.contact_half_axes_m = instant.contact_half_axes_m;
+      for (int axis = 0; axis < 2; ++axis) {
+        quality.contact_half_axes_uncertainty_rel[axis] =
+            instant.contact_half_axes_uncertainty_m[axis] / instant.contact_half_axes_m[axis];
+      }
+    }
     keep_larger(quality.residual_penetration_rel, instant.residual_penetration_m / instant.depth_m);
     keep_larger(quality.between_nodes_rel, instant.between_nodes_penetration_m / instant.depth_m);
     keep_larger(quality.equilibrium_rel, instant.equilibrium_rel);
@@ -55,6 +62,12 @@ scene::Figures reference_figures(const reference::Result& result, const Referenc
       uncertainty_or_why("reference.shape_uncertainty_rel", result.shape_uncertainty_rel),
       {"reference.pressure_peak_pa", quality.pressure_peak_pa, "", "Pa"},
       uncertainty_or_why("reference.pressure_peak_uncertainty_rel", quality.pressure_peak_uncertainty_rel),
+      {"reference.contact_long_half_axis_m", quality.contact_half_axes_m[0], "", "m"},
+      uncertainty_or_why("reference.contact_long_half_axis_uncertainty_rel",
+                         quality.contact_half_axes_uncertainty_rel[0]),
+      {"reference.contact_short_half_axis_m", quality.contact_half_axes_m[1], "", "m"},
+      uncertainty_or_why("reference.contact_short_half_axis_uncertainty_rel",
+                         quality.contact_half_axes_uncertainty_rel[1]),
       ratio_or_why("reference.residual_penetration_rel", quality.residual_penetration_rel),
       ratio_or_why("reference.penetration_between_nodes_rel", quality.between_nodes_rel),
       ratio_or_why("reference.equilibrium_rel", quality.equilibrium_rel),
@@ -81,13 +94,22 @@ scene::Figures reference_figures(const reference::Result& result, const Referenc
 std::vector<scene::Column> reference_quality_columns(const reference::Result& result, const std::string& prefix) {
   using Instant = scene::ReferenceInstant;
   std::vector<scene::Column> columns;
-  const auto add = [&](const char* name, double Instant::*member) {
+  const auto add_values = [&](const char* name, const auto& value_of) {
     std::vector<double>& values = columns.emplace_back(scene::Column{prefix + name, {}}).values;
-    for (const Instant& instant : result.instants) values.push_back(instant.*member);
+    for (const Instant& instant : result.instants) values.push_back(value_of(instant));
+  };
+  const auto add = [&](const char* name, double Instant::*member) {
+    add_values(name, [&](const Instant& instant) { return instant.*member; });
   };
   add("force_uncertainty_n", &Instant::force_uncertainty_n);
   add("pressure_peak_pa", &Instant::pressure_peak_pa);
   add("pressure_peak_uncertainty_pa", &Instant::pressure_peak_uncertainty_pa);
+  add_values("contact_long_half_axis_m", [](const Instant& i) { return i.contact_half_axes_m[0]; });
+  add_values("contact_long_half_axis_uncertainty_m",
+             [](const Instant& i) { return i.contact_half_axes_uncertainty_m[0]; });
+  add_values("contact_short_half_axis_m", [](const Instant& i) { return i.contact_half_axes_m[1]; });
+  add_values("contact_short_half_axis_uncertainty_m",
+             [](const Instant& i) { return i.contact_half_axes_uncertainty_m[1]; });
   add("residual_penetration_m", &Instant::residual_penetration_m);
   add("between_nodes_penetration_m", &Instant::between_nodes_penetration_m);
   add("equilibrium_rel", &Instant::equilibrium_rel);

@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace touchstone::compare {
 namespace {
@@ -169,13 +171,34 @@ Drawing largest_error(const Errors& errors, const Abscissa& x) {
           to_svg(plot)};
 }
 
+std::string known_text(const std::optional<double>& uncertainty_rel) {
+  return uncertainty_rel && std::isfinite(*uncertainty_rel) ? "known to " + percent_text(*uncertainty_rel)
+                                                            : "with unknown uncertainty";
+}
+
+/// Half axes of the reference's contact, each with its uncertainty as a bar.
+Drawing contact_size(const reference::Result& result, const ReferenceQuality& quality, const Abscissa& x) {
+  Plot plot = plot_over(x, "Half axes of the contact over " + x.name, "length [mm]");
+  const std::array curves = {std::pair("long", Look::reference), std::pair("short", Look::plain)};
+  std::string caption =
+      "Of the reference's contact that pushes most; of a round one both are its radius. At the largest";
+  for (int axis = 0; axis < 2; ++axis) {
+    Curve& curve = plot.curves.emplace_back(Curve{curves[axis].first, curves[axis].second, x.values, {}});
+    for (const scene::ReferenceInstant& instant : result.instants) {
+      curve.y.push_back(1e3 * instant.contact_half_axes_m[axis]);
+      curve.y_half.push_back(1e3 * instant.contact_half_axes_uncertainty_m[axis]);
+    }
+    caption += fmt::format("{} {}, {}", axis == 0 ? "" : " and", quantity_text(quality.contact_half_axes_m[axis], "m"),
+                           known_text(quality.contact_half_axes_uncertainty_rel[axis]));
+  }
+  return {"contact-size", caption + ".", to_svg(plot)};
+}
+
 std::string traction_caption(const scene::ReferenceInstant& at) {
-  const double uncertainty = at.pressure_peak_uncertainty_pa / at.pressure_peak_pa;
   return fmt::format(
       "Pressure and friction of the tool on the body in the section's plane, per current area, at the deepest instant; "
       "the reference on its own mesh. The largest pressure at a node is {:.4g} kPa, {}.",
-      1e-3 * at.pressure_peak_pa,
-      std::isfinite(uncertainty) ? "known to " + percent_text(uncertainty) : "with unknown uncertainty");
+      1e-3 * at.pressure_peak_pa, known_text(at.pressure_peak_uncertainty_pa / at.pressure_peak_pa));
 }
 
 }  // namespace
@@ -190,9 +213,19 @@ std::vector<Drawing> ComparisonDrawings::all() const {
 }
 
 const std::vector<std::string>& ComparisonDrawings::names() {
-  static const std::vector<std::string> all_names = {
-      "force-over-depth", "force-over-time", "force-logarithmic",   "friction", "force-error", "shape-error",
-      "section",          "section-contact", "shape-largest-error", "traction", "stress",      "bodies"};
+  static const std::vector<std::string> all_names = {"force-over-depth",
+                                                     "force-over-time",
+                                                     "force-logarithmic",
+                                                     "friction",
+                                                     "force-error",
+                                                     "shape-error",
+                                                     "section",
+                                                     "section-contact",
+                                                     "shape-largest-error",
+                                                     "traction",
+                                                     "contact-size",
+                                                     "stress",
+                                                     "bodies"};
   return all_names;
 }
 
@@ -259,6 +292,9 @@ ComparisonDrawings comparison_drawings(const scene::Scene& scene, const fast::Ru
       largest_error(errors, first)};
   if (const std::optional<Plot> plot = traction_plot(run.surface, result, errors.deepest)) {
     out.shapes.push_back({"traction", traction_caption(result.instants[errors.deepest]), to_svg(*plot)});
+  }
+  if (errors.reference.contact_half_axes_m[0] > 0.0) {
+    out.shapes.push_back(contact_size(result, errors.reference, first));
   }
   if (inside) {
     const scene::InstantRecord& record = result.instants[errors.deepest];

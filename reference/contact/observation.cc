@@ -1,11 +1,55 @@
 #include "reference/contact/observation.h"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 namespace touchstone::reference {
+namespace {
+
+/// Moments of a region's area, seen along its normal force.
+struct Moments {
+  scene::Vec3 normal = scene::Vec3::Zero();  ///< unit length
+  double area_m2 = 0.0;
+  scene::Vec3 first_m3 = scene::Vec3::Zero();
+  scene::Mat3 second_m4 = scene::Mat3::Zero();
+
+  /// Corners from any common origin, in any order.
+  void add_triangle(const scene::Vec3& a_m, const scene::Vec3& b_m, const scene::Vec3& c_m) {
+    const double seen_m2 = 0.5 * std::abs(normal.dot((b_m - a_m).cross(c_m - a_m)));
+    const scene::Vec3 middle_m = (a_m + b_m + c_m) / 3.0;
+    area_m2 += seen_m2;
+    first_m3 += seen_m2 * middle_m;
+    second_m4 +=
+        seen_m2 / 12.0 *
+        (a_m * a_m.transpose() + b_m * b_m.transpose() + c_m * c_m.transpose() + 9.0 * middle_m * middle_m.transpose());
+  }
+  /// A ring about the axis, which is the normal; outwards positive.
+  void add_ring(double r0_m, double r1_m) {
+    area_m2 += std::numbers::pi * (r1_m * r1_m - r0_m * r0_m);
+    second_m4.topLeftCorner<2, 2>() +=
+        0.25 * std::numbers::pi * (std::pow(r1_m, 4) - std::pow(r0_m, 4)) * Eigen::Matrix2d::Identity();
+  }
+  /// Of an ellipse with semi-axes a and b the second moments over the area are a^2 / 4 and b^2 / 4.
+  [[nodiscard]] Eigen::Vector2d half_axes_m() const {
+    if (area_m2 == 0.0) return Eigen::Vector2d::Zero();
+    const scene::Vec3 middle_m = first_m3 / area_m2;
+    const scene::Mat3 along = scene::Mat3::Identity() - normal * normal.transpose();
+    const Eigen::SelfAdjointEigenSolver<scene::Mat3> spread(
+        along * (second_m4 / area_m2 - middle_m * middle_m.transpose()) * along, Eigen::EigenvaluesOnly);
+    return 2.0 * spread.eigenvalues().tail<2>().reverse().cwiseMax(0.0).cwiseSqrt();
+  }
+};
+
+}  // namespace
+
+Eigen::Vector2d Observation::half_axes_m() const {
+  const auto most = std::ranges::max_element(regions, {}, [](const ContactRegion& one) { return one.force_n.norm(); });
+  return most == regions.end() ? Eigen::Vector2d::Zero() : most->half_axes_m;
+}
 
 template <int dim>
 Observation observe(const ContactModel<dim>& model, const ElasticBody<dim>& body, const State<dim>& state,
@@ -118,7 +162,9 @@ Observation observe(const ContactModel<dim>& model, const ElasticBody<dim>& body
       region.center_m.z() += weight_n * place(touched.nodes[i])[1];
     }
   }
+  std::vector<Moments> moments(seen.regions.size());
   for (std::size_t r = 0; r < seen.regions.size(); ++r) {
+    moments[r].normal = (seen.regions[r].force_n - seen.regions[r].friction_n).normalized();
     if (model.friction) seen.regions[r].stuck_share = weights_n[r] > 0.0 ? stuck_n[r] / weights_n[r] : 0.0;
     seen.regions[r].center_m /= std::max(weights_n[r], std::numeric_limits<double>::min());
     seen.force_n += seen.regions[r].force_n;
@@ -148,6 +194,7 @@ Observation observe(const ContactModel<dim>& model, const ElasticBody<dim>& body
         std::find_if(face.nodes.begin(), face.nodes.end(), [&](int n) { return touching_index[n] >= 0; });
     if (first == face.nodes.end()) continue;
     double area_m2 = 0.0;
+    const auto region_at = [&](std::size_t m) { return region_of[m * touching_count + touching_index[*first]]; };
     if constexpr (dim == 2) {
       for (int k = 0; k < 2; ++k) {
         const int n0 = face.nodes[k], n1 = face.nodes[k + 1];
@@ -155,6 +202,7 @@ Observation observe(const ContactModel<dim>& model, const ElasticBody<dim>& body
         const Point x0 = inside[n0] ? place(n0) : edge_between(n1, n0);
         const Point x1 = inside[n1] ? place(n1) : edge_between(n0, n1);
         area_m2 += std::numbers::pi * (x0[0] + x1[0]) * (x1 - x0).norm();
+        moments[region_at(0)].add_ring(x0[0], x1[0]);
         seen.contact_radius_m = std::max({seen.contact_radius_m, x0[0], x1[0]});
       }
     } else {
@@ -173,13 +221,19 @@ Observation observe(const ContactModel<dim>& model, const ElasticBody<dim>& body
           for (std::size_t k = 2; k < polygon.size(); ++k) {
             const Eigen::Vector3d side1 = polygon[k - 1] - polygon[0], side2 = polygon[k] - polygon[0];
             area_m2 += 0.5 * 0.5 * side1.cross(side2).norm();
+            for (std::size_t m = 0; m < mirrors.size(); ++m) {
+              const auto corner_m = [&](std::size_t i) {
+                return scene::Vec3(mirrors[m].cwiseProduct(polygon[i]) - seen.regions[region_at(m)].center_m);
+              };
+              moments[region_at(m)].add_triangle(corner_m(0), corner_m(k - 1), corner_m(k));
+            }
           }
         }
       }
     }
     for (std::size_t m = 0; m < mirrors.size(); ++m) {
       seen.area_m2 += area_m2;
-      seen.regions[region_of[m * touching_count + touching_index[*first]]].area_m2 += area_m2;
+      seen.regions[region_at(m)].area_m2 += area_m2;
     }
     // Penetration where nothing enforces contact.
     for (const auto& [xi, weight, shape] : gauss_points<dim - 1>()) {
@@ -194,6 +248,7 @@ Observation observe(const ContactModel<dim>& model, const ElasticBody<dim>& body
       seen.between_nodes_penetration_m = std::max(seen.between_nodes_penetration_m, -g.value_m);
     }
   }
+  for (std::size_t r = 0; r < seen.regions.size(); ++r) seen.regions[r].half_axes_m = moments[r].half_axes_m();
   return seen;
 }
 

@@ -22,6 +22,9 @@ struct Observation {
   double volume_change_rel = 0.0;
   double dissipated_j = 0.0;  ///< by friction since the body was at rest
   std::vector<ContactRegion> regions;
+
+  /// Of the region that pushes most; zero when apart [m].
+  [[nodiscard]] Eigen::Vector2d half_axes_m() const;
 };
 
 /// @param region_gap_m  separates regions, see ContactModel::touching_points

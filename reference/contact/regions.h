@@ -10,12 +10,13 @@ namespace touchstone::reference {
 
 /// One contact region of a solved state, of the whole body.
 struct ContactRegion {
-  scene::Vec3 force_n = scene::Vec3::Zero();     ///< on the tool, sum of pressures and friction
-  scene::Vec3 torque_nm = scene::Vec3::Zero();   ///< on the tool, about its mass centre
-  scene::Vec3 center_m = scene::Vec3::Zero();    ///< centre of pressure: mean of the contact points by force
-  double area_m2 = 0.0;                          ///< on the deformed surface
-  scene::Vec3 friction_n = scene::Vec3::Zero();  ///< part of force_n along the surface, summed over the nodes
-  double stuck_share = 1.0;                      ///< of the normal force, carried by nodes that stick
+  scene::Vec3 force_n = scene::Vec3::Zero();              ///< on the tool, sum of pressures and friction
+  scene::Vec3 torque_nm = scene::Vec3::Zero();            ///< on the tool, about its mass centre
+  scene::Vec3 center_m = scene::Vec3::Zero();             ///< centre of pressure: mean of the contact points by force
+  double area_m2 = 0.0;                                   ///< on the deformed surface
+  Eigen::Vector2d half_axes_m = Eigen::Vector2d::Zero();  ///< long and short, see ReferenceInstant::contact_half_axes_m
+  scene::Vec3 friction_n = scene::Vec3::Zero();           ///< part of force_n along the surface, summed over the nodes
+  double stuck_share = 1.0;                               ///< of the normal force, carried by nodes that stick
 };
 
 /// Numbers the regions of points: two points are in one region exactly if a chain of points leads from one to the other

@@ -12,14 +12,15 @@ namespace touchstone::reference {
 
 /// What one mesh of the refinement sequence gave.
 struct LevelRecord {
-  double element_size_m = 0.0;                ///< under the tool; of adaptive meshes the smallest
-  int unknowns = 0;                           ///< displacement unknowns
-  int newton_iterations = 0;                  ///< all load steps
-  int steps_cut = 0;                          ///< load steps halved on the way
-  double wall_s = 0.0;                        ///< when it was solved, also if it now comes from the store
-  double cpu_s = 0.0;                         ///< the same, of all threads
-  std::vector<double> force_n;                ///< magnitude of the contact force per instant
-  std::vector<double> pressure_peak_pa = {};  ///< largest contact pressure at a node per instant
+  double element_size_m = 0.0;                            ///< under the tool; of adaptive meshes the smallest
+  int unknowns = 0;                                       ///< displacement unknowns
+  int newton_iterations = 0;                              ///< all load steps
+  int steps_cut = 0;                                      ///< load steps halved on the way
+  double wall_s = 0.0;                                    ///< when it was solved, also if it now comes from the store
+  double cpu_s = 0.0;                                     ///< the same, of all threads
+  std::vector<double> force_n;                            ///< magnitude of the contact force per instant
+  std::vector<double> pressure_peak_pa = {};              ///< largest contact pressure at a node per instant
+  std::vector<Eigen::Vector2d> contact_half_axes_m = {};  ///< per instant, see ReferenceInstant
 };
 
 /// How far a sensitivity measured on the coarsest level holds on the finer ones.

@@ -47,6 +47,24 @@ inline double hertz_axis_stress_rr_pa(const Indentation& contact, double poisson
          ((1.0 + poissons_ratio) * (1.0 - z * std::atan(1.0 / z)) - 0.5 / (1.0 + z * z));
 }
 
+/// Semi-axes of Hertz's contact of two surfaces whose curvatures add up to 1 / R' along the long axis and 1 / R'' along
+/// the short one, R' > R'' [m], long one first. Johnson, 4.25-4.28.
+inline std::pair<double, double> hertz_semi_axes_m(double E_star_pa, double R_long_m, double R_short_m,
+                                                   double force_n) {
+  // With k = b / a and complete elliptic integrals of modulus e, e^2 = 1 - k^2: R' / R'' = (E / k^2 - K) / (K - E).
+  double low = 0.0, high = 1.0, k = 0.0, K = 0.0, E = 0.0, e = 0.0;
+  for (int step = 0; step < 60; ++step) {
+    k = 0.5 * (low + high);
+    e = std::sqrt(1.0 - k * k);
+    K = std::comp_ellint_1(e);
+    E = std::comp_ellint_2(e);
+    ((E / (k * k) - K) / (K - E) > R_long_m / R_short_m ? low : high) = k;
+  }
+  const double F1_cubed = 4.0 / (M_PI * e * e) * std::pow(k, 1.5) * std::sqrt((E / (k * k) - K) * (K - E));
+  const double c_m = std::cbrt(0.75 * force_n * std::sqrt(R_long_m * R_short_m) / E_star_pa * F1_cubed);
+  return {c_m / std::sqrt(k), c_m * std::sqrt(k)};
+}
+
 /// Sneddon: the ball itself on a half space in small strain, d = (a/2) ln((R+a)/(R-a)),
 /// F = E* [ (a^2 + R^2)/2 ln((R+a)/(R-a)) - a R ]. I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47-57.
 /// @param a_m  contact radius, below R

@@ -255,6 +255,7 @@ Findings flat(const Effort& effort) {
     const auto answers = on_meshes(problem, meshes, effort, at);
     check(findings, "force, " + at, "N", flat_punch_force_n(E_star_pa(nu), R_m, problem.depth_m), limit_of_table,
           answers, force_of);
+    check(findings, "contact radius, " + at, "m", R_m, limit_of_edge, answers, radius_of);
     check_pressures(findings, at, problem, R_m, answers,
                     [&](double r_m) { return flat_punch_pressure_pa(E_star_pa(nu), R_m, problem.depth_m, r_m); });
     for (Eigen::Index k = 2; k < problem.radii_m.size(); ++k) {

@@ -145,7 +145,7 @@ HalfSpaceAnswer indent_half_space(const HalfSpaceProblem& problem) {
   const reference::Observation seen = body.observe(end.state);
   HalfSpaceAnswer answer;
   answer.force_n = seen.force_n.z();
-  answer.contact_radius_m = seen.contact_radius_m;
+  answer.contact_radius_m = seen.half_axes_m()[0];
   answer.stick_radius_m = problem.friction ? stick_radius_m(body, end.state) : 0.0;
   answer.peak_pressure_pa = axis_pressure_pa(body, end.state, problem.kinematics);
   answer.equilibrium_rel = seen.equilibrium_rel;

@@ -27,7 +27,8 @@ void print(const Result& answer, const Result& truth, const std::vector<double>&
   const std::vector<bool> deep = deep_instants(answer.instants);
   double force_error_rel = 0.0, last_rel = 0.0, last_band_rel = 0.0, squared_error = 0.0, squared_norm = 0.0,
          cpu_s = 0.0;
-  int instants = 0, held = 0, points = 0, points_held = 0;
+  int instants = 0, held = 0, points = 0, points_held = 0, axes_held = 0;
+  double axis_error_rel = 0.0, axis_band_rel = 0.0;
   for (const LevelRecord& level : answer.levels) cpu_s += level.cpu_s;
   const Eigen::VectorXd area = areas_or_ones(area_m2, answer.instants[0].displacement_m.cols());
   for (std::size_t i = 0; i < answer.instants.size(); ++i) {
@@ -44,14 +45,23 @@ void print(const Result& answer, const Result& truth, const std::vector<double>&
     force_error_rel = std::max(force_error_rel, error_n / force_n);
     last_rel = error_n / force_n;
     last_band_rel = one.force_uncertainty_n / force_n;
+    for (int axis = 0; axis < 2; ++axis) {
+      const double half_m = truth.instants[i].contact_half_axes_m[axis];
+      const double axis_error_m = std::abs(one.contact_half_axes_m[axis] - half_m);
+      axis_error_rel = std::max(axis_error_rel, axis_error_m / half_m);
+      axis_band_rel = std::max(axis_band_rel, one.contact_half_axes_uncertainty_m[axis] / half_m);
+      axes_held += axis_error_m <= one.contact_half_axes_uncertainty_m[axis] ? 1 : 0;
+    }
     points += static_cast<int>(error_m.size());
     points_held += static_cast<int>((error_m.array() <= one.displacement_uncertainty_m.array() + 1e-9).count());
   }
-  std::printf("%zu meshes | %6d | %7.1f | %.4f | %.4f | %d/%d | %.4f | %.4f | %.4f | %.4f | %.1f\n",
-              answer.levels.size(), answer.levels.back().unknowns, cpu_s, 100.0 * force_error_rel,
-              100.0 * answer.force_uncertainty_rel.value_or(NAN), held, instants, 100.0 * last_rel,
-              100.0 * last_band_rel, 100.0 * std::sqrt(squared_error / squared_norm),
-              100.0 * answer.shape_uncertainty_rel.value_or(NAN), 100.0 * points_held / points);
+  std::printf(
+      "%zu meshes | %6d | %7.1f | %.4f | %.4f | %d/%d | %.4f | %.4f | %.4f | %.4f | %.1f | "
+      "%.4f | %.4f | %d/%d\n",
+      answer.levels.size(), answer.levels.back().unknowns, cpu_s, 100.0 * force_error_rel,
+      100.0 * answer.force_uncertainty_rel.value_or(NAN), held, instants, 100.0 * last_rel, 100.0 * last_band_rel,
+      100.0 * std::sqrt(squared_error / squared_norm), 100.0 * answer.shape_uncertainty_rel.value_or(NAN),
+      100.0 * points_held / points, 100.0 * axis_error_rel, 100.0 * axis_band_rel, axes_held, 2 * instants);
   std::fflush(stdout);
 }
 
@@ -77,7 +87,8 @@ int measure(int count, char** arguments) {
               100.0 * truth.force_uncertainty_rel.value_or(NAN), 100.0 * truth.shape_uncertainty_rel.value_or(NAN));
   std::printf(
       "meshes | unknowns | processor time [s] | largest force error [%%] | uncertainty [%%] | instants held | "
-      "at the last instant: error [%%] | uncertainty [%%] | shape error [%%] | uncertainty [%%] | points held [%%]\n");
+      "at the last instant: error [%%] | uncertainty [%%] | shape error [%%] | uncertainty [%%] | points held [%%] | "
+      "largest error of a half axis [%%] | uncertainty [%%] | half axes held\n");
   for (int levels = std::atoi(arguments[3]); levels <= std::atoi(arguments[4]); ++levels) {
     print(solved(scene, levels), truth, surface.vertex_area_m2);
   }

@@ -99,6 +99,8 @@ Sides pressed(int instants, int triangles) {
       for (Eigen::Index i = 0; i < points; ++i) {
         reference.displacement_uncertainty_m[i] = 0.01 * reference.displacement_m.col(i).norm() + 1e-7;
       }
+      reference.contact_half_axes_m.setConstant(std::sqrt(sides.scene.tool.radius_m * d));
+      reference.contact_half_axes_uncertainty_m = 0.02 * reference.contact_half_axes_m;
       reference.residual_penetration_m = 2e-5 * d;
       reference.between_nodes_penetration_m = 4e-3 * d;
       reference.equilibrium_rel = 3e-11;

@@ -20,6 +20,20 @@ TEST(ClosedForms, HertzPeakPressureOfSsnv104) {
   EXPECT_NEAR(hertz_peak_pressure_pa(contact), 2798.3e6, 0.1e6);
 }
 
+TEST(ClosedForms, HertzsEllipse) {
+  // Timoshenko and Goodier, Theory of Elasticity, 125: for theta = 60 degrees, (1/R'' - 1/R') / (1/R'' + 1/R') = cos
+  // theta, the semi-axes are 1.486 and 0.717 of the cube root of 3 F / (2 E* (1/R' + 1/R'')).
+  const auto [long_m, short_m] = hertz_semi_axes_m(2.0, 3.0, 1.0, 5.0);
+  const double root_m = std::cbrt(3.0 * 5.0 / (2.0 * 2.0 * (1.0 / 3.0 + 1.0)));
+  EXPECT_NEAR(long_m / root_m, 1.486, 1e-3);
+  EXPECT_NEAR(short_m / root_m, 0.717, 1e-3);
+  // Of equal curvatures the circle.
+  const Indentation round = hertz(2.0, 3.0, 0.1);
+  const auto [a_m, b_m] = hertz_semi_axes_m(2.0, 3.001, 2.999, round.force_n);
+  EXPECT_NEAR(a_m, round.contact_radius_m, 1e-3 * round.contact_radius_m);
+  EXPECT_NEAR(b_m, round.contact_radius_m, 1e-3 * round.contact_radius_m);
+}
+
 TEST(ClosedForms, ThickSpherePressure) {
   for (const auto& [stretch, expected] : {std::pair{1.25, .551869}, {1.5, .755433}, {2.0, .806927}}) {
     EXPECT_NEAR(thick_sphere_pressure_pa(1.0, 1.0, 2.0, stretch), expected, 1e-6);

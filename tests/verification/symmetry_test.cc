@@ -33,8 +33,10 @@ TEST(Symmetry, QuarterHalfAndFullAgree) {
     EXPECT_NEAR(reduced.force_n.z() / full.force_n.z(), 1.0, 1e-7);
     EXPECT_NEAR(reduced.support_force_n.z() / full.support_force_n.z(), 1.0, 1e-7);
     EXPECT_NEAR(reduced.area_m2 / full.area_m2, 1.0, 1e-6);
+    EXPECT_LT((reduced.half_axes_m() - full.half_axes_m()).norm(), 1e-6 * full.half_axes_m()[0]);
     EXPECT_LT((reduced.torque_nm - full.torque_nm).norm(), 1e-9);
   }
+  EXPECT_NEAR(full.half_axes_m()[1] / full.half_axes_m()[0], 1.0, 1e-6);
   EXPECT_LT(std::hypot(full.force_n.x(), full.force_n.y()), 1e-6);
 }
 

@@ -98,6 +98,34 @@ class UncertaintyBand : public testing::Test {
     }
   }
 
+  /// A cylinder as wide and as high as that, whose top stands for a half space, in small strain.
+  void half_space(double L_m, double poissons_ratio) {
+    scene_.body.shape = scene::BodyShape::revolution;
+    scene_.body.profile = {{{0.0, 0.0}, {L_m, 0.0}, {L_m, L_m}, {0.0, L_m}}, {}};
+    scene_.body.material.poissons_ratio = poissons_ratio;
+    scene_.reference.kinematics = scene::Kinematics::small;
+    scene_.reference.levels = 3;
+  }
+  /// From a depth above the surface to a depth below it; the tool's centre is tip_m above its lowest point.
+  void press(double height_m, double tip_m, double depth_m, int instants) {
+    scene_.track = {{0.0, {{0.0, 0.0, height_m + tip_m + depth_m}, Eigen::Quaterniond::Identity()}},
+                    {1.0, {{0.0, 0.0, height_m + tip_m - depth_m}, Eigen::Quaterniond::Identity()}}};
+    scene_.compare.instants = instants;
+    points_m_ = Eigen::Vector3d(0.0, 0.0, height_m);
+  }
+
+  static void expect_half_axes(const scene::ReferenceInstant& instant, const Eigen::Vector2d& exact_m,
+                               double widest_rel) {
+    const Eigen::Vector2d &seen_m = instant.contact_half_axes_m, &band_m = instant.contact_half_axes_uncertainty_m;
+    for (int axis = 0; axis < 2; ++axis) {
+      EXPECT_LE(std::abs(seen_m[axis] - exact_m[axis]), band_m[axis])
+          << "depth " << instant.depth_m << ", axis " << axis;
+      EXPECT_LT(band_m[axis], widest_rel * exact_m[axis]) << "depth " << instant.depth_m << ", axis " << axis;
+      std::printf("depth %.3g m, half axis %.6g m: error %+.3f %%, uncertainty %.3f %%\n", instant.depth_m,
+                  exact_m[axis], 100.0 * (seen_m[axis] / exact_m[axis] - 1.0), 100.0 * band_m[axis] / exact_m[axis]);
+    }
+  }
+
   std::filesystem::path root_;
   scene::Scene scene_;
   Eigen::Matrix3Xd points_m_;
@@ -180,17 +208,11 @@ TEST_F(UncertaintyBand, HoldsTheClosedFormOfTheStressBelowAContact) {
   scene_.body.material = {3e6, 0.3};
   const verification::Indentation exact = verification::hertz(scene_.body.material.contact_modulus_pa(), R_m, depth_m);
   const double a_m = exact.contact_radius_m, L_m = 3000.0 * a_m, peak_pa = verification::hertz_peak_pressure_pa(exact);
-  scene_.body.shape = scene::BodyShape::revolution;
-  scene_.body.profile = {{{0.0, 0.0}, {L_m, 0.0}, {L_m, L_m}, {0.0, L_m}}, {}};
-  scene_.reference.kinematics = scene::Kinematics::small;
-  scene_.reference.levels = 3;
-  scene_.track = {{0.0, {{0.0, 0.0, L_m + R_m + depth_m}, Eigen::Quaterniond::Identity()}},
-                  {1.0, {{0.0, 0.0, L_m + R_m - depth_m}, Eigen::Quaterniond::Identity()}}};
-  scene_.compare.instants = 2;
+  half_space(L_m, 0.3);
+  press(L_m, R_m, depth_m, 2);
   for (const double below : {0.2, 0.5, 1.0, 1.5, 3.0}) {
     scene_.probes.push_back({std::to_string(below), {0.0, 0.0, L_m - below * a_m}});
   }
-  points_m_ = Eigen::Vector3d(0.0, 0.0, L_m);
   const Result result = solve(scene_, points_m_, {root_ / "hertz", {}, nullptr});
   const ProbeInstant reported = inside(scene_, result, root_ / "hertz")->probes().back();
   for (Eigen::Index k = 0; k < reported.values.stress_pa.cols(); ++k) {
@@ -204,6 +226,51 @@ TEST_F(UncertaintyBand, HoldsTheClosedFormOfTheStressBelowAContact) {
     std::printf("z/a = %g: errors %+.3f %% and %+.3f %% of the largest pressure, uncertainty %.3f %%\n", z_m / a_m,
                 100.0 * zz_pa / peak_pa, 100.0 * rr_pa / peak_pa, 100.0 * band_pa / peak_pa);
   }
+}
+
+TEST_F(UncertaintyBand, HoldsTheRadiusOfHertzsContact) {
+  const double depth_m = 2e-6, R_m = scene_.tool.radius_m, L_m = 3000.0 * std::sqrt(R_m * depth_m);
+  for (const double poissons_ratio : {0.0, 0.5}) {
+    half_space(L_m, poissons_ratio);
+    press(L_m, R_m, depth_m, 4);
+    const Result result = solve(scene_, points_m_, {root_ / "hertz-radius", {}, nullptr});
+    for (const std::size_t instant : {2, 3}) {
+      const double a_m = std::sqrt(R_m * depth_m * (instant == 2 ? 1.0 / 3.0 : 1.0));
+      expect_half_axes(result.instants[instant], {a_m, a_m}, 0.05);
+    }
+    EXPECT_EQ(result.instants[0].contact_half_axes_m, Eigen::Vector2d::Zero());
+  }
+}
+
+/// The contact's edge lies on the fillet: with a sharp rim it would be at the rim.
+TEST_F(UncertaintyBand, HoldsTheRadiusUnderAFlatPunch) {
+  const double R_m = 0.001, e_m = 0.25 * R_m, a_m = 0.92 * R_m, L_m = 3000.0 * R_m;
+  scene_.tool.shape = scene::ToolShape::cylinder;
+  scene_.tool.radius_m = R_m;
+  scene_.tool.length_m = 0.004;
+  scene_.tool.edge_radius_m = e_m;
+  half_space(L_m, 0.3);
+  press(L_m, 0.002, verification::rounded_punch(scene_.body.material.contact_modulus_pa(), R_m - e_m, e_m, a_m).depth_m,
+        2);
+  const Result result = solve(scene_, points_m_, {root_ / "punch-radius", {}, nullptr});
+  expect_half_axes(result.instants.back(), {a_m, a_m}, 0.05);
+}
+
+/// Hertz's ellipse for the force that the reference finds itself: the body is no half space.
+TEST_F(UncertaintyBand, HoldsTheHalfAxesOfAnEllipse) {
+  scene_.body.shape = scene::BodyShape::ellipsoid;
+  scene_.body.semi_axes_m = {0.06, 0.02, 0.03};
+  scene_.tool.radius_m = 0.05;
+  scene_.reference.kinematics = scene::Kinematics::small;
+  scene_.reference.levels = 3;
+  press(0.06, 0.05, 2e-5, 2);  // the ellipsoid stands on z = 0
+  const Result result = solve(scene_, points_m_, {root_ / "ellipse", {}, nullptr});
+  EXPECT_EQ(result.model, "quarter 3D u-p small strain");
+  const auto [long_m, short_m] =
+      verification::hertz_semi_axes_m(scene_.body.material.contact_modulus_pa(), 1.0 / (1.0 / 0.05 + 0.03 / 0.0036),
+                                      1.0 / (1.0 / 0.05 + 0.03 / 0.0004), result.instants.back().force_n().z());
+  EXPECT_GT(long_m, 2.0 * short_m);
+  expect_half_axes(result.instants.back(), {long_m, short_m}, 0.07);  // four cells to the short one
 }
 
 TEST_F(UncertaintyBand, HoldsTheErrorInSpace) {

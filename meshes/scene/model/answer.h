@@ -62,10 +62,14 @@ struct ReferenceInstant : InstantRecord {
   Eigen::VectorXd displacement_uncertainty_m;  ///< the same per rest point
   Eigen::VectorXd traction_uncertainty_pa;     ///< the same
   double pressure_peak_uncertainty_pa = 0.0;   ///< conservative half width; NaN where unknown
-  double residual_penetration_m = 0.0;         ///< largest over contact nodes
-  double between_nodes_penetration_m = 0.0;    ///< largest over face quadrature points
-  double equilibrium_rel = 0.0;                ///< |contact + support| / |contact|
-  double volume_change_rel = 0.0;              ///< of the body
+  /// Long and short, of the region that pushes most: those of the ellipse that has its area's second moments, seen
+  /// along the normal force. A round contact has its radius twice.
+  Eigen::Vector2d contact_half_axes_m = Eigen::Vector2d::Zero();
+  Eigen::Vector2d contact_half_axes_uncertainty_m = Eigen::Vector2d::Zero();  ///< half widths; NaN where unknown
+  double residual_penetration_m = 0.0;                                        ///< largest over contact nodes
+  double between_nodes_penetration_m = 0.0;                                   ///< largest over face quadrature points
+  double equilibrium_rel = 0.0;                                               ///< |contact + support| / |contact|
+  double volume_change_rel = 0.0;                                             ///< of the body
 };
 
 /// The records of an answer in order, whatever else an answer holds beside each. Refers to the list it is made from.

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -151,6 +152,30 @@ TEST(Errors, TractionsAreComparedWhereBothSidesGiveThem) {
   EXPECT_NEAR(*e.contact_pressure_rel_l2.uncertainty, std::sqrt(2.0 * 25.0 / scale), 1e-13);
   EXPECT_NEAR(*e.contact_pressure_peak_rel.value, -0.1, 1e-13);
   EXPECT_NEAR(*e.contact_pressure_peak_rel.uncertainty, 0.03, 1e-13);
+}
+
+/// The largest over the instants where the contact is deep; both axes from one instant.
+TEST(Errors, HalfAxesOfTheReference) {
+  Sides sides = with_forces();
+  sides.result.instants[0].contact_half_axes_m = {5e-3, 1.5e-3};
+  sides.result.instants[1].contact_half_axes_m = {4e-3, 1e-3};
+  sides.result.instants[1].contact_half_axes_uncertainty_m = {1e-4, NAN};
+  const scene::Figures figures = reference_figures(sides.result, errors_of(sides).reference);
+  const auto value = [&](const std::string& key) {
+    return std::ranges::find(figures, "reference.contact_" + key, &scene::Figure::key)->number;
+  };
+  EXPECT_EQ(value("long_half_axis_m"), 4e-3);
+  EXPECT_NEAR(value("long_half_axis_uncertainty_rel"), 0.025, 1e-15);
+  EXPECT_EQ(value("short_half_axis_m"), 1e-3);
+  EXPECT_TRUE(std::isnan(value("short_half_axis_uncertainty_rel")));
+  const std::vector<scene::Column> columns = reference_quality_columns(sides.result, "");
+  const auto column = [&](const std::string& name) {
+    return std::ranges::find(columns, "contact_" + name, &scene::Column::name)->values;
+  };
+  EXPECT_EQ(column("long_half_axis_m"), (std::vector{5e-3, 4e-3}));
+  EXPECT_EQ(column("short_half_axis_m"), (std::vector{1.5e-3, 1e-3}));
+  EXPECT_EQ(column("long_half_axis_uncertainty_m"), (std::vector{0.0, 1e-4}));
+  EXPECT_TRUE(std::isnan(column("short_half_axis_uncertainty_m")[1]));
 }
 
 TEST(Errors, EqualSidesHaveNone) {

@@ -37,9 +37,9 @@ TEST(PlotFiles, EveryPlotOfTheReportIsSavedWhenAsked) {
       EXPECT_TRUE(text.starts_with("%PDF-")) << entry.path();
     }
   }
-  EXPECT_EQ(svg,
-            (std::set<std::string>{"bodies", "force-error", "force-logarithmic", "force-over-depth", "force-over-time",
-                                   "section", "section-contact", "shape-error", "shape-largest-error", "traction"}));
+  EXPECT_EQ(svg, (std::set<std::string>{"bodies", "contact-size", "force-error", "force-logarithmic",
+                                        "force-over-depth", "force-over-time", "section", "section-contact",
+                                        "shape-error", "shape-largest-error", "traction"}));
   EXPECT_EQ(pdf, has_pdf() ? svg : std::set<std::string>{});
 }
 
