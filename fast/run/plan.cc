@@ -126,10 +126,11 @@ std::string checked_text(const scene::Scene& scene, const std::vector<scene::Too
           ? "flat faces"
           : fmt::format("faces with radii of curvature from {:.2g} times the tip's", 1.0 / checked.curvature_rel);
   std::string text = fmt::format(
-      "with this Poisson's ratio{} compared with the reference for {}, depths up to {} of the tip's radius, contacts "
-      "of a radius up to {} of the body's size, {} contact radii and more from an edge",
-      scene.contact.friction ? " and friction" : "", bodies, checked.depth_over_radius, checked.size_rel,
-      checked.edge_over_radius);
+      "with this Poisson's ratio{} compared with the reference for {}, depths up to {} of the tip's radius{}, "
+      "contacts of a radius up to {} of the body's size, {} contact radii and more from an edge",
+      scene.contact.friction ? " and friction" : "", bodies, checked.depth_over_radius,
+      checked.curvature_rel < 0.01 ? "" : fmt::format(" and {} of those radii", checked.depth_curvature),
+      checked.size_rel, checked.edge_over_radius);
   if (tips.size() > 1 && std::isfinite(checked.apart_over_radii)) {
     text += fmt::format(", {} times the radii and more apart", checked.apart_over_radii);
   }
