@@ -23,7 +23,7 @@ CheckedRange checked_range(const scene::Scene& scene) {
                                                    .edge_over_radius = 2.4,
                                                    .apart_over_radii = infinite,
                                                    .curvature_rel = flat,
-                                                   .depth_curvature = flat};
+                                                   .depth_curvature = 0.27};
   if (scene.contact.friction) out.curvature_rel = flat;
   const std::vector<scene::ToolTip> tips = scene::tool_tips(scene).tips;
   const bool balls = std::all_of(tips.begin(), tips.end(), [](const auto& tip) { return tip.ball() && !tip.line(); });

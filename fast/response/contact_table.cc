@@ -278,12 +278,14 @@ double ContactTable::pressure_per_m2(double indentation_m, double across_m, doub
 }
 
 double ContactTable::largest_pressure_per_m2(double indentation_m) const noexcept {
-  constexpr int steps = 100;
+  constexpr int steps = 200;
+  const double a_m = at(indentation_m).radius_m;
   double largest = 0.0;
   for (int k = 0; k < steps; ++k) {
     const double share = (k + 0.5) / steps;
+    // Under a disc close together towards the edge.
     largest = std::max(largest, rim_.empty() ? pressure_per_m2(indentation_m, 0.0, share * (line_m_ + radius_m_))
-                                             : pressure_per_m2(indentation_m, share * rim_.back().t_m, 0.0));
+                                             : pressure_per_m2(indentation_m, a_m * share * (2.0 - share), 0.0));
   }
   return largest;
 }
