@@ -11,6 +11,7 @@
 #include "compare/app/view_verb.h"
 #include "compare/model/engine_model.h"
 #include "compare/report/live_report.h"
+#include "compare/solve/reference_run.h"
 #include "fast/app/completion.h"
 #include "fast/app/new_verb.h"
 #include "fast/command/command_line.h"
@@ -95,6 +96,7 @@ int main(int argc, char** argv) {
       // OpenBLAS threads may wait for memory for ever, and an ordinary exit waits for these threads.
       std::_Exit(fast::not_converged);
     }
-    return run_program(argc, argv);
+    // Any command may have to compute a body's response.
+    return compare::with_reference_exits([&] { return run_program(argc, argv); });
   });
 }

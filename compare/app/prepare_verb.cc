@@ -1,8 +1,8 @@
 #include "compare/app/prepare_verb.h"
 
+#include "compare/model/engine_model.h"
 #include "fast/command/exit_code.h"
 #include "fast/command/progress_line.h"
-#include "reference/response/prepare.h"
 
 #include <fmt/format.h>
 
@@ -13,11 +13,9 @@ namespace {
 
 int run(const fast::VerbOptions& options, const ReferenceOptions& reference) {
   const scene::Scene scene = options.load();
-  const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
   fast::ProgressLine line(options.quiet);
-  const reference::Prepared prepared = reference::prepare_response(
-      scene, surface, reference.store, {},
-      [&](double share) { line.show(fmt::format("columns of the body's response: {:.0f} %", 100.0 * share)); });
+  const reference::Prepared prepared =
+      prepare(scene, reference.store, [&](const std::string& text, bool marked) { line.show(text, marked); });
   line.finish();
   std::cout << fmt::format(
       "{} columns, {} rest points, {} unknowns, {}\nResponse: {} ({:.3g} MB)\n", prepared.response.own_m_per_n.cols(),

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,19 @@ class StopSignals {
 
   /// Whether one came since the last object was made. Any thread.
   [[nodiscard]] static const std::atomic<bool>& asked() noexcept;
+
+ private:
+  std::vector<std::pair<int, struct sigaction>> before_;
+};
+
+/// While it exists, Ctrl-C, SIGTERM and SIGHUP end the process at once with a sentence on stderr: for work that cannot
+/// look at a flag and has nothing to keep.
+class EndSignals {
+ public:
+  explicit EndSignals(const std::string& sentence);
+  ~EndSignals();
+  EndSignals(const EndSignals&) = delete;
+  EndSignals& operator=(const EndSignals&) = delete;
 
  private:
   std::vector<std::pair<int, struct sigaction>> before_;

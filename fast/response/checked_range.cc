@@ -16,12 +16,14 @@ CheckedRange checked_range(const scene::Scene& scene) {
                                                    .size_rel = 0.24,
                                                    .edge_over_radius = 1.6,
                                                    .apart_over_radii = 6.0,
-                                                   .curvature_rel = 0.67}
+                                                   .curvature_rel = 0.67,
+                                                   .depth_curvature = 0.27}
                                     : CheckedRange{.depth_over_radius = 0.7,
                                                    .size_rel = 0.22,
                                                    .edge_over_radius = 2.4,
                                                    .apart_over_radii = infinite,
-                                                   .curvature_rel = flat};
+                                                   .curvature_rel = flat,
+                                                   .depth_curvature = 0.27};
   if (scene.contact.friction) out.curvature_rel = flat;
   const std::vector<scene::ToolTip> tips = scene::tool_tips(scene).tips;
   const bool balls = std::all_of(tips.begin(), tips.end(), [](const auto& tip) { return tip.ball() && !tip.line(); });
@@ -32,7 +34,10 @@ CheckedRange checked_range(const scene::Scene& scene) {
 
 StepStatus beyond(const CheckedRange& checked, const ContactRange& range) noexcept {
   StepStatus status = checked.scene;
-  if (range.depth_over_radius > checked.depth_over_radius) status |= StepStatus::depth_unchecked;
+  if (range.depth_over_radius > checked.depth_over_radius ||
+      range.depth_over_radius * range.curvature_rel > checked.depth_curvature) {
+    status |= StepStatus::depth_unchecked;
+  }
   if (range.size_rel > checked.size_rel) status |= StepStatus::size_unchecked;
   if (range.edge_over_radius < checked.edge_over_radius) status |= StepStatus::edge_unchecked;
   if (range.apart_over_radii < checked.apart_over_radii) status |= StepStatus::regions_unchecked;

@@ -13,6 +13,7 @@ struct CheckedRange {
   double edge_over_radius = 0.0;      ///< distance of p0 to an edge over the contact's radius, at least
   double apart_over_radii = 0.0;      ///< of two contacts' places over the sum of their radii, at least
   double curvature_rel = 0.0;         ///< the body's largest curvature times the tip's radius, at most
+  double depth_curvature = 0.0;       ///< the depth times the body's largest curvature, at most
   StepStatus scene = StepStatus::ok;  ///< what holds for every contact of the scene
 };
 

@@ -140,6 +140,10 @@ ContactTable::ContactTable(const scene::ToolTip& tip, const LocalShape& local, d
     below_m4 += 0.5 * (D_m * a_m * a_m + last.D_m * last.a_m * last.a_m) * (a_m - last.a_m);
     curve.push_back({a_m, D_m, a_m * D_m - below_m2, a_m * a_m * a_m * D_m / 3.0 - below_m4});
   }
+  if (!tip.ball()) {
+    constexpr std::size_t every = 10;
+    for (std::size_t k = 0; k < curve.size(); k += every) rim_.push_back({curve[k].a_m, curve[k].D_m});
+  }
   largest_m_ = std::max(curve.back().D_m, 2.0 * tip.reach_m());
   step_ = std::sqrt(largest_m_) / (nodes - 1);
   std::size_t k = 0;
@@ -179,7 +183,8 @@ ContactTable::ContactTable(const scene::ToolTip& tip, const LocalShape& local, d
 
 void ContactTable::tabulate_line(const scene::ToolTip& tip, double E_star_pa, const FiniteStrain& strain) {
   const double R = tip.radius_m, half_m = tip.half_line_T_m.norm();
-  largest_m_ = R;
+  largest_m_ = radius_m_ = R;
+  line_m_ = half_m;
   step_ = std::sqrt(largest_m_) / (line_nodes - 1);
   nodes_.emplace_back().half_line_m = half_m;
   for (int i = 1; i < line_nodes; ++i) {
@@ -192,6 +197,7 @@ void ContactTable::tabulate_line(const scene::ToolTip& tip, double E_star_pa, co
                              2.0 * half_m * (R * R * std::acos(1.0 - D_m / R) - (R - D_m) * wide_m);
     const double x = volume_m3 / (area_m2 * std::sqrt(area_m2 / std::numbers::pi));
     const double length2_m2 = std::max(3.0 * (line.along2_m2 - line.across2_m2), 0.0);
+    pressure_rel_.insert(pressure_rel_.end(), line.pressure_rel.begin(), line.pressure_rel.end());
     Node& node = nodes_.emplace_back();
     node.force_n = line.force_n * strain.factor(x);
     node.radius_m = line.half_width_m;
@@ -228,6 +234,60 @@ LocalContact ContactTable::at(double indentation_m) const noexcept {
   out.patch_radius_m = low.patch_radius_m + t * (high.patch_radius_m - low.patch_radius_m);
   out.half_line_m = low.half_line_m + t * (high.half_line_m - low.half_line_m);
   return out;
+}
+
+double ContactTable::disc_pressure_per_m2(double indentation_m, double r_m) const noexcept {
+  const double D_m = indentation_m;
+  double integral = 0.0, sum_m2 = D_m * rim_.front().t_m,
+         a_m = rim_.front().t_m;  // int dD / sqrt(t^2 - r^2); int_0^a (D - D(t)) dt
+  const auto upper = [&](double t_m) { return t_m + std::sqrt(std::max(t_m * t_m - r_m * r_m, 0.0)); };
+  for (std::size_t k = 0; k + 1 < rim_.size() && rim_[k].D_m < D_m; ++k) {
+    const auto [low_m, low_D_m] = rim_[k];
+    const double slope = (rim_[k + 1].D_m - low_D_m) / (rim_[k + 1].t_m - low_m);
+    a_m = std::min(rim_[k + 1].t_m, low_m + (D_m - low_D_m) / slope);
+    sum_m2 += (D_m - low_D_m - 0.5 * slope * (a_m - low_m)) * (a_m - low_m);
+    if (a_m > r_m) integral += slope * std::log(upper(a_m) / upper(std::max(low_m, r_m)));
+  }
+  // Deeper than the rim is high it is a punch.
+  if (D_m > rim_.back().D_m && r_m < a_m) integral += (D_m - rim_.back().D_m) / std::sqrt(a_m * a_m - r_m * r_m);
+  return integral / (2.0 * std::numbers::pi * sum_m2);
+}
+
+double ContactTable::pressure_per_m2(double indentation_m, double across_m, double along_m) const noexcept {
+  if (!(indentation_m > 0.0)) return 0.0;
+  if (!rim_.empty()) return disc_pressure_per_m2(indentation_m, across_m);
+  constexpr int across = line_cells_across, along = line_cells_along;
+  const double D_m = std::min(indentation_m, largest_m_);
+  // In cells of the overlap at rest of this depth, from the middle of the first.
+  const double wide_m = std::sqrt(D_m * (2.0 * radius_m_ - D_m)), long_m = line_m_ + wide_m;
+  const double x = std::max(std::abs(across_m) / wide_m * across - 0.5, 0.0);
+  const double y = std::max(std::abs(along_m) / long_m * along - 0.5, 0.0);
+  if (!(x < across && y < along)) return 0.0;
+  const int i = static_cast<int>(x), j = static_cast<int>(y);
+  const double u = x - i, v = y - j;
+  const auto [node, share] = place(std::sqrt(D_m));
+  const auto at_node = [&](std::size_t n) {
+    const float* const cells = pressure_rel_.data() + (std::max<std::size_t>(n, 1) - 1) * across * along;
+    const auto cell = [&](int p, int q) {
+      return p < across && q < along ? static_cast<double>(cells[p * along + q]) : 0.0;
+    };
+    return (1.0 - u) * ((1.0 - v) * cell(i, j) + v * cell(i, j + 1)) +
+           u * ((1.0 - v) * cell(i + 1, j) + v * cell(i + 1, j + 1));
+  };
+  return (at_node(node) + share * (at_node(node + 1) - at_node(node))) / (4.0 * wide_m * long_m);
+}
+
+double ContactTable::largest_pressure_per_m2(double indentation_m) const noexcept {
+  constexpr int steps = 200;
+  const double a_m = at(indentation_m).radius_m;
+  double largest = 0.0;
+  for (int k = 0; k < steps; ++k) {
+    const double share = (k + 0.5) / steps;
+    // Under a disc close together towards the edge.
+    largest = std::max(largest, rim_.empty() ? pressure_per_m2(indentation_m, 0.0, share * (line_m_ + radius_m_))
+                                             : pressure_per_m2(indentation_m, a_m * share * (2.0 - share), 0.0));
+  }
+  return largest;
 }
 
 double ContactTable::energy_j(double indentation_m) const noexcept {

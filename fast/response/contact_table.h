@@ -54,8 +54,17 @@ class ContactTable {
   /// int_0^indentation F [J].
   [[nodiscard]] double energy_j(double indentation_m) const noexcept;
 
+  /// Pressure on the half space per newton of the contact's force, under a disc or a line [1/m^2]; not kept for a ball.
+  /// With D(t) as above, p = E*/pi int_r^a D'(t) / sqrt(t^2 - r^2) dt under a disc.
+  /// @param across_m  from the disc's axis, from the line; @param along_m  the line from its middle; 0 for a disc
+  [[nodiscard]] double pressure_per_m2(double indentation_m, double across_m, double along_m) const noexcept;
+  /// The largest of the contact.
+  [[nodiscard]] double largest_pressure_per_m2(double indentation_m) const noexcept;
+
   [[nodiscard]] double largest_indentation_m() const noexcept { return largest_m_; }
-  [[nodiscard]] std::size_t memory_bytes() const noexcept { return nodes_.size() * sizeof(Node); }
+  [[nodiscard]] std::size_t memory_bytes() const noexcept {
+    return nodes_.size() * sizeof(Node) + rim_.size() * sizeof(Rim) + pressure_rel_.size() * sizeof(float);
+  }
 
  private:
   /// At even steps of s = sqrt(indentation), in which force and radius are smooth.
@@ -74,8 +83,18 @@ class ContactTable {
   /// Up to share t of the way from node i to the next.
   [[nodiscard]] double energy_j(std::size_t i, double t) const noexcept;
 
+  [[nodiscard]] double disc_pressure_per_m2(double indentation_m, double r_m) const noexcept;
+
+  /// D(t) from the edge of a disc's flat part on, in straight lines.
+  struct Rim {
+    double t_m, D_m;
+  };
+
   std::vector<Node> nodes_;
-  double step_ = 0.0;  ///< of s
+  std::vector<Rim> rim_;                  ///< of a disc
+  std::vector<float> pressure_rel_;       ///< of a line: LineContact's at all nodes but the first
+  double radius_m_ = 0.0, line_m_ = 0.0;  ///< of a line: its ball's, and half its length
+  double step_ = 0.0;                     ///< of s
   double largest_m_ = 0.0;
 };
 

@@ -9,8 +9,7 @@
 namespace touchstone::fast {
 namespace {
 
-/// Cells over a quarter of the overlap of the surfaces at rest, which holds the contact.
-constexpr int across = 16, along = 32;
+constexpr int across = line_cells_across, along = line_cells_along;
 
 /// Displacement at (x, y) by unit pressure on a rectangle of these half sides about the origin, times pi E*.
 double love_m(double x_m, double y_m, double half_x_m, double half_y_m) {
@@ -77,6 +76,7 @@ LineContact line_contact(double radius_m, double half_line_m, double indentation
     if (keep && std::abs(share) * way.lpNorm<1>() < 1e-9 * p_pa.sum()) break;
   }
   LineContact out;
+  for (int k = 0; k < across * along; ++k) out.pressure_rel.push_back(static_cast<float>(p_pa[k] / p_pa.mean()));
   double middle = 0.0, middle2_m2 = 0.0;
   for (int k = 0; k < across * along; ++k) {
     const double x_m = (k / along + 0.5) * dx_m, y_m = (k % along + 0.5) * dy_m;

@@ -14,38 +14,47 @@ namespace {
 
 using scene::Vec3;
 
-/// Pressure of a contact along a line: a ball's, swept along it.
-/// @param off_m  from the nearest point of the line
-double line_pressure_pa(const ResponseContact& contact, const Vec3& off_m) {
-  const double b_m = contact.law.radius_m, below_m = off_m.dot(contact.load.normal);
-  const double inside = 1.0 - (off_m.squaredNorm() - below_m * below_m) / (b_m * b_m);
-  if (!(inside > 0.0)) return 0.0;
-  return contact.load.force_n * std::sqrt(inside) /
-         (std::numbers::pi * b_m * contact.law.half_line_m + 2.0 / 3.0 * std::numbers::pi * b_m * b_m);
+/// Of the tables at the grid's points.
+template <class Value>
+double of_tables(const TipLaw& tip, const ResponseContact& contact, const Value& value) {
+  if (tip.tables.size() == 1) return value(tip.tables.front());
+  return contact.weights.sum<double>([&](int k) { return value(tip.tables[static_cast<std::size_t>(k)]); });
+}
+
+/// Pressure of a contact at a point under the tool, along the load.
+/// @param off_m  from the load's centre
+double pressure_pa(const TipLaw& tip, const ResponseContact& contact, const Vec3& off_m) {
+  if (tip.tip.ball() && !tip.tip.line()) return spread_pressure_pa(contact.load, contact.load.center_m + off_m);
+  Vec3 across_m = off_m - off_m.dot(contact.load.normal) * contact.load.normal;
+  double along_m = 0.0;
+  if (tip.tip.line()) {
+    const Vec3 line = contact.half_line_m.normalized();
+    along_m = across_m.dot(line);
+    across_m -= along_m * line;
+  }
+  return contact.load.force_n * of_tables(tip, contact, [&](const ContactTable& table) {
+           return table.pressure_per_m2(contact.indentation_m, across_m.norm(), along_m);
+         });
 }
 
 /// Traction on the body at a point under the tool. Pressure along the tool's normal is force along the load per area
 /// across it, and so is the normal traction on a surface of any slope. Shear is along the tool's surface.
-Vec3 traction_pa(const scene::ToolTip& tip, const ResponseContact& contact, const Vec3& x_m, const Vec3& axis) {
+Vec3 traction_pa(const TipLaw& law, const ResponseContact& contact, const Vec3& x_m, const Vec3& axis) {
+  const scene::ToolTip& tip = law.tip;
+  const double pressure = pressure_pa(law, contact, x_m - contact.stretch_m - contact.load.center_m);
+  if (pressure == 0.0) return Vec3::Zero();
   Vec3 from_axis_m = x_m - contact.at.point_m;
-  double pressure_pa = 0.0;
   if (tip.line()) {
     const Vec3 line = contact.half_line_m.normalized();
-    const double half_m = contact.law.half_line_m;
-    const Vec3 off_m = x_m - contact.load.center_m;
-    pressure_pa = line_pressure_pa(contact, off_m - std::clamp(off_m.dot(line), -half_m, half_m) * line);
     const double reach_m = tip.half_line_T_m.norm();
     from_axis_m -= std::clamp(from_axis_m.dot(line), -reach_m, reach_m) * line;
-  } else {
-    pressure_pa = spread_pressure_pa(contact.load, x_m - contact.stretch_m);
   }
-  if (pressure_pa == 0.0) return Vec3::Zero();
   const Vec3 across_m = from_axis_m - from_axis_m.dot(axis) * axis;
   const double r_m = across_m.norm();
   const double slope = tip.slope(std::min(r_m, 0.99 * tip.reach_m()));
   const Vec3 out = (r_m > 0.0 ? Vec3(axis + slope / r_m * across_m) : axis).normalized();
   const Vec3 shear_pa = spread_shear_pa(contact.load, x_m - contact.stretch_m);
-  return pressure_pa * out + shear_pa - shear_pa.dot(out) * out;
+  return pressure * out + shear_pa - shear_pa.dot(out) * out;
 }
 
 }  // namespace
@@ -88,16 +97,20 @@ scene::InstantRecord ResponseEngine::record(double time_s, const scene::Pose& to
   for (std::size_t k = 0; k < model_.tips.size(); ++k) {
     const ResponseContact& contact = state_.contacts[k];
     if (!contact.touches()) continue;
-    const scene::ToolTip& tip = model_.tips[k].tip;
+    const TipLaw& law = model_.tips[k];
+    const scene::ToolTip& tip = law.tip;
     const Vec3 axis = tip.ball() ? -contact.at.normal : Vec3(tool.orientation * tip.axis_T);
     for (Eigen::Index i = 0; i < record.traction_pa.cols(); ++i) {
       if (model_.surface.normals.col(i).dot(contact.load.normal) <= 0.0) continue;
       const Vec3 x_m = model_.surface.points_m.col(i) + record.displacement_m.col(i);
-      record.traction_pa.col(i) += traction_pa(tip, contact, x_m, axis);
+      record.traction_pa.col(i) += traction_pa(law, contact, x_m, axis);
     }
-    record.pressure_peak_pa =
-        std::max(record.pressure_peak_pa, tip.line() ? line_pressure_pa(contact, Vec3::Zero())
-                                                     : spread_pressure_pa(contact.load, contact.load.center_m));
+    const double peak_pa = tip.ball() && !tip.line()
+                               ? pressure_pa(law, contact, Vec3::Zero())
+                               : contact.load.force_n * of_tables(law, contact, [&](const ContactTable& table) {
+                                   return table.largest_pressure_per_m2(contact.indentation_m);
+                                 });
+    record.pressure_peak_pa = std::max(record.pressure_peak_pa, peak_pa);
     const double radius_m = contact.load.widening * contact.law.radius_m;
     record.regions.push_back({.depth_m = contact.depth_m,
                               .force_n = contact.wrench.force_n,

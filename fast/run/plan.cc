@@ -127,9 +127,11 @@ std::string checked_text(const scene::Scene& scene, StepStatus status) {
   const std::uint32_t beyond = static_cast<std::uint32_t>(status | checked.scene) & unchecked_bits;
   if (beyond != 0) return "THE TRACK GOES BEYOND: " + status_text(beyond);
   return fmt::format(
-      "against the reference: depth to {} of the tip's radius, contact radius to {} of the body's size, "
+      "against the reference: depth to {} of the tip's radius{}, contact radius to {} of the body's size, "
       "{} contact radii from an edge",
-      checked.depth_over_radius, checked.size_rel, checked.edge_over_radius);
+      checked.depth_over_radius,
+      checked.curvature_rel < 0.01 ? "" : fmt::format(" and {} of the body's", checked.depth_curvature),
+      checked.size_rel, checked.edge_over_radius);
 }
 
 /// A plan as it is written.

@@ -23,7 +23,8 @@ std::string status_text(std::uint32_t status) {
   add(StepStatus::tip_exceeded, "the tool was deeper than its tip is high, and the model sees only the tip");
   add(StepStatus::tilted, "a flat tip was tilted, and the model takes it to lie flat");
   add(StepStatus::depth_unchecked,
-      "the tool was deeper, over its tip's radius, than in any contact compared with the reference");
+      "the tool was deeper, over its tip's radius or the body's radius of curvature, than in any contact compared with "
+      "the reference");
   add(StepStatus::size_unchecked,
       "the contact was larger, over the body's size, than any that was compared with the reference");
   add(StepStatus::edge_unchecked,

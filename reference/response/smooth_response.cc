@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace touchstone::reference {
@@ -105,13 +106,15 @@ void add_inclusions(const Discretisation<3>& mesh, int cell, const PointLoad& lo
 
 scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& grid,
                                 const Eigen::Matrix3Xd& rest_points_m, const SmoothResponseOptions& options,
-                                const std::function<void(double)>& progress) {
+                                const std::function<void(const SmoothProgress&)>& progress, FirstColumns first) {
+  using Next = SmoothProgress::Next;
   for (const scene::Inclusion& inclusion : body.inclusions) {
     if (inclusion.material.poissons_ratio == 0.5 && body.material.poissons_ratio != 0.5) {
       throw scene::InputError("an incompressible inclusion in a compressible body has no response of this kind");
     }
   }
   const scene::Material& material = body.material;
+  if (progress) progress({Next::mesh, first});
   ContactProblem<3> problem(mesh_for(body, grid, options.cells), material, scene::Kinematics::small, false, false);
   const Discretisation<3>& mesh = problem.mesh();
   const Vec3 inside_m = mesh.points_m.rowwise().mean();
@@ -138,14 +141,17 @@ scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& 
   }
   const SurfaceSampler<3> sampler(mesh, wanted_m, false, false);
 
-  scene::Response out;
-  out.grid = grid;
-  out.unknowns = problem.unknowns();
+  scene::Response& out = first.response;
   const Eigen::Index columns = options.friction ? 3 * n : n;
-  out.smooth_m_per_n.resize(3 * m, columns);
-  out.own_m_per_n.resize(3, columns);
-  out.tilt_per_n.resize(2, n);
-  for (Eigen::Index column = 0; column < columns; ++column) {
+  if (first.done == 0) {
+    out.grid = grid;
+    out.unknowns = problem.unknowns();
+    out.smooth_m_per_n.setZero(3 * m, columns);
+    out.own_m_per_n.setZero(3, columns);
+    out.tilt_per_n.setZero(2, n);
+  }
+  if (progress) progress({Next::matrix, first});
+  for (Eigen::Index column = first.done; column < columns; ++column) {
     const bool along = column >= n;
     const Eigen::Index k = along ? (column - n) / 2 : column;
     PointLoad load{grid.points_m.col(k), grid.normals.col(k)};
@@ -172,9 +178,10 @@ scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& 
       const double run_m = (wanted_m.col(low + 1) - wanted_m.col(low)).dot(grid.axes.col(axis));
       out.tilt_per_n(axis, k) = rise_m / run_m;
     }
-    if (progress) progress(static_cast<double>(column + 1) / static_cast<double>(columns));
+    first.done = column + 1;
+    if (progress) progress({Next::column, first});
   }
-  return out;
+  return std::move(out);
 }
 
 }  // namespace touchstone::reference

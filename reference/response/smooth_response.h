@@ -20,14 +20,30 @@ struct SmoothResponseOptions {
   bool friction = false;  ///< with loads along the surface
 };
 
+/// A response of which the first columns are computed; the others are zero.
+struct FirstColumns {
+  scene::Response response;
+  Eigen::Index done = 0;
+};
+
+/// What a computation does next.
+struct SmoothProgress {
+  enum class Next { mesh, matrix, column } next;
+  const FirstColumns& first;  ///< so far; without a size before the first column
+};
+
 /// One factorisation and one solve per load.
 /// @param rest_points_m  of the rest surface, 3 x m
-/// @param progress       called now and then with the fraction done; may be empty and may throw to stop
+/// @param progress       called before the mesh, before the factorisation, with which the first column is solved for,
+///                       and after every column; may be empty and may throw to stop
+/// @param first          of an earlier computation with the same arguments, which goes on with the next column to the
+///                       same bits
 /// @throws scene::InputError for an incompressible inclusion in a compressible body and for a body that cannot be
 ///         meshed; std::runtime_error when a load cannot be solved for
 [[nodiscard]] scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& grid,
                                               const Eigen::Matrix3Xd& rest_points_m,
                                               const SmoothResponseOptions& options = {},
-                                              const std::function<void(double)>& progress = {});
+                                              const std::function<void(const SmoothProgress&)>& progress = {},
+                                              FirstColumns first = {});
 
 }  // namespace touchstone::reference

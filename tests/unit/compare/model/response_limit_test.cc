@@ -1,16 +1,21 @@
-// As the depth goes to zero the response model is the body's linear finite-element answer.
+// As the depth goes to zero the response model is the body's linear finite-element answer; and what computing the
+// body's response says.
 #include "compare/errors/compute_errors.h"
 #include "compare/model/engine_model.h"
 #include "compare/model/response_model.h"
 #include "fast/run/run.h"
+#include "reference/run/options.h"
 #include "reference/solver.h"
 #include "scene/input/scene_io.h"
 #include "support/source_folder.h"
 #include "support/temporary_folder.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
+
+#include <csignal>
 
 namespace touchstone::compare {
 namespace {
@@ -38,6 +43,33 @@ TEST_P(ResponseLimit, AsTheDepthGoesToZeroItIsTheLinearAnswer) {
 
 INSTANTIATE_TEST_SUITE_P(PoissonsRatios, ResponseLimit, ::testing::Values(0.0, 0.5));
 INSTANTIATE_TEST_SUITE_P(PoissonsRatioBetween, ResponseLimit, ::testing::Values(0.3));
+
+TEST(Prepare, SaysWhatItDoesAndAfterASignalGoesOnWithItsColumns) {
+  using ::testing::ContainsRegex;
+  using ::testing::ElementsAre;
+  using ::testing::HasSubstr;
+  using ::testing::IsEmpty;
+  const testing::TemporaryFolder folder;
+  const scene::Scene scene =
+      scene::load_scene(source_folder() + "/meshes/scenes/ball-on-cube-press.toml", {"fast.triangles=200"});
+  std::vector<std::string> lines;
+  const auto prepare_and_stop = [&](const std::string& at) {
+    lines.clear();
+    return prepare(scene, folder.path(), [&](const std::string& line, bool marked) {
+      if (marked) lines.push_back(line);
+      if (!at.empty() && line.find(at) != std::string::npos) std::raise(SIGTERM);
+    });
+  };
+  EXPECT_THAT([&] { (void)prepare_and_stop("2 of 9 columns"); },
+              ::testing::ThrowsMessage<reference::Interrupted>(HasSubstr("interrupted; 3 of 9 columns")));
+  EXPECT_THAT(lines, ElementsAre(HasSubstr("computed once: mesh"), ContainsRegex("[0-9]+ unknowns, about .* 9 columns"),
+                                 ContainsRegex("2 of 9 columns, about .* left")));
+  const reference::Prepared rest = prepare_and_stop("");
+  EXPECT_TRUE(rest.computed);
+  EXPECT_THAT(lines, ElementsAre(HasSubstr("mesh"), HasSubstr("then 6 of 9 columns"), HasSubstr("5 of 9 columns")));
+  EXPECT_FALSE(prepare_and_stop("").computed);
+  EXPECT_THAT(lines, IsEmpty());
+}
 
 }  // namespace
 }  // namespace touchstone::compare

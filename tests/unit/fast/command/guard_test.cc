@@ -69,6 +69,23 @@ TEST(Guard, TextThatIsNotTakenIsAFailure) {
   EXPECT_EXIT(print("/dev/null", done), testing::ExitedWithCode(done), "^$");
 }
 
+TEST(EndSignals, EndTheProcessWithASentenceWhileItLives) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    EXPECT_EXIT(
+        {
+          const EndSignals signals("interrupted here");
+          std::raise(signal);
+        },
+        ::testing::ExitedWithCode(130), "^interrupted here\n$");
+    EXPECT_EXIT(
+        {
+          { const EndSignals signals("interrupted here"); }
+          std::raise(signal);
+        },
+        ::testing::KilledBySignal(signal), "^$");
+  }
+}
+
 TEST(StopSignals, AreARequestWhileItLives) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     {

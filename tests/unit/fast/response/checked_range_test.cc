@@ -35,14 +35,15 @@ StepStatus status_of(double radius_m, double depth_over_radius, double x_m = 0.0
 }
 
 /// Of a ball that is pressed on the top of a ball of 30 mm, to a depth over its radius.
-StepStatus status_on_sphere(double radius_m, double nu = 0.5) {
+StepStatus status_on_sphere(double radius_m, double nu = 0.5, double depth_over_radius = 0.1) {
   scene::Scene scene = test::ball_on_sphere();
   scene.body.material.poissons_ratio = nu;
   scene.tool.radius_m = radius_m;
-  scene.track = {{0.0, test::at(0.0, 0.0, 0.06 + radius_m)}, {1.0, test::at(0.0, 0.0, 0.06 + 0.9 * radius_m)}};
+  const scene::Pose pressed = test::at(0.0, 0.0, 0.06 + (1.0 - depth_over_radius) * radius_m);
+  scene.track = {{0.0, test::at(0.0, 0.0, 0.06 + radius_m)}, {1.0, pressed}};
   const ResponseModel model = model_of(scene);
   ResponseState state(model);
-  return response_step(model, test::at(0.0, 0.0, 0.06 + 0.9 * radius_m), state);
+  return response_step(model, pressed, state);
 }
 
 /// Depth over radius at which a ball's contact has a radius, on a half space.
@@ -74,6 +75,10 @@ TEST(CheckedRange, CurvedBodies) {
   const double limit_m = 0.030 * checked_range(test::ball_on_sphere()).curvature_rel;
   EXPECT_EQ(status_on_sphere(0.99 * limit_m), StepStatus::ok);
   EXPECT_EQ(status_on_sphere(1.01 * limit_m), StepStatus::curvature_unchecked);
+  // The depth is limited by the body's curvature, too.
+  const double depth_over_radius = checked_range(test::ball_on_sphere()).depth_curvature * 0.030 / 0.015;
+  EXPECT_EQ(status_on_sphere(0.015, 0.5, 0.99 * depth_over_radius), StepStatus::ok);
+  EXPECT_EQ(status_on_sphere(0.015, 0.5, 1.01 * depth_over_radius), StepStatus::depth_unchecked);
   // A cylinder's side is curved in one direction, its top in none.
   scene::Scene scene = test::ball_on_sphere();
   scene.body.shape = scene::BodyShape::revolution;

@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace touchstone::fast {
 namespace {
@@ -106,6 +108,56 @@ TEST(ContactTable, FiniteStrainTakesItsFactor) {
   const double linear_n = ContactTable(ball_tip(R), {}, E_star_pa, {}).at(D).force_n;
   const double force_n = ContactTable(ball_tip(R), {}, E_star_pa, {0.1, 0.3}).at(D).force_n;
   EXPECT_NEAR(force_n / linear_n, 1.0 - 0.1 * x - 0.3 * x * x, 1e-5);
+}
+
+TEST(ContactTable, ThePressureUnderADiscIsItsForceAndHasItsSecondMoment) {
+  const ContactTable table(flat_tip(0.009, 0.003), {}, E_star_pa, {});
+  for (const double D : {1e-5, 5e-4, 0.002, 0.02}) {  // the last is deeper than the rim
+    const LocalContact contact = table.at(D);
+    const double a = contact.radius_m;
+    double sum = 0.0, moment_m2 = 0.0, largest = 0.0;
+    constexpr int steps = 20000;
+    for (int k = 0; k < steps; ++k) {
+      const double angle = 0.5 * std::numbers::pi * (k + 0.5) / steps, r = a * std::sin(angle);
+      const double p = table.pressure_per_m2(D, r, 0.0);
+      const double ring = 2.0 * std::numbers::pi * r * a * std::cos(angle) * 0.5 * std::numbers::pi / steps;
+      sum += p * ring;
+      moment_m2 += p * ring * r * r;
+      largest = std::max(largest, p);
+    }
+    EXPECT_NEAR(sum, 1.0, 2e-3) << D;
+    EXPECT_NEAR(moment_m2, (0.4 + contact.flat * (2.0 / 3.0 - 0.4)) * a * a, 1e-2 * a * a) << D;
+    EXPECT_EQ(table.pressure_per_m2(D, 1.01 * a, 0.0), 0.0);
+    if (D < 0.01) {
+      EXPECT_NEAR(table.largest_pressure_per_m2(D), largest, 0.1 * largest) << D;
+    }
+  }
+  // With no depth it is the flat punch's, away from the edge.
+  const double a = 0.009;
+  for (const double x : {0.0, 0.5, 0.8}) {
+    const double punch = 0.5 / (std::numbers::pi * a * a * std::sqrt(1.0 - x * x));
+    EXPECT_NEAR(table.pressure_per_m2(1e-6, x * a, 0.0), punch, 1e-2 * punch) << x;
+  }
+}
+
+TEST(ContactTable, ThePressureOfALineIsItsForce) {
+  const double R = 0.006, half_m = 0.012;
+  const ContactTable table({.half_line_T_m = scene::Vec3(half_m, 0.0, 0.0), .radius_m = R}, {}, E_star_pa, {});
+  for (const double D : {2e-4, 0.001, 0.003}) {
+    double sum = 0.0, largest = 0.0;
+    constexpr int steps = 200;
+    for (int i = 0; i < steps; ++i) {
+      for (int j = 0; j < steps; ++j) {
+        const double p = table.pressure_per_m2(D, (i + 0.5) / steps * R, (j + 0.5) / steps * (half_m + R));
+        sum += 4.0 * p * R * (half_m + R) / (steps * steps);
+        largest = std::max(largest, p);
+      }
+    }
+    EXPECT_NEAR(sum, 1.0, 0.02) << D;
+    EXPECT_NEAR(table.largest_pressure_per_m2(D), largest, 0.02 * largest) << D;
+    // Largest at the ends of the line.
+    EXPECT_GT(largest, 1.05 * table.pressure_per_m2(D, 0.0, 0.0)) << D;
+  }
 }
 
 TEST(ContactTable, FiniteStrainMovesThePressureOfABallAlone) {

@@ -15,6 +15,9 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 namespace touchstone::reference {
 namespace {
@@ -134,16 +137,18 @@ TEST(PrepareResponse, KeepsAndReadsBack) {
   const scene::Scene scene = small_scene(0.3);
   const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
   int begun = 0;
-  double done = 0.0;
+  Eigen::Index done = 0;
   const auto prepare = [&] {
-    return prepare_response(
-        scene, surface, folder.path(), [&] { ++begun; }, [&](double share) { done = share; });
+    return prepare_response(scene, surface, folder.path(), [&](const SmoothProgress& now) {
+      if (now.next == SmoothProgress::Next::mesh) ++begun;
+      done = now.first.done;
+    });
   };
   const Prepared first = prepare(), second = prepare();
   EXPECT_TRUE(first.computed);
   EXPECT_FALSE(second.computed);
   EXPECT_EQ(begun, 1);
-  EXPECT_EQ(done, 1.0);
+  EXPECT_EQ(done, first.response.own_m_per_n.cols());
   EXPECT_EQ(first.file, second.file);
   EXPECT_EQ(first.response.smooth_m_per_n, second.response.smooth_m_per_n);
   EXPECT_EQ(first.response.own_m_per_n, second.response.own_m_per_n);
@@ -157,6 +162,47 @@ TEST(PrepareResponse, KeepsAndReadsBack) {
   scene::Scene far = scene;
   for (scene::Waypoint& waypoint : far.track) waypoint.pose.position_m.z() += 0.1;
   EXPECT_THROW((void)prepare_response(far, surface, folder.path()), scene::InputError);
+}
+
+TEST(PrepareResponse, GoesOnWithTheColumnsOfAStoppedRunToTheSameBits) {
+  const compare::testing::TemporaryFolder folder;
+  const scene::Scene scene = small_scene(0.5);
+  const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
+  struct Stop {};
+  std::vector<Eigen::Index> done;  // at each call
+  const auto prepare = [&](const std::filesystem::path& store, Eigen::Index stop_at) {
+    done.clear();
+    return prepare_response(scene, surface, store, [&](const SmoothProgress& now) {
+      done.push_back(now.first.done);
+      if (now.next == SmoothProgress::Next::column && now.first.done == stop_at) throw Stop();
+    });
+  };
+  const std::string whole = scene::read_file(prepare(folder.path() / "whole", 0).file).value();
+  EXPECT_EQ(done, (std::vector<Eigen::Index>{0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+  const auto store = folder.path() / "stopped";
+  const auto unfinished = [&] {
+    for (const auto& entry : std::filesystem::directory_iterator(store / "response")) {
+      if (entry.path().extension() == ".unfinished") return entry.path();
+    }
+    return std::filesystem::path();
+  };
+  EXPECT_THROW((void)prepare(store, 2), Stop);
+  EXPECT_THROW((void)prepare(store, 5), Stop);
+  EXPECT_EQ(done, (std::vector<Eigen::Index>{2, 2, 3, 4, 5}));
+  const std::string five = scene::read_file(unfinished()).value();
+  // Damaged, the columns are computed again: a bit of a number, the count, cut short.
+  std::string bit = five, count = five;
+  bit[five.size() - 1] ^= 1;
+  count[0] = '6';
+  for (const std::string& damaged : {bit, count, five.substr(0, five.size() / 2)}) {
+    scene::write_file(unfinished(), damaged);
+    EXPECT_THROW((void)prepare(store, 1), Stop);
+    EXPECT_EQ(done, (std::vector<Eigen::Index>{0, 0, 1}));
+  }
+  scene::write_file(unfinished(), five);
+  EXPECT_EQ(scene::read_file(prepare(store, 0).file).value(), whole);
+  EXPECT_EQ(done, (std::vector<Eigen::Index>{5, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(unfinished(), "");
 }
 
 }  // namespace
