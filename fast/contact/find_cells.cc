@@ -480,9 +480,12 @@ FindCells find_cells_for(const scene::Shape& shape) noexcept {
   return scene::as_solid<FindCells>(shape, []<class Body>() -> FindCells { return &find_cells<Body>; });
 }
 
+/// Of all that a shipped track asks for, but for several regions.
+constexpr std::size_t least_space = 4096;
+
 CellHalves::CellHalves(int samples, int room)
     : room_(static_cast<std::size_t>(room)),
-      halves_(4 * room_),
+      halves_(std::max(2 * room_, least_space)),
       of_half_(halves_.size(), -1),
       of_sample_(static_cast<std::size_t>(samples), -1) {}
 

@@ -39,8 +39,7 @@ class CellHalves {
  public:
   /// Of no cell: for samples in place of cells.
   CellHalves() = default;
-  /// Has space for four ticks' halves: all that a shipped track asks for. @param samples of the tool; @param room  of
-  /// CellRule
+  /// Has space for two ticks' halves, and for some thousand. @param samples of the tool; @param room  of CellRule
   CellHalves(int samples, int room);
   /// Makes room for a tick's halves.
   void begin() noexcept;
