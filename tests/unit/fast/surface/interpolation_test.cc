@@ -15,7 +15,8 @@ namespace {
 using scene::Vec3;
 
 struct SurfaceRig {
-  explicit SurfaceRig(const scene::Scene& scene) : model(scene), field(model.rest), anchor_m(model.skeleton.anchor_m.size()) {
+  explicit SurfaceRig(const scene::Scene& scene)
+      : model(scene), field(model.rest), anchor_m(model.skeleton.anchor_m.size()) {
     for (std::size_t i = 0; i < anchor_m.size(); ++i) {
       anchor_m[i] = model.skeleton.held[i]
                         ? Vec3(Vec3::Zero())
