@@ -480,7 +480,7 @@ FindCells find_cells_for(const scene::Shape& shape) noexcept {
   return scene::as_solid<FindCells>(shape, []<class Body>() -> FindCells { return &find_cells<Body>; });
 }
 
-/// Of all that a shipped track asks for, but for several regions.
+/// Halves. The track of a shipped scene with one contact region asks for fewer.
 constexpr std::size_t least_space = 4096;
 
 CellHalves::CellHalves(int samples, int room)

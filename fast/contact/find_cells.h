@@ -39,7 +39,8 @@ class CellHalves {
  public:
   /// Of no cell: for samples in place of cells.
   CellHalves() = default;
-  /// Has space for two ticks' halves, and for some thousand. @param samples of the tool; @param room  of CellRule
+  /// Takes storage for the halves of two ticks, and for 4096 at least.
+  /// @param samples  number of the tool's samples; @param room  of CellRule
   CellHalves(int samples, int room);
   /// Makes room for a tick's halves.
   void begin() noexcept;

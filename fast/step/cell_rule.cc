@@ -14,7 +14,7 @@ constexpr std::array points_tried{CellRule{}.points, 64, 96, 128, 192, 256, 384,
 /// Poses of the track, evenly spaced in time, and those in contact that are then looked at, at most.
 constexpr int poses_tried = 64;
 constexpr std::size_t poses_kept = 8;
-/// Those whose halves are made at set-up.
+/// Poses of the track whose halves are made at set-up, evenly spaced in time.
 constexpr int poses_halved = 256;
 /// A load below this share of the track's largest may change as much as that one.
 constexpr double small_load_rel = 0.2;

@@ -27,7 +27,7 @@ namespace touchstone::fast {
 /// Cells of a scene's contact.
 struct ContactCells {
   CellRule rule;
-  CellHalves halves;  ///< by this rule, those that the track asks for, so that its ticks need not make them; or none
+  CellHalves halves;  ///< those that the track asks for, made at set-up; empty, or of another room: not made
   /// How far the load is from its limit of ever smaller cells, at most over the track, relative to that limit or, where
   /// that is less, a fifth of the track's largest; 0 where that is not known.
   double error_rel = 0.0;
