@@ -58,13 +58,11 @@ int export_deck(const fast::VerbOptions& options, const ExportOptions& export_op
   const std::filesystem::path folder = options.folder(scene, "export");
   const scene::FolderLock lock = scene::prepare_result_folder(folder);
   if (export_options.time_to_error > 0) {
-    return with_reference_exits([&] {
-      const TimeToError times = time_to_error(scene, export_options.time_to_error, folder);
-      scene::write_csv(folder / "time-to-error.csv", time_to_error_columns(times));
-      scene::write_file(folder / "time-to-error.svg", time_to_error_svg(times, scene.title));
-      std::cout << time_to_error_text(times);
-      return fast::done;
-    });
+    const TimeToError times = time_to_error(scene, export_options.time_to_error, folder);
+    scene::write_csv(folder / "time-to-error.csv", time_to_error_columns(times));
+    scene::write_file(folder / "time-to-error.svg", time_to_error_svg(times, scene.title));
+    std::cout << time_to_error_text(times);
+    return fast::done;
   }
   const reference::Deck deck = reference::calculix_deck(
       scene,
@@ -86,21 +84,19 @@ int export_deck(const fast::VerbOptions& options, const ExportOptions& export_op
         run.steps.size(), deck.instants.size(), (folder / (scene.name + ".log")).string());
     if (run.steps.empty()) return fast::not_converged;
   }
-  return with_reference_exits([&] {
-    const scene::Stopwatch watch;
-    scene::Surface surface;
-    surface.points_m = deck.surface_points_m;
-    const reference::Result result = solve_with_progress(asked(scene, reference), surface, reference, options.quiet);
-    const scene::StageTime time = watch.read("reference");
-    const SideBySide both = side_by_side(deck, run, result);
-    scene::write_csv(folder / "curve.csv", both.columns);
-    std::cout << both.text
-              << fmt::format("Ours: {}, {} unknowns on the finest mesh, {:.1f} s, CPU {:.1f} s{}\n", result.model,
-                             result.levels.back().unknowns, time.wall_s, time.cpu_s,
-                             result.from_store ? " (from the store)" : "")
-              << fmt::format("CalculiX: {:.1f} s, CPU {:.1f} s\n", run.wall_s, run.cpu_s);
-    return complete ? fast::done : fast::not_converged;
-  });
+  const scene::Stopwatch watch;
+  scene::Surface surface;
+  surface.points_m = deck.surface_points_m;
+  const reference::Result result = solve_with_progress(asked(scene, reference), surface, reference, options.quiet);
+  const scene::StageTime time = watch.read("reference");
+  const SideBySide both = side_by_side(deck, run, result);
+  scene::write_csv(folder / "curve.csv", both.columns);
+  std::cout << both.text
+            << fmt::format("Ours: {}, {} unknowns on the finest mesh, {:.1f} s, CPU {:.1f} s{}\n", result.model,
+                           result.levels.back().unknowns, time.wall_s, time.cpu_s,
+                           result.from_store ? " (from the store)" : "")
+            << fmt::format("CalculiX: {:.1f} s, CPU {:.1f} s\n", run.wall_s, run.cpu_s);
+  return complete ? fast::done : fast::not_converged;
 }
 
 void add_export_verb(fast::Command& program, fast::VerbOptions& options, ExportOptions& export_options,

@@ -45,10 +45,8 @@ int gate(const GateOptions& options, const std::string& command) {
   }
   if (options.regenerate) {
     require_names(options, "--regenerate");
-    return with_reference_exits([&] {
-      print(regenerate(folder, options.names, options.reference, options.quiet));
-      return fast::done;
-    });
+    print(regenerate(folder, options.names, options.reference, options.quiet));
+    return fast::done;
   }
   const std::optional<BaseGates> base =
       options.base.empty() ? std::nullopt : std::optional(base_gates(options.folder, options.base));
@@ -60,39 +58,37 @@ int gate(const GateOptions& options, const std::string& command) {
   manifest.scene_hash = "none: every gate file names its own";
   manifest.resolved_scene.clear();
   const auto working = [&](const std::string& what) { line.show("gate: " + what, true); };
-  return with_reference_exits([&] {
-    const scene::Stopwatch watch;
-    std::vector<GateRecord> records = run_gates(folder, options.names, working);
-    manifest.times.push_back(watch.read("gates"));
-    if (options.accept) {
-      line.finish();
-      print(accept(folder, records));
-      return fast::done;
-    }
-    std::vector<std::string> faults = hold_limits(folder, base ? &*base : nullptr, today(), records);
-    faults.insert(faults.end(), folder.unused.begin(), folder.unused.end());
-    std::vector<GateProof> proofs;
-    if (options.prove) {
-      const scene::Stopwatch proof_watch;
-      proofs = prove_gates(folder, records, working);
-      manifest.times.push_back(proof_watch.read("proofs"));
-    }
+  const scene::Stopwatch watch;
+  std::vector<GateRecord> records = run_gates(folder, options.names, working);
+  manifest.times.push_back(watch.read("gates"));
+  if (options.accept) {
     line.finish();
-    std::string text = gates_text(records, faults);
-    if (options.prove) text += "\n" + proofs_text(proofs);
-    for (const GateProof& proof : proofs) {
-      if (!proof.holds()) faults.push_back(proof.changed.name() + " is not proved: " + proof.failure);
-    }
-    scene::write_file(options.out / "table.txt", text);
-    scene::write_summary(options.out / "summary.json", gate_report_figures(records, faults));
-    scene::write_manifest(options.out / "manifest.json", manifest);
-    scene::write_file(options.out / "report.html",
-                      gate_page_html(folder, records, faults, proofs, manifest, options.out));
-    if (!options.junit.empty()) scene::write_file(options.junit, gates_junit(records, faults));
-    std::cout << text << "Report: " << (options.out / "report.html").string() << '\n';
-    const bool good = faults.empty() && std::ranges::all_of(records, &GateRecord::passes);
-    return good ? fast::done : fast::answer_is_no;
-  });
+    print(accept(folder, records));
+    return fast::done;
+  }
+  std::vector<std::string> faults = hold_limits(folder, base ? &*base : nullptr, today(), records);
+  faults.insert(faults.end(), folder.unused.begin(), folder.unused.end());
+  std::vector<GateProof> proofs;
+  if (options.prove) {
+    const scene::Stopwatch proof_watch;
+    proofs = prove_gates(folder, records, working);
+    manifest.times.push_back(proof_watch.read("proofs"));
+  }
+  line.finish();
+  std::string text = gates_text(records, faults);
+  if (options.prove) text += "\n" + proofs_text(proofs);
+  for (const GateProof& proof : proofs) {
+    if (!proof.holds()) faults.push_back(proof.changed.name() + " is not proved: " + proof.failure);
+  }
+  scene::write_file(options.out / "table.txt", text);
+  scene::write_summary(options.out / "summary.json", gate_report_figures(records, faults));
+  scene::write_manifest(options.out / "manifest.json", manifest);
+  scene::write_file(options.out / "report.html",
+                    gate_page_html(folder, records, faults, proofs, manifest, options.out));
+  if (!options.junit.empty()) scene::write_file(options.junit, gates_junit(records, faults));
+  std::cout << text << "Report: " << (options.out / "report.html").string() << '\n';
+  const bool good = faults.empty() && std::ranges::all_of(records, &GateRecord::passes);
+  return good ? fast::done : fast::answer_is_no;
 }
 
 void add_gate_verb(fast::Command& program, GateOptions& options) {

@@ -13,27 +13,25 @@ int run(const fast::VerbOptions& options, const TradeOptions& trade_options, con
   refuse_unsupported(scene);
   const std::filesystem::path folder = options.folder(scene, "trade");
   const scene::FolderLock lock = scene::prepare_result_folder(folder);
-  return with_reference_exits([&] {
-    scene::Manifest manifest = scene::make_manifest(scene, "touchstone trade");
-    const scene::Stopwatch watch;
-    std::string references;  // why the refinement of each reference ended
-    const Trade found = trade(
-        scene, trade_options,
-        [&](const scene::Scene& contact, const scene::Surface& surface, std::optional<int> levels) {
-          scene::Scene one = asked(contact, reference);
-          if (levels) one.reference.levels = levels;
-          reference::Result result = solve_with_progress(one, surface, reference, options.quiet);
-          if (!levels) references += one.name + '\n' + refinement_text(result);
-          return result;
-        },
-        fast::progress_lines(options.quiet));
-    manifest.times.push_back(watch.read("trade"));
-    if (!trade_options.held_out.empty()) manifest.entries.emplace_back("held out", trade_options.held_out.string());
-    for (const auto& file : trade_options.parameters) manifest.entries.emplace_back("parameters", file.string());
-    write_trade(folder, found, manifest);
-    std::cout << trade_text(found) << references << "Report: " << (folder / "report.html").string() << '\n';
-    return fast::done;
-  });
+  scene::Manifest manifest = scene::make_manifest(scene, "touchstone trade");
+  const scene::Stopwatch watch;
+  std::string references;  // why the refinement of each reference ended
+  const Trade found = trade(
+      scene, trade_options,
+      [&](const scene::Scene& contact, const scene::Surface& surface, std::optional<int> levels) {
+        scene::Scene one = asked(contact, reference);
+        if (levels) one.reference.levels = levels;
+        reference::Result result = solve_with_progress(one, surface, reference, options.quiet);
+        if (!levels) references += one.name + '\n' + refinement_text(result);
+        return result;
+      },
+      fast::progress_lines(options.quiet));
+  manifest.times.push_back(watch.read("trade"));
+  if (!trade_options.held_out.empty()) manifest.entries.emplace_back("held out", trade_options.held_out.string());
+  for (const auto& file : trade_options.parameters) manifest.entries.emplace_back("parameters", file.string());
+  write_trade(folder, found, manifest);
+  std::cout << trade_text(found) << references << "Report: " << (folder / "report.html").string() << '\n';
+  return fast::done;
 }
 
 }  // namespace

@@ -58,20 +58,18 @@ int run_reference(const fast::VerbOptions& options, const ReferenceOptions& refe
   refuse_unsupported(scene);
   const std::filesystem::path folder = options.folder(scene, "reference");
   const scene::FolderLock lock = scene::prepare_result_folder(folder);
-  return with_reference_exits([&] {
-    const scene::Stopwatch watch;
-    const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
-    const reference::Result result = solve_with_progress(scene, surface, reference, options.quiet);
-    scene::Manifest manifest = scene::make_manifest(scene, "touchstone reference");
-    manifest.times.push_back(watch.read("reference"));
-    write_reference(folder, result, manifest);
-    write_reference_surfaces(folder, surface, result);
-    write_tool(folder, scene.tool, result.instants);
-    const auto inside = reference::inside(scene, result, reference.store);
-    const std::string files = write_inside(folder, scene, result, *inside, reference.volume);
-    std::cout << reference_text(result) << files << "Results: " << folder.string() << '\n';
-    return exit_of(result, reference);
-  });
+  const scene::Stopwatch watch;
+  const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
+  const reference::Result result = solve_with_progress(scene, surface, reference, options.quiet);
+  scene::Manifest manifest = scene::make_manifest(scene, "touchstone reference");
+  manifest.times.push_back(watch.read("reference"));
+  write_reference(folder, result, manifest);
+  write_reference_surfaces(folder, surface, result);
+  write_tool(folder, scene.tool, result.instants);
+  const auto inside = reference::inside(scene, result, reference.store);
+  const std::string files = write_inside(folder, scene, result, *inside, reference.volume);
+  std::cout << reference_text(result) << files << "Results: " << folder.string() << '\n';
+  return exit_of(result, reference);
 }
 
 int run_compare(const fast::VerbOptions& options, const ReferenceOptions& reference, const CompareOptions& more) {
@@ -85,30 +83,28 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
   const std::filesystem::path folder = options.folder(scene, "compare");
   const scene::FolderLock lock = scene::prepare_result_folder(folder);
   const Call call{options.scene_file, options.overrides, reference, more, folder};
-  return with_reference_exits([&] {
-    scene::Manifest manifest = scene::make_manifest(scene, "touchstone compare");
-    prepare_missing(scene, fast::progress_lines(options.quiet));
-    const scene::Stopwatch fast_watch;
-    const fast::Run run = fast_model().set_up(scene)->track().value();
-    manifest.times.push_back(fast_watch.read("fast"));
-    const scene::Stopwatch reference_watch;
-    const reference::Result result = solve_with_progress(given, run.surface, reference, options.quiet);
-    if (!parameters.empty()) manifest.entries.emplace_back("parameters", parameters.string());
-    manifest.times.push_back(reference_watch.read("reference"));
-    manifest.entries.emplace_back("linear_solver", result.linear_solver);
-    manifest.entries.emplace_back("reference_key", result.key);
-    manifest.entries.emplace_back("command_line", command_text(call, ""));
-    const auto inside = reference::inside(given, result, reference.store);
-    const Comparison comparison = write_comparison(folder, scene, run, result, manifest, judged, call, inside.get());
-    const std::string files = write_inside(folder, given, result, *inside, reference.volume);
-    if (more.plots) {
-      std::cout << "Plots: " << (folder / "plots").string() << " (SVG"
-                << (has_pdf() ? " and PDF" : "; PDF needs a build with librsvg, Debian's librsvg2-dev") << ")\n";
-    }
-    std::cout << comparison.text << refinement_text(result) << files << "Report: " << (folder / "report.html").string()
-              << '\n';
-    return exit_of(result, reference);
-  });
+  scene::Manifest manifest = scene::make_manifest(scene, "touchstone compare");
+  prepare_missing(scene, fast::progress_lines(options.quiet));
+  const scene::Stopwatch fast_watch;
+  const fast::Run run = fast_model().set_up(scene)->track().value();
+  manifest.times.push_back(fast_watch.read("fast"));
+  const scene::Stopwatch reference_watch;
+  const reference::Result result = solve_with_progress(given, run.surface, reference, options.quiet);
+  if (!parameters.empty()) manifest.entries.emplace_back("parameters", parameters.string());
+  manifest.times.push_back(reference_watch.read("reference"));
+  manifest.entries.emplace_back("linear_solver", result.linear_solver);
+  manifest.entries.emplace_back("reference_key", result.key);
+  manifest.entries.emplace_back("command_line", command_text(call, ""));
+  const auto inside = reference::inside(given, result, reference.store);
+  const Comparison comparison = write_comparison(folder, scene, run, result, manifest, judged, call, inside.get());
+  const std::string files = write_inside(folder, given, result, *inside, reference.volume);
+  if (more.plots) {
+    std::cout << "Plots: " << (folder / "plots").string() << " (SVG"
+              << (has_pdf() ? " and PDF" : "; PDF needs a build with librsvg, Debian's librsvg2-dev") << ")\n";
+  }
+  std::cout << comparison.text << refinement_text(result) << files << "Report: " << (folder / "report.html").string()
+            << '\n';
+  return exit_of(result, reference);
 }
 
 void add_scene_verbs(fast::Command& program, fast::VerbOptions& options, ReferenceOptions& reference,

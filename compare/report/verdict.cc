@@ -4,6 +4,7 @@
 #include "compare/report/comparison_drawings.h"
 #include "fast/step/status.h"
 #include "reference/verification/closed_forms.h"
+#include "scene/model/solid_kinds.h"
 
 #include <fmt/format.h>
 
@@ -284,10 +285,7 @@ std::optional<double> hertz_force_n(const scene::Scene& scene, double depth_m) {
   if (scene.tool.shape != scene::ToolShape::sphere || body.shape == scene::BodyShape::revolution ||
       !body.inclusions.empty())
     return std::nullopt;
-  double curvature_per_m = 1.0 / scene.tool.radius_m;
-  if (body.shape == scene::BodyShape::sphere) curvature_per_m += 1.0 / body.radius_m;
-  if (body.shape == scene::BodyShape::ellipsoid)
-    curvature_per_m += body.semi_axes_m.z() / (body.semi_axes_m.x() * body.semi_axes_m.y());
+  const double curvature_per_m = 1.0 / scene.tool.radius_m + scene::top_curvature_per_m(body);
   return verification::hertz(body.material.contact_modulus_pa(), 1.0 / curvature_per_m, depth_m).force_n;
 }
 

@@ -52,10 +52,6 @@ struct ShapeWords {
   std::size_t count;
   std::string_view lengths;
 };
-constexpr std::array body_shapes = {ShapeWords{"box", 3, "three edge lengths, such as 60x60x40mm"},
-                                    ShapeWords{"sphere", 1, "its radius, such as 30mm"},
-                                    ShapeWords{"ellipsoid", 3, "three semi-axes, such as 40x40x30mm"},
-                                    ShapeWords{"cylinder", 2, "radius and height, such as 30x40mm"}};
 constexpr std::array tool_shapes = {ShapeWords{"sphere", 1, "its radius, such as 10mm"},
                                     ShapeWords{"capsule", 2, "radius and length of the straight part, such as 6x20mm"},
                                     ShapeWords{"cylinder", 2, "radius and length, such as 6x20mm"},
@@ -84,8 +80,21 @@ std::vector<double> sizes_m(const std::vector<std::string>& given, const ShapeWo
   return sizes;
 }
 
+std::vector<ShapeWords> body_shapes() {
+  std::vector<ShapeWords> out;
+  for (const scene::SolidKind& kind : scene::solid_kinds()) {
+    std::size_t count = 0;
+    for (const scene::SolidLength& length : kind.lengths) {
+      count += std::holds_alternative<Vec3 scene::Solid::*>(length) ? 3 : 1;
+    }
+    if (!kind.lengths_text.empty()) out.push_back({kind.word, count, kind.lengths_text});
+  }
+  return out;
+}
+
 scene::Body body_of(const std::vector<std::string>& given) {
-  const ShapeWords& shape = shape_of(given, body_shapes, "--body");
+  const std::vector<ShapeWords> shapes = body_shapes();
+  const ShapeWords& shape = shape_of(given, shapes, "--body");
   const std::vector<double> m = sizes_m(given, shape, "--body");
   scene::Body body;
   const scene::SolidKind& kind = *std::ranges::find(scene::solid_kinds(), shape.name, &scene::SolidKind::word);
@@ -134,11 +143,15 @@ scene::Tool tool_of(const NewOptions& options) {
   return tool;
 }
 
-std::string words_of(std::span<const ShapeWords> shapes) {
-  std::string out;
-  for (const ShapeWords& shape : shapes)
-    out += (out.empty() ? "" : "; ") + std::string(shape.name) + " and " + std::string(shape.lengths);
-  return out;
+/// An option that gives one of the shapes and its lengths.
+void add_shape(Command& verb, const std::string& option, std::vector<std::string>& values,
+               std::span<const ShapeWords> shapes) {
+  std::string words, names;
+  for (const ShapeWords& shape : shapes) {
+    words.append(words.empty() ? "" : "; ").append(shape.name).append(" and ").append(shape.lengths);
+    names.append(names.empty() ? "" : "|").append(shape.name);
+  }
+  verb.option(option, values, words).required().values(2).type(names + " SIZE");
 }
 
 double largest_m(const scene::Bounds& bounds) { return (bounds.upper_m - bounds.lower_m).maxCoeff(); }
@@ -253,16 +266,10 @@ int write_new_scene(const NewOptions& options, const std::string& program) {
 Command add_new_verb(Command& program, NewOptions& options) {
   Command verb = program.add("new", "write a commented scene file from sizes, material and depth");
   verb.option("FILE", options.file, "scene file to write (.toml); never overwritten").required();
-  verb.option("--body", options.body, words_of(body_shapes))
-      .required()
-      .values(2)
-      .type("box|sphere|ellipsoid|cylinder SIZE");
+  add_shape(verb, "--body", options.body, body_shapes());
   verb.option("--youngs-modulus", options.youngs_modulus, "E of the body, such as 3MPa").required().type("STRESS");
   verb.option("--poissons-ratio", options.poissons_ratio, "nu of the body, 0 to 0.5").required().range(0.0, 0.5);
-  verb.option("--tool", options.tool, words_of(tool_shapes))
-      .required()
-      .values(2)
-      .type("sphere|capsule|cylinder|box|mesh SIZE");
+  add_shape(verb, "--tool", options.tool, tool_shapes);
   verb.option("--unit", options.unit, "unit of a mesh tool's coordinates").type("m|cm|mm|in");
   verb.option("--depth", options.depth, "how far the tool moves beyond first contact, such as 3mm")
       .required()

@@ -121,16 +121,17 @@ std::string tips_text(const std::vector<scene::ToolTip>& tips) {
 /// What the response model was compared with the reference for, or what the track has beyond that. The whole range is
 /// in reports/response.md.
 std::string checked_text(const scene::Scene& scene, StepStatus status) {
-  // StepStatus ends with these bits.
-  constexpr std::uint32_t unchecked_bits = ~(static_cast<std::uint32_t>(StepStatus::depth_unchecked) - 1u);
   const CheckedRange checked = checked_range(scene);
-  const std::uint32_t beyond = static_cast<std::uint32_t>(status | checked.scene) & unchecked_bits;
+  const std::uint32_t beyond =
+      static_cast<std::uint32_t>(status | checked.scene) & static_cast<std::uint32_t>(unchecked);
   if (beyond != 0) return "THE TRACK GOES BEYOND: " + status_text(beyond);
   return fmt::format(
       "against the reference: depth to {} of the tip's radius{}, contact radius to {} of the body's size, "
       "{} contact radii from an edge",
       checked.depth_over_radius,
-      checked.curvature_rel < 0.01 ? "" : fmt::format(" and {} of the body's", checked.depth_curvature),
+      checked.curvature_rel < 0.01
+          ? ""
+          : fmt::format(" and {} of the body's smallest radius of curvature", checked.depth_curvature),
       checked.size_rel, checked.edge_over_radius);
 }
 

@@ -34,6 +34,11 @@ enum class StepStatus : std::uint32_t {
   return static_cast<StepStatus>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
 }
 constexpr StepStatus& operator|=(StepStatus& a, StepStatus b) noexcept { return a = a | b; }
+/// What the response model was not compared with the reference for.
+inline constexpr StepStatus unchecked = StepStatus::depth_unchecked | StepStatus::size_unchecked |
+                                        StepStatus::edge_unchecked | StepStatus::regions_unchecked |
+                                        StepStatus::curvature_unchecked | StepStatus::material_unchecked |
+                                        StepStatus::inclusion_unchecked;
 
 /// Status bits in words, "ok" for none.
 [[nodiscard]] std::string status_text(std::uint32_t status);

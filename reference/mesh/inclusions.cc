@@ -2,6 +2,7 @@
 
 #include "reference/discretisation/shape.h"
 #include "scene/base/in_space.h"
+#include "scene/model/solid_kinds.h"
 
 #include <algorithm>
 #include <memory>
@@ -10,13 +11,14 @@
 namespace touchstone::reference {
 namespace {
 
-using scene::BodyShape;
 using scene::Inclusion;
 using scene::Vec3;
 
 bool revolved_about_own_axis(const scene::Solid& solid) {
-  return solid.shape == BodyShape::sphere || solid.shape == BodyShape::revolution ||
-         (solid.shape == BodyShape::ellipsoid && solid.semi_axes_m.x() == solid.semi_axes_m.y());
+  const scene::SolidKind& kind = scene::kind_of(solid);
+  if (kind.turned == nullptr) return false;
+  const Eigen::Vector2d stretch = kind.turned(solid).stretch;
+  return stretch.x() == stretch.y();
 }
 
 bool alike(const Inclusion& a, const Inclusion& b) {

@@ -1,5 +1,7 @@
 #include "reference/mesh/round_mesh.h"
 
+#include "scene/model/solid_kinds.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -335,14 +337,9 @@ void add_cells(const HalfPlane& plane, const RoundSpec& spec, Collector<3>& to) 
 RoundSpec round_spec(const scene::Body& body) {
   RoundSpec spec;
   spec.support_height_m = body.flat_bottom() ? 0.0 : body.support_height_m;
-  if (body.shape == scene::BodyShape::revolution) {
-    spec.profile = body.profile;
-  } else if (body.shape == scene::BodyShape::sphere) {
-    spec.profile = scene::capsule_profile(body.radius_m, 0.0);
-  } else {
-    spec.profile = scene::capsule_profile(body.semi_axes_m.z(), 0.0);
-    spec.stretch = body.semi_axes_m.head<2>() / body.semi_axes_m.z();
-  }
+  scene::TurnedForm form = scene::kind_of(body).turned(body);
+  spec.profile = std::move(form.profile);
+  spec.stretch = form.stretch;
   return spec;
 }
 

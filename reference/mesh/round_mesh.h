@@ -17,7 +17,7 @@ struct RoundSpec {
   bool symmetric_x = false, symmetric_y = false;  ///< dim = 3: the half x >= 0, the half y >= 0
 };
 
-/// The body's profile: a sphere's and an ellipsoid's are half circles. Not for a box.
+/// Of a body with a scene::TurnedForm.
 [[nodiscard]] RoundSpec round_spec(const scene::Body& body);
 
 /// Edge of the held surface, (r, z) before stretching.

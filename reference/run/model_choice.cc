@@ -4,6 +4,7 @@
 #include "reference/mesh/round_mesh.h"
 #include "reference/tool/tool_distance.h"
 #include "reference/tool/tool_symmetry.h"
+#include "scene/model/solid_kinds.h"
 #include "scene/shape/surface.h"
 
 #include <fmt/format.h>
@@ -130,25 +131,6 @@ Discretisation<dim> round_level(const Scene& scene, const ModelChoice& choice, i
   return round_mesh(spec, grading);
 }
 
-/// Mean principal curvature of the body's top [1/m].
-double top_curvature_per_m(const scene::Body& body) {
-  switch (body.shape) {
-    case BodyShape::box:
-      return 0.0;
-    case BodyShape::sphere:
-      return 1.0 / body.radius_m;
-    case BodyShape::ellipsoid: {
-      const Vec3 a_m = body.semi_axes_m;
-      return a_m.z() / (a_m.x() * a_m.y());
-    }
-    case BodyShape::revolution: {
-      const scene::Revolution shape(body.profile);
-      return shape.meridian(shape.piece_count() - 1, 1.0).curvature_along_per_m;
-    }
-  }
-  return 0.0;
-}
-
 /// Times at which a symmetry is looked at: those with a pose of their own, and one in between, not in the middle.
 std::vector<double> symmetry_times_s(const Scene& scene) {
   std::vector<double> times_s = scene::instants_s(scene);
@@ -247,7 +229,7 @@ std::vector<scene::Fault> unsupported_parts(const Scene& scene) {
 }
 
 double expected_contact_radius_m(const Scene& scene, double depth_m) {
-  const double curvature_per_m = 1.0 / scene.tool.radius_m + top_curvature_per_m(scene.body);
+  const double curvature_per_m = 1.0 / scene.tool.radius_m + scene::top_curvature_per_m(scene.body);
   return std::min(std::sqrt(depth_m / curvature_per_m), scene.tool.radius_m);
 }
 

@@ -32,7 +32,7 @@ std::size_t letters(std::string_view name) { return name.size() - std::min(name.
 
 std::string unknown_key(const std::string& shown, std::string_view name, const std::vector<std::string>& known,
                         std::size_t told) {
-  const std::string message = "unknown key \"" + shortened(shown) + "\"";
+  std::string message = "unknown key \"" + shortened(shown) + "\"";
   if (name.size() > name_size_max) return message + "; no key is that long";
   if (told >= faults_shown_max) return message;
   return message + "; did you mean \"" + nearest_name(name, known) + "\"?";

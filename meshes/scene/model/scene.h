@@ -60,16 +60,9 @@ struct Solid {
   double length_m = 0.0;            ///< cylinder
   Vec3 semi_axes_m = Vec3::Zero();  ///< ellipsoid: along x, y, z
   Profile profile;                  ///< revolution: about z
-  std::string_view named = {};      ///< revolution: the NamedProfile that it follows from; empty: it is given
+  std::string_view named = {};      ///< revolution: the SolidKind that its profile follows from; empty: it is given
 };
 
-/// A solid of revolution that has a name and lengths in scene files in place of a profile.
-struct NamedProfile {
-  std::string_view name;
-  bool flat_bottom;
-  Profile (*profile)(const Solid&);
-};
-[[nodiscard]] std::span<const NamedProfile> named_profiles();
 /// Computes the profile of a solid with a name from its lengths.
 void complete(Solid& solid);
 
