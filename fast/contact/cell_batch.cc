@@ -27,6 +27,7 @@ void place_batch(const Placement& at, CellBatch& batch) noexcept {
 }
 
 // The shapes' own formulas, of copies that no column overlaps.
+// NOLINTBEGIN(performance-unnecessary-copy-initialization)
 
 TOUCHSTONE_WIDE_LOOPS
 void beyond_batch(const scene::Ellipsoid& given, CellBatch& batch) noexcept {
@@ -205,5 +206,7 @@ void cut_batch(CellBatch& batch) noexcept {
     batch.z_m[i] = some ? sum_z / area_m2 : 0.0;
   }
 }
+
+// NOLINTEND(performance-unnecessary-copy-initialization)
 
 }  // namespace touchstone::fast

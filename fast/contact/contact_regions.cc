@@ -164,9 +164,8 @@ ClusterCount cluster(const ClusterGrid& grid, RegionPoints& all, ClusterScratch&
         const ClusterGrid::Neighbour& neighbour = grid.neighbours[n];
         const ClusterScratch::Cell& b = nth(cells, neighbour.cell);
         if (neighbour.certain != certain || b.first < 0) continue;
-        if (certain) {
-          scratch.join(a, neighbour.cell);
-        } else if (scratch.root(a) != scratch.root(neighbour.cell) && scratch.near(grid, all, a, neighbour.cell)) {
+        if (certain ||
+            (scratch.root(a) != scratch.root(neighbour.cell) && scratch.near(grid, all, a, neighbour.cell))) {
           scratch.join(a, neighbour.cell);
         }
       }

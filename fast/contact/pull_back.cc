@@ -320,8 +320,9 @@ InsideSummary pull_back(const scene::Shape& shape, const DisplacedSurface& surfa
 QuadraticFit::QuadraticFit() {
   for (std::size_t v = 0; v < PointLanes::size; ++v) {
     // A grid of 6 by 5, and the middle.
+    const std::size_t row = v / 6;
     const double a = v < 30 ? -1.0 + 0.4 * static_cast<double>(v % 6) : 0.0;
-    const double b = v < 30 ? -1.0 + 0.5 * static_cast<double>(v / 6) : 0.0;
+    const double b = v < 30 ? -1.0 + 0.5 * static_cast<double>(row) : 0.0;
     place[v] = {a, b};
     terms.row(static_cast<Eigen::Index>(v)) << 1.0, a, b, a * a, a * b, b * b;
   }
