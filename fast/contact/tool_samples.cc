@@ -334,7 +334,8 @@ class Grouping {
                 const double at_a = fine_.points_m[a][axis], at_b = fine_.points_m[b][axis];
                 return at_a != at_b ? at_a < at_b : a < b;
               });
-    const double share = parts == 1 ? 0.5 : static_cast<double>(parts / 2) / parts;
+    const auto lower_parts = parts / 2;
+    const double share = parts == 1 ? 0.5 : static_cast<double>(lower_parts) / parts;
     double half_m2 = 0.0;
     while (middle < end && half_m2 < share * area_m2) half_m2 += fine_.area_m2[order_[middle++]];
     middle = std::clamp(middle, begin + 1, end - 1);

@@ -48,8 +48,8 @@ LineContact line_contact(double radius_m, double half_line_m, double indentation
   const Eigen::Index count = A.rows();
   Eigen::VectorXd below_m(count);  // the tool's surface at rest under the half space's
   for (int k = 0; k < across * along; ++k) {
-    const double x_m = (k / along + 0.5) * dx_m;
-    const double r_m = std::hypot(x_m, std::max(0.0, (k % along + 0.5) * dy_m - half_line_m));
+    const int row = k / along, column = k % along;
+    const double r_m = std::hypot((row + 0.5) * dx_m, std::max(0.0, (column + 0.5) * dy_m - half_line_m));
     below_m[k] = r_m < R ? D - r_m * r_m / (R + std::sqrt(R * R - r_m * r_m)) : -INFINITY;
   }
   Eigen::VectorXd p_pa = (below_m.array() > 0.0).select(Eigen::VectorXd::Constant(count, E_star_pa * D / (R + D)), 0.0);
@@ -79,7 +79,8 @@ LineContact line_contact(double radius_m, double half_line_m, double indentation
   for (int k = 0; k < across * along; ++k) out.pressure_rel.push_back(static_cast<float>(p_pa[k] / p_pa.mean()));
   double middle = 0.0, middle2_m2 = 0.0;
   for (int k = 0; k < across * along; ++k) {
-    const double x_m = (k / along + 0.5) * dx_m, y_m = (k % along + 0.5) * dy_m;
+    const int row = k / along, column = k % along;
+    const double x_m = (row + 0.5) * dx_m, y_m = (column + 0.5) * dy_m;
     const double x2_m2 = x_m * x_m + dx_m * dx_m / 12.0, y2_m2 = y_m * y_m + dy_m * dy_m / 12.0;
     out.across2_m2 += p_pa[k] * x2_m2 / p_pa.sum();
     out.along2_m2 += p_pa[k] * y2_m2 / p_pa.sum();

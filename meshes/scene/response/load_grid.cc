@@ -78,8 +78,8 @@ FoundGrid load_grid(const Scene& scene) {
   grid.points_m.resize(3, grid.count());
   grid.normals.resize(3, grid.count());
   for (int k = 0; k < grid.count(); ++k) {
-    const double i = k % grid.counts[0] - 0.5 * (grid.counts[0] - 1);
-    const double j = static_cast<double>(k / grid.counts[0]) - 0.5 * (grid.counts[1] - 1);
+    const int column = k % grid.counts[0], row = k / grid.counts[0];
+    const double i = column - 0.5 * (grid.counts[0] - 1), j = row - 0.5 * (grid.counts[1] - 1);
     const Vec3 p_m =
         grid.middle_m + i * grid.spacing_m[0] * grid.axes.col(0) + j * grid.spacing_m[1] * grid.axes.col(1);
     const std::optional<SurfaceQuery> at = below(*body, p_m, normal, size_m);
