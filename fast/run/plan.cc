@@ -97,7 +97,7 @@ std::string fineness_text(const std::optional<ContactCells>& cells) {
 
 std::string one_region_text(const scene::Tool& tool) {
   if (!tool.convex()) return "fast.max_regions = 1";
-  const std::string touch = "a convex body and a convex tool touch in one region";
+  std::string touch = "a convex body and a convex tool touch in one region";
   if (!tool.mesh) return touch;
   const scene::Bounds bounds = tool.mesh->bounds();
   const double dent_m = scene::convex_tolerance_rel * (bounds.upper_m - bounds.lower_m).norm();
