@@ -176,16 +176,22 @@ std::string known_text(const std::optional<double>& uncertainty_rel) {
                                                             : "with unknown uncertainty";
 }
 
-/// Half axes of the reference's contact, each with its uncertainty as a bar.
+/// Half axes of the reference's contact, of a round one its radius, each with its uncertainty as a bar. Nothing is
+/// drawn where there is no contact.
 Drawing contact_size(const reference::Result& result, const ReferenceQuality& quality, const Abscissa& x) {
-  Plot plot = plot_over(x, "Half axes of the contact over " + x.name, "length [mm]");
-  const std::array curves = {std::pair("long", Look::reference), std::pair("short", Look::plain)};
-  std::string caption =
-      "Of the reference's contact that pushes most; of a round one both are its radius. At the largest";
-  for (int axis = 0; axis < 2; ++axis) {
+  constexpr double looks_round = 0.01;  // lines closer than this lie on each other
+  const bool round = std::ranges::all_of(result.instants, [](const scene::ReferenceInstant& instant) {
+    return instant.contact_half_axes_m[1] >= (1.0 - looks_round) * instant.contact_half_axes_m[0];
+  });
+  Plot plot =
+      plot_over(x, (round ? "Radius of the contact over " : "Half axes of the contact over ") + x.name, "length [mm]");
+  const std::array curves = {std::pair(round ? "radius" : "long", Look::reference), std::pair("short", Look::plain)};
+  std::string caption = "Of the reference's contact that pushes most. At the largest";
+  for (int axis = 0; axis < (round ? 1 : 2); ++axis) {
     Curve& curve = plot.curves.emplace_back(Curve{curves[axis].first, curves[axis].second, x.values, {}});
     for (const scene::ReferenceInstant& instant : result.instants) {
-      curve.y.push_back(1e3 * instant.contact_half_axes_m[axis]);
+      const double length_m = instant.contact_half_axes_m[axis];
+      curve.y.push_back(length_m > 0.0 ? 1e3 * length_m : no_value);
       curve.y_half.push_back(1e3 * instant.contact_half_axes_uncertainty_m[axis]);
     }
     caption += fmt::format("{} {}, {}", axis == 0 ? "" : " and", quantity_text(quality.contact_half_axes_m[axis], "m"),

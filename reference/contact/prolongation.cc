@@ -37,19 +37,19 @@ Prolongation<dim>::~Prolongation() = default;
 template <int dim>
 State<dim> Prolongation<dim>::operator()(const State<dim>& state) const {
   constexpr double most = 0.5;
-  const auto interpolated = [&](const auto& values) {
-    const dealii::Vector<double> in(values.data(), values.data() + values.size());
+  const auto interpolated = [&](const dealii::Vector<double>& in) {
     dealii::Vector<double> out(to_.dof_handler().n_dofs());
     dealii::VectorTools::interpolate_to_different_mesh(pairs_->cells, in, to_.hanging_nodes(), out);
     return Eigen::Matrix<double, dim, Eigen::Dynamic>(
         Eigen::Map<const Eigen::Matrix<double, dim, Eigen::Dynamic>>(out.begin(), dim, to_.node_count()));
   };
   State<dim> out;
-  out.u_m = interpolated(state.u_m);
-  Eigen::Matrix<double, dim, Eigen::Dynamic> touching(dim, from_.node_count());
-  for (int node = 0; node < from_.node_count(); ++node)
-    touching.col(node).setConstant(state.touching[node] ? 1.0 : 0.0);
-  touching = interpolated(touching);
+  out.u_m = interpolated({state.u_m.data(), state.u_m.data() + state.u_m.size()});
+  // Hanging nodes of the coarser mesh are never active by themselves: they are as much as their masters.
+  dealii::Vector<double> active(from_.dof_handler().n_dofs());
+  for (int dof = 0; dof < static_cast<int>(active.size()); ++dof) active[dof] = state.touching[dof / dim] ? 1.0 : 0.0;
+  from_.hanging_nodes().distribute(active);
+  const auto touching = interpolated(active);
   out.touching.assign(static_cast<std::size_t>(to_.node_count()), 0);
   for (const auto& face : to_.faces) {
     if (face.boundary != Boundary::free) continue;

@@ -5,7 +5,6 @@
 #include "reference/mesh/inclusions.h"
 #include "reference/mesh/mesh_limit.h"
 #include "reference/run/step_record.h"
-#include "reference/run/uncertainty.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,6 +65,11 @@ std::vector<double> fineness(const scene::Scene& scene, int dim, const std::vect
     finer.push_back(scene.reference.adaptive_share ? std::pow(ratio, 2.0 / dim) : refinement(static_cast<int>(level)));
   }
   return finer;
+}
+
+BandRule force_rule(const scene::Scene& scene, int dim, const std::vector<scene::ReferenceInstant>& instants) {
+  if (!scene.reference.adaptive_share) return {};
+  return {.most_order = 0.5 * dim, .refined_for = deep_instants(instants)};
 }
 
 double adaptive_growth(const scene::Scene& scene, int dim) {

@@ -4,6 +4,7 @@
 #include "reference/discretisation/discretisation.h"
 #include "reference/run/model_choice.h"
 #include "reference/run/store.h"
+#include "reference/run/uncertainty.h"
 #include "scene/model/scene.h"
 
 #include <vector>
@@ -24,6 +25,13 @@ template <int dim>
 /// How much finer than the first each level is, for force_band() and point_band(): refinement(), or with
 /// reference.adaptive_share a power of the ratio of unknowns, since their meshes have no common ratio of cell sizes.
 [[nodiscard]] std::vector<double> fineness(const scene::Scene& scene, int dim, const std::vector<int>& unknowns);
+
+/// How the force's uncertainty is found from them. With reference.adaptive_share the instants are those deeper than
+/// deep_share of the deepest, for which the cells are chosen, and the error may fall as fast as with one over the
+/// number of unknowns: a mesh with twice as many halves the cells where the error is largest, and halving those at the
+/// worst edge of a support halves the error of the force that they make.
+[[nodiscard]] BandRule force_rule(const scene::Scene& scene, int dim,
+                                  const std::vector<scene::ReferenceInstant>& instants);
 
 /// About how many times the cells of the coarser mesh a level has, with reference.adaptive_share.
 [[nodiscard]] double adaptive_growth(const scene::Scene& scene, int dim);

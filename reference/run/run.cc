@@ -432,7 +432,7 @@ class Run {
       }
     }
     const std::vector<double> finer = fineness(scene_, dim, unknowns);
-    const std::vector<double> bands_n = force_band(forces_n, finer),
+    const std::vector<double> bands_n = force_band(forces_n, finer, force_rule(scene_, dim, result_.instants)),
                               peak_bands_pa = force_band(pressure_peaks_pa, finer),
                               long_bands_m = force_band(half_axes_m[0], finer),
                               short_bands_m = force_band(half_axes_m[1], finer);

@@ -9,7 +9,7 @@ namespace touchstone::reference {
 namespace {
 
 constexpr double safety = 1.25;
-constexpr double closest_pair = 1.49;
+constexpr double closest_pair = 1.4;
 
 constexpr double unknown_uncertainty = std::numeric_limits<double>::quiet_NaN();
 
@@ -19,33 +19,62 @@ struct Pair {
   double weight;
 };
 
-std::vector<Pair> pairs(const std::vector<double>& finer) {
+/// @param order  of the error in 1 / f
+std::vector<Pair> pairs(const std::vector<double>& finer, double order = 1.0) {
   const std::size_t last = finer.size() - 1;
+  const auto ratio = [&](std::size_t level) { return std::pow(finer[last] / finer[level], order); };
   std::vector<Pair> list;
   for (const auto [coarse, fine] : {std::array{last - 1, last}, {last - 2, last}, {last - 2, last - 1}}) {
     const bool widest = coarse + 2 == fine;
     if (!widest && finer[fine] < closest_pair * finer[coarse]) continue;
-    list.push_back({coarse, fine, 1.0 / (finer[last] / finer[coarse] - finer[last] / finer[fine])});
+    list.push_back({coarse, fine, 1.0 / (ratio(coarse) - ratio(fine))});
   }
   return list;
 }
 
+/// The order, between 1 and most, of an error whose values on the last three levels differ by these.
+double order_shown(double coarser, double finest, const std::vector<double>& finer, double most) {
+  const auto f = [&](std::size_t from_last, double order) { return std::pow(*(finer.rbegin() + from_last), -order); };
+  double low = 1.0, high = most;
+  while (high - low > 1e-6) {
+    const double order = 0.5 * (low + high);
+    const double left = (f(1, order) - f(0, order)) / (f(2, order) - f(1, order));
+    (finest < left * coarser ? low : high) = order;
+  }
+  return low;
+}
+
 }  // namespace
 
-std::vector<double> force_band(const std::vector<std::vector<double>>& levels, const std::vector<double>& finer) {
-  const std::size_t instants = levels.empty() ? 0 : levels.back().size();
-  if (levels.size() < 3) return std::vector<double>(instants, unknown_uncertainty);
+std::vector<double> force_band(const std::vector<std::vector<double>>& levels, const std::vector<double>& finer,
+                               const BandRule& rule) {
+  const std::size_t instants = levels.empty() ? 0 : levels.back().size(), count = levels.size();
+  if (count < 3) return std::vector<double>(instants, unknown_uncertainty);
+  const auto apart = [&](std::size_t coarse, std::size_t fine, std::size_t i) {
+    return std::abs(levels[fine][i] - levels[coarse][i]);
+  };
+  /// Over an instant and its neighbours.
+  const auto largest = [&](std::size_t i, const auto& value) {
+    double found = value(i);
+    for (const std::size_t next : {i - 1, i + 1}) {
+      if (next >= instants) continue;  // so is what is before the first
+      if (!rule.refined_for.empty() && rule.refined_for[i] && !rule.refined_for[next]) continue;
+      found = std::max(found, value(next));
+    }
+    return found;
+  };
   std::vector<double> own(instants, 0.0), band(instants);
-  for (const Pair& pair : pairs(finer)) {
-    for (std::size_t i = 0; i < instants; ++i) {
-      own[i] = std::max(own[i], safety * pair.weight * std::abs(levels[pair.fine][i] - levels[pair.coarse][i]));
+  for (std::size_t i = 0; i < instants; ++i) {
+    const auto change = [&](std::size_t coarse) {
+      return largest(i, [&](std::size_t near) { return apart(coarse, coarse + 1, near); });
+    };
+    const double order =
+        rule.most_order > 1.0 ? order_shown(change(count - 3), change(count - 2), finer, rule.most_order) : 1.0;
+    for (const Pair& pair : pairs(finer, order)) {
+      own[i] = std::max(own[i], safety * pair.weight * apart(pair.coarse, pair.fine, i));
     }
   }
-  for (std::size_t i = 0; i < instants; ++i) {
-    band[i] = own[i];
-    if (i > 0) band[i] = std::max(band[i], own[i - 1]);
-    if (i + 1 < instants) band[i] = std::max(band[i], own[i + 1]);
-  }
+  for (std::size_t i = 0; i < instants; ++i) band[i] = largest(i, [&](std::size_t near) { return own[near]; });
   return band;
 }
 

@@ -11,10 +11,20 @@
 
 namespace touchstone::reference {
 
+/// How force_band() judges meshes that an estimate refines; as it is, those of the fixed family.
+struct BandRule {
+  /// The error is taken for one of f^-p, with the p between 1 and this by which the differences of the last three
+  /// levels fall, each the largest over the instant and its neighbours.
+  double most_order = 1.0;
+  /// Per instant, whether the meshes are refined for it; such a one takes no band from a neighbour that is not. Empty:
+  /// all are.
+  std::vector<bool> refined_for{};
+};
+
 /// Half width of the band per instant, for a quantity F0, F1, F2 on the last three levels, whose cells are 1 / f of a
 /// common size:
 ///   b = 1.25 max over pairs j < k of |Fk - Fj| / (f2 / fj - f2 / fk),
-/// the widest and those no closer than fk / fj = 1.5, then the largest over the instant and its two neighbours.
+/// the widest and those no closer than fk / fj = 1.4, then the largest over the instant and its two neighbours.
 /// Why so: a contact force does not approach its limit from one side, because the contact's edge moves by whole nodes;
 /// Richardson's extrapolation would be luck. Each quotient is the error of F2 when the error is of first order in the
 /// cell size and the pair differs by no chance; quadratic cells do better. Several pairs guard against two levels
@@ -25,7 +35,7 @@ namespace touchstone::reference {
 /// @param finer   f of each level
 /// @returns NaN, for unknown, throughout with fewer than three levels
 [[nodiscard]] std::vector<double> force_band(const std::vector<std::vector<double>>& levels,
-                                             const std::vector<double>& finer);
+                                             const std::vector<double>& finer, const BandRule& rule = {});
 
 /// The same per point for a vector or a 3 x 3 matrix there, with the norm of the difference of two of them.
 /// Quadratic cells do better than first order, but the far field is refined less than the contact.

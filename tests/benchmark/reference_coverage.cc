@@ -1,9 +1,11 @@
 // Error of the reference's meshes against a much finer solution, and whether the reported uncertainty holds it:
-//   reference_coverage SCENE STORE FIRST LAST TRUTH_SHARE TRUTH_LEVELS [KEY=VALUE...]
+//   reference_coverage SCENE STORE FIRST LAST TRUTH_SHARE TRUTH_LEVELS [in-space] [KEY=VALUE...]
 // Prints the answers on FIRST to LAST meshes of the scene's own refinement. The finer solution has half the cell size
 // under the tool on its first mesh, reference.adaptive_share = TRUTH_SHARE (0: the fixed family) and TRUTH_LEVELS
-// meshes. STORE keeps both, so that a second run only reads.
+// meshes. STORE keeps both, so that a second run only reads. in-space solves the answers of an axisymmetric scene on
+// meshes of a quarter of the body, whose finer solution is in the meridian plane.
 #include "reference/run/model_choice.h"
+#include "reference/run/run.h"
 #include "reference/run/uncertainty.h"
 #include "reference/solver.h"
 #include "scene/input/scene_io.h"
@@ -66,7 +68,8 @@ void print(const Result& answer, const Result& truth, const std::vector<double>&
 }
 
 int measure(int count, char** arguments) {
-  const std::vector<std::string> overrides(arguments + 7, arguments + count);
+  const bool in_space = count > 7 && std::string(arguments[7]) == "in-space";
+  const std::vector<std::string> overrides(arguments + (in_space ? 8 : 7), arguments + count);
   const scene::Scene scene = scene::load_scene(arguments[1], overrides);
   const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
   Options options;
@@ -79,6 +82,14 @@ int measure(int count, char** arguments) {
   };
   scene::Scene finer = scene;
   const ModelChoice choice = choose_model(scene);
+  const auto solved_in_space = [&](scene::Scene one, int levels) {
+    one.reference.levels = levels;
+    ModelChoice quarter = choice;
+    quarter.dim = 3;
+    Options apart = options;
+    apart.store /= "in-space";  // the scene's key is that of the plane
+    return run(one, quarter, surface.points_m, apart, scene::Stopwatch());
+  };
   finer.reference.element_size_m = 0.5 * element_size_m(scene, choice, 0);
   finer.reference.adaptive_share = share > 0.0 ? std::optional(share) : std::nullopt;
   const Result truth = solved(finer, std::atoi(arguments[6]));
@@ -90,7 +101,7 @@ int measure(int count, char** arguments) {
       "at the last instant: error [%%] | uncertainty [%%] | shape error [%%] | uncertainty [%%] | points held [%%] | "
       "largest error of a half axis [%%] | uncertainty [%%] | half axes held\n");
   for (int levels = std::atoi(arguments[3]); levels <= std::atoi(arguments[4]); ++levels) {
-    print(solved(scene, levels), truth, surface.vertex_area_m2);
+    print(in_space ? solved_in_space(scene, levels) : solved(scene, levels), truth, surface.vertex_area_m2);
   }
   return 0;
 }

@@ -19,4 +19,10 @@ bool shows_not_a_number(const std::string& text) {
   return std::regex_search(text, pattern);
 }
 
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
 }  // namespace touchstone::compare::testing

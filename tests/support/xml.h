@@ -1,4 +1,4 @@
-// Whether a text is well-formed XML.
+// Texts of tests: whether one is well-formed XML, and what stands in it.
 #pragma once
 
 #include <string>
@@ -9,5 +9,8 @@ namespace touchstone::compare::testing {
 
 /// Whether a number that is not finite is visible anywhere. Words that contain its letters do not count.
 [[nodiscard]] bool shows_not_a_number(const std::string& text);
+
+/// How often a part stands in a text.
+[[nodiscard]] std::size_t count_of(const std::string& text, const std::string& part);
 
 }  // namespace touchstone::compare::testing

@@ -14,6 +14,7 @@ namespace {
 
 using scene::InstantRecord;
 using scene::Vec3;
+using testing::count_of;
 using ::testing::ElementsAre;
 
 std::vector<std::string> names_of(const std::vector<Drawing>& drawings) {
@@ -25,12 +26,6 @@ std::vector<std::string> names_of(const std::vector<Drawing>& drawings) {
 std::string svg_of(const std::vector<Drawing>& drawings, const std::string& name) {
   const auto found = std::find_if(drawings.begin(), drawings.end(), [&](const Drawing& d) { return d.name == name; });
   return found == drawings.end() ? "" : found->svg;
-}
-
-std::size_t count_of(const std::string& text, const std::string& part) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
-  return found;
 }
 
 /// Lines within the axes: the curves of a plot without markers or bands.

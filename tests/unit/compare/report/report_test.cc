@@ -10,12 +10,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <regex>
 
 namespace touchstone::compare {
 namespace {
 
+using testing::count_of;
 using testing::report_of;
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -152,6 +154,23 @@ TEST(Report, CaptionOfTheForceFollowsTheBand) {
   EXPECT_TRUE(has(report_of(sides), "The blue band is the reference's uncertainty."));
   testing::set_all(sides.result, &scene::ReferenceInstant::force_uncertainty_n, 0.01);
   EXPECT_TRUE(has(report_of(sides), "is narrower than its line."));
+}
+
+TEST(Report, DrawsTheContactsRadiusOrBothHalfAxesWhereThereIsContact) {
+  testing::Sides sides = testing::pressed(5, 600);
+  const auto& instants = sides.result.instants;
+  const auto touching = static_cast<std::size_t>(
+      std::ranges::count_if(instants, [](const auto& one) { return one.contact_half_axes_m[0] > 0.0; }));
+  ASSERT_LT(touching, instants.size());
+  const std::string round = report_of(sides);
+  EXPECT_TRUE(has(round, "<title>Radius of the contact over depth</title>"));
+  EXPECT_EQ(count_of(round, "<title>radius | "), touching);
+  EXPECT_EQ(count_of(round, "<title>short | "), 0u);
+  for (scene::ReferenceInstant& one : sides.result.instants) one.contact_half_axes_m[1] *= 0.5;
+  const std::string narrow = report_of(sides);
+  EXPECT_TRUE(has(narrow, "<title>Half axes of the contact over depth</title>"));
+  EXPECT_EQ(count_of(narrow, "<title>long | "), touching);
+  EXPECT_EQ(count_of(narrow, "<title>short | "), touching);
 }
 
 TEST(Report, DrawsOverTimeWhereADepthIsHeld) {

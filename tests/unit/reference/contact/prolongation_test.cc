@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 namespace touchstone::reference {
 namespace {
 
@@ -82,6 +84,26 @@ TEST(Prolongation, MarksTheSurfaceThatTouched) {
     EXPECT_LT(fine.points_m(0, n), edge_m + 0.004);
   }
   EXPECT_GE(touching, 7);
+}
+
+/// No node that hangs is active by itself, and none of the finer mesh may start apart for that.
+TEST(Prolongation, HangingNodesOfTheCoarserMeshLeaveNoHoles) {
+  const Discretisation<3> coarse = block(0.0025);
+  const Discretisation<3> fine = coarse.refined(std::vector<char>(static_cast<std::size_t>(coarse.cell_count()), 1));
+  const auto on_top = [](const Discretisation<3>& mesh, int n) { return mesh.points_m(2, n) > 0.03 - 1e-9; };
+  State<3> state = smooth(coarse, 0.0);
+  int hanging = 0;
+  for (int n = 0; n < coarse.node_count(); ++n) {
+    if (!on_top(coarse, n)) continue;
+    state.touching[n] = coarse.hangs(n) ? 0 : 1;
+    hanging += coarse.hangs(n) ? 1 : 0;
+  }
+  ASSERT_GT(hanging, 0);
+  const State<3> carried = Prolongation<3>(coarse, fine)(state);
+  for (int n = 0; n < fine.node_count(); ++n) {
+    if (!on_top(fine, n)) continue;
+    EXPECT_EQ(carried.touching[n] != 0, !fine.hangs(n)) << fine.points_m.col(n).transpose();
+  }
 }
 
 }  // namespace

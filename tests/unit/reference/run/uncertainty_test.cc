@@ -43,6 +43,47 @@ TEST(Uncertainty, KeepsTheWidestPair) {
   EXPECT_NEAR(force_band({{1.0}, {1.05}, {1.1}}, {1.0, 1.1, 1.2})[0], 1.25 * 0.1 / (1.2 - 1.0), 1e-12);
 }
 
+/// Forces at one instant whose error is a multiple of f^-order.
+std::vector<std::vector<double>> falling(const std::vector<double>& finer, double order) {
+  std::vector<std::vector<double>> levels;
+  for (const double f : finer) levels.push_back({5.0 + 0.3 * std::pow(f, -order)});
+  return levels;
+}
+
+/// Between first order and the largest allowed one the error is held by exactly the safety factor.
+TEST(Uncertainty, TakesTheOrderThatTheLevelsShow) {
+  const std::vector<double> finer = {1.0, 1.6, 2.5};
+  for (const double order : {1.0, 1.2, 1.5}) {
+    const double left = 0.3 * std::pow(finer.back(), -order);
+    EXPECT_NEAR(force_band(falling(finer, order), finer, {.most_order = 1.5})[0] / (1.25 * left), 1.0, 1e-4) << order;
+  }
+}
+
+TEST(Uncertainty, BelievesInNoOrderBeyondItsBounds) {
+  const std::vector<double> finer = {1.0, 1.6, 2.5};
+  std::vector<double> at_most;
+  for (const double f : finer) at_most.push_back(std::pow(f, 1.5));
+  const auto fast = falling(finer, 4.0), slow = falling(finer, 0.4);
+  EXPECT_NEAR(force_band(fast, finer, {.most_order = 1.5})[0] / force_band(fast, at_most)[0], 1.0, 1e-4);
+  EXPECT_NEAR(force_band(slow, finer, {.most_order = 1.5})[0] / force_band(slow, finer)[0], 1.0, 1e-4);
+}
+
+/// The second instant's last two levels agree by chance, which the third shows. The first has the second's band alone.
+TEST(Uncertainty, NeighboursShowTheOrder) {
+  const std::vector<std::vector<double>> levels = {{5.0, 1.0, 7.0}, {5.0, 2.0, 7.0}, {5.0, 2.0, 7.7}};
+  const std::vector<double> finer = {1.0, 1.6, 2.5};
+  EXPECT_GT(force_band(levels, finer)[0], 0.0);
+  EXPECT_EQ(force_band(levels, finer, {.most_order = 1.5})[0], force_band(levels, finer)[0]);
+}
+
+TEST(Uncertainty, AnInstantThatTheMeshesAreNotRefinedForLendsNothing) {
+  const std::vector<std::vector<double>> levels = {{9.0, 2.0, 3.0}, {8.0, 2.0, 3.0}, {7.0, 2.0, 3.4}};
+  const auto band = force_band(levels, halved, {.refined_for = {false, true, true}});
+  EXPECT_NEAR(band[0], 1.25 * 1.0, 1e-12);
+  EXPECT_NEAR(band[1], 1.25 * 0.4, 1e-12);
+  EXPECT_NEAR(force_band(levels, halved)[1], 1.25 * 1.0, 1e-12);
+}
+
 TEST(Uncertainty, TakesTheLastThreeLevels) {
   const auto three = force_band({{1.1}, {1.05}, {1.0}}, {2.0, 3.0, 4.0});
   const auto four = force_band({{7.0}, {1.1}, {1.05}, {1.0}}, {1.5, 2.0, 3.0, 4.0});
