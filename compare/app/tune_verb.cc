@@ -41,28 +41,26 @@ int run(const TuneOptions& options, const ReferenceOptions& reference) {
   const std::filesystem::path folder =
       options.out.empty() ? std::filesystem::path("out") / (study.name + "-tune") : options.out;
   const scene::FolderLock lock = scene::prepare_result_folder(folder);
-  return with_reference_exits([&] {
-    scene::Manifest manifest =
-        scene::make_manifest(study.training.front().scene, "touchstone tune " + options.study.string());
-    const scene::Stopwatch watch;
-    const Tuning tuning = tune(
-        study,
-        [&](const scene::Scene& scene, const scene::Surface& surface) {
-          return solve_with_progress(asked(scene, reference), surface, reference, options.quiet);
-        },
-        fast::progress_lines(options.quiet));
-    manifest.times.push_back(watch.read("references, fits and errors"));
-    for (const TuningData& data : tuning.data)
-      manifest.entries.emplace_back("reference of " + data.contact.name, data.result.key);
-    write_tuning(folder, tuning, manifest);
-    for (const TunedModel& model : tuning.models) std::cout << model_text(tuning, model);
-    for (const TuningData& data : tuning.data) {
-      std::cout << data.contact.name << '\n' << refinement_text(data.result);
-    }
-    std::cout << "Parameters: " << (folder / "parameters.toml").string()
-              << "\nReport: " << (folder / "report.html").string() << '\n';
-    return fast::done;
-  });
+  scene::Manifest manifest =
+      scene::make_manifest(study.training.front().scene, "touchstone tune " + options.study.string());
+  const scene::Stopwatch watch;
+  const Tuning tuning = tune(
+      study,
+      [&](const scene::Scene& scene, const scene::Surface& surface) {
+        return solve_with_progress(asked(scene, reference), surface, reference, options.quiet);
+      },
+      fast::progress_lines(options.quiet));
+  manifest.times.push_back(watch.read("references, fits and errors"));
+  for (const TuningData& data : tuning.data)
+    manifest.entries.emplace_back("reference of " + data.contact.name, data.result.key);
+  write_tuning(folder, tuning, manifest);
+  for (const TunedModel& model : tuning.models) std::cout << model_text(tuning, model);
+  for (const TuningData& data : tuning.data) {
+    std::cout << data.contact.name << '\n' << refinement_text(data.result);
+  }
+  std::cout << "Parameters: " << (folder / "parameters.toml").string()
+            << "\nReport: " << (folder / "report.html").string() << '\n';
+  return fast::done;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "scene/base/text.h"
 #include "scene/input/fields.h"
 #include "scene/input/toml_reader.h"
+#include "scene/response/response.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,9 +61,7 @@ class TuningReader : TomlReader {
                 "held_out", "parameter"});
     word(document_, "kind", {"tuning"});
     study.title = text(document_, "title").value_or("");
-    std::vector words = words_of(*tunable_field("fast.formulation"));
-    std::erase(words, scene::name_of(Formulation::response));  // has no constants
-    study.formulations = choices<Formulation>("formulation", words);
+    study.formulations = choices<Formulation>("formulation", words_of(*tunable_field("fast.formulation")));
     study.laws = choices<ContactLaw>("law", words_of(*tunable_field("contact.law")));
     study.starts = static_cast<int>(number(document_, "starts", {1.0, 100.0}, 16.0));
     study.force_floor = number(document_, "force_floor", {1e-6, 1.0}, 0.01);
@@ -114,7 +113,9 @@ class TuningReader : TomlReader {
     const auto take = [&](const toml::node& one) {
       const auto found = std::find(words.begin(), words.end(), one.value_or(std::string()));
       if (found == words.end()) {
-        add(one, key + " = " + shortened(value_text(one)) + "; expected \"" + words[0] + "\" or \"" + words[1] + "\"");
+        std::string expected;
+        for (const std::string& word : words) expected += (expected.empty() ? "\"" : " or \"") + word + "\"";
+        add(one, key + " = " + shortened(value_text(one)) + "; expected " + expected);
         return;
       }
       const auto value = static_cast<Enum>(found - words.begin());
@@ -209,13 +210,25 @@ class TuningReader : TomlReader {
   void complete(TuningStudy& study) {
     const Scene& first = study.training.front().scene;
     if (study.formulations.empty()) study.formulations = {first.fast.formulation};
-    if (study.formulations.front() == Formulation::response) {
+    if (study.laws.empty()) study.laws = {first.contact.law};
+    if (std::ranges::count(study.formulations, Formulation::response) != 0 &&
+        std::ranges::none_of(study.parameters, [&](const TuningParameter& one) {
+          return applies(one, Formulation::response, study.laws.front());
+        })) {
       add(document_,
-          "formulation: the response model of the training contacts has no constants to tune; expected "
-          "formulation = [\"corrected\"], [\"published\"] or both");
+          "formulation: of the response model only fast.body_falloff_per_m can be tuned, on a body with inclusions; "
+          "expected a [[parameter]] with it, or formulation = [\"corrected\"], [\"published\"] or both");
       return;
     }
-    if (study.laws.empty()) study.laws = {first.contact.law};
+    if (std::ranges::count(study.formulations, Formulation::response) != 0) {
+      for (const auto* list : {&study.training, &study.held_out}) {
+        for (const TuningContact& one : *list) {
+          if (const std::string needs = response_needs(one.scene); !needs.empty()) {
+            add(document_, "formulation: the response model needs that " + needs + "; contact \"" + one.name + "\"");
+          }
+        }
+      }
+    }
     for (const ContactLaw law : study.laws) {
       const auto tuned = [&](const Field<Scene>* field) {
         return std::ranges::any_of(study.parameters,
@@ -317,7 +330,10 @@ class ParameterReader : TomlReader {
 bool applies(const TuningParameter& parameter, Formulation formulation, ContactLaw law) {
   const Field<Scene>* field = tunable_field(parameter.key);
   if (field == nullptr || field->tunable->formulation.value_or(formulation) != formulation) return false;
+  // The skeletons' constants are none of the response model's.
+  if (formulation == Formulation::response && !field->tunable->formulation) return false;
   Scene full = with_law({}, law);
+  full.body.inclusions.emplace_back();
   for (const OptionalTable& table : optional_tables()) table.give(full);
   return scene::applies(*field, full);
 }

@@ -2,11 +2,11 @@
 //
 //   kind        = "tuning"
 //   title       = "A ball on a rubber cube"
-//   formulation = ["corrected", "published"]   # each is tuned for itself; the first gives parameters.toml
-//   law         = ["duffing", "area_aware"]    # the same; without it the contacts' own
-//   starts      = 16                           # of every fit: the given one, the others spread over the bounds
-//   force_floor = 0.01                         # least uncertainty of the reference, of a contact's peak force
-//   shape_floor = 0.01                         # the same, of its displacement
+//   formulation = ["corrected", "published"]   # each is tuned for itself; the first gives parameters.toml; or
+//   "response" law         = ["duffing", "area_aware"]    # the same; without it the contacts' own starts      = 16 #
+//   of every fit: the given one, the others spread over the bounds force_floor = 0.01                         # least
+//   uncertainty of the reference, of a contact's peak force shape_floor = 0.01                         # the same, of
+//   its displacement
 //
 //   [set]                                      # in every contact; keys as for --set
 //   compare.instants = 23
@@ -75,7 +75,8 @@ struct TuningStudy {
   std::vector<TuningParameter> parameters;
 };
 
-/// Has the parameter a meaning in the model? Only the corrected formulation has friction's stiffness ratio.
+/// Has the parameter a meaning in the model? Only the corrected formulation has friction's stiffness ratio, and only
+/// the response model has fast.body_falloff_per_m, and nothing else.
 [[nodiscard]] bool applies(const TuningParameter& parameter, scene::Formulation formulation, scene::ContactLaw law);
 
 /// Writes a value into a scene; nothing where the key does not apply, as friction's in a scene without it. omega0^2 and

@@ -23,6 +23,9 @@ struct ModelRequest {
   std::function<void(const std::string&)> say{};  ///< one line about what takes long; may be empty
 };
 
+/// From a scene to the one that a model is set up for.
+using SceneChange = std::function<scene::Scene(scene::Scene)>;
+
 /// Some models of one kind.
 using ModelList = std::vector<ModelEntry> (*)(const ModelRequest&);
 

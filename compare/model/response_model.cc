@@ -12,18 +12,22 @@ scene::Scene with_response(scene::Scene scene) {
   return scene;
 }
 
+ModelEntry response_model(ModelEntry entry, const SceneChange& change, const ModelRequest& request) {
+  entry.method = "half space, response";
+  entry.family = ModelFamily::response;
+  entry.set_up = [change, say = request.say](const scene::Scene& given) {
+    if (const std::string needs = scene::response_needs(given); !needs.empty()) {
+      throw Unavailable("the response model needs that " + needs);
+    }
+    return engine_model(change(given), say);
+  };
+  return entry;
+}
+
 std::vector<ModelEntry> response_models(const ModelRequest& request) {
-  return {{.name = "response, from the material and the body's linear response",
-           .key = "response",
-           .label = "response",
-           .method = "half space, response",
-           .family = ModelFamily::response,
-           .set_up = [say = request.say](const scene::Scene& given) {
-             if (const std::string needs = scene::response_needs(given); !needs.empty()) {
-               throw Unavailable("the response model needs that " + needs);
-             }
-             return engine_model(with_response(given), say);
-           }}};
+  return {response_model(
+      {.name = "response, from the material and the body's linear response", .key = "response", .label = "response"},
+      with_response, request)};
 }
 
 }  // namespace touchstone::compare

@@ -8,7 +8,11 @@ namespace touchstone::compare {
 /// The scene with the response model.
 [[nodiscard]] scene::Scene with_response(scene::Scene scene);
 
-/// One model; what it needs from the reference's side is prepared when it is set up, or read from the store.
+/// For a changed scene; what it needs from the reference's side is prepared when it is set up, or read from the store.
+/// @param entry  its name, key and label
+[[nodiscard]] ModelEntry response_model(ModelEntry entry, const SceneChange& change, const ModelRequest& request);
+
+/// One model, untuned but for what the scene has.
 [[nodiscard]] std::vector<ModelEntry> response_models(const ModelRequest& request);
 
 }  // namespace touchstone::compare

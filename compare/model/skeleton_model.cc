@@ -3,6 +3,7 @@
 #include "compare/format/text.h"
 #include "compare/input/tuning_study.h"
 #include "compare/model/engine_model.h"
+#include "compare/model/response_model.h"
 #include "fast/run/replay.h"
 #include "scene/model/area_law.h"
 
@@ -15,9 +16,9 @@ namespace {
 
 using scene::Scene;
 
-class SkeletonReplay final : public ModelReplay {
+class FastReplay final : public ModelReplay {
  public:
-  explicit SkeletonReplay(const Scene& scene) : replay_(scene) {}
+  explicit FastReplay(const Scene& scene) : replay_(scene) {}
 
   std::vector<scene::Vec3> forces_n(const Scene& scene) override { return replay_.forces_n(scene); }
   void displacements(const Scene& scene, std::span<const std::size_t> instants, const Visit& visit) override {
@@ -73,7 +74,10 @@ ModelEntry skeleton_model(const std::string& key, const Scene& given, const Scen
 ModelEntry fast_model() {
   ModelEntry entry = skeleton_model({.name = "fast model", .key = "fast", .family = ModelFamily::paper, .own = true},
                                     [](Scene scene) { return scene; });
-  entry.replay = [](const Scene& scene) { return std::make_unique<SkeletonReplay>(scene); };
+  entry.replay = [](const Scene& scene) {
+    prepare_missing(scene, {});
+    return std::make_unique<FastReplay>(scene);
+  };
   return entry;
 }
 
@@ -119,6 +123,14 @@ std::vector<ModelEntry> skeleton_models(const ModelRequest& request) {
     const bool duffing = tuned.contact.law == scene::ContactLaw::duffing;
     const std::string title(scene::name_of(tuned.contact.law).title);
     const std::string form(scene::name_of(tuned.fast.formulation));
+    if (tuned.fast.formulation == scene::Formulation::response) {
+      models.push_back(response_model(
+          {.name = fmt::format("response, tuned ({})", file.filename().string()),
+           .key = "tuned-" + file.stem().string(),
+           .label = "response, tuned"},
+          [file](Scene scene) { return with_parameters(std::move(scene), file); }, request));
+      continue;
+    }
     models.push_back(
         skeleton_model({.name = fmt::format("{} skeleton, {} law, tuned ({})", form, title, file.filename().string()),
                         .key = "tuned-" + file.stem().string(),

@@ -4,7 +4,6 @@
 
 #include "compare/model/request.h"
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,9 +16,6 @@ namespace touchstone::compare {
 /// The scene with the area-aware law and the constants that follow from material and size, which nothing has to be
 /// tuned for.
 [[nodiscard]] scene::Scene with_untuned_area_law(scene::Scene scene);
-
-/// From a scene to the one that a model is set up for.
-using SceneChange = std::function<scene::Scene(scene::Scene)>;
 
 /// The skeleton for a changed scene. The second has method and family of the changed scene, and no name.
 [[nodiscard]] ModelEntry skeleton_model(ModelEntry entry, const SceneChange& change);

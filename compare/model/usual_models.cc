@@ -10,11 +10,13 @@
 namespace touchstone::compare {
 namespace {
 
-/// Only the skeleton has constants.
+/// The response model has no constants but one.
 bool same_model(const scene::Scene& a, const scene::Scene& b) {
   if (a.fast.formulation != b.fast.formulation) return false;
-  return a.fast.formulation == scene::Formulation::response ||
-         (a.contact == b.contact && a.fast.s_c_m2 == b.fast.s_c_m2);
+  if (a.fast.formulation == scene::Formulation::response) {
+    return a.fast.body_falloff_per_m == b.fast.body_falloff_per_m;
+  }
+  return a.contact == b.contact && a.fast.s_c_m2 == b.fast.s_c_m2;
 }
 
 }  // namespace
@@ -30,7 +32,8 @@ std::vector<ModelEntry> usual_models(const ModelRequest& request) {
     if (!tuned && std::ranges::any_of(scenes, same)) return;
     const bool response = scene.fast.formulation == scene::Formulation::response;
     ModelEntry& entry =
-        models.emplace_back(response ? response_models(request).front() : skeleton_model(key, given, change));
+        models.emplace_back(response ? response_model({.name = "", .key = tuned ? key : "response"}, change, request)
+                                     : skeleton_model(key, given, change));
     entry.name = name;
     entry.own = has_tuned ? tuned : same_model(scene, given);
     scenes.push_back(std::move(scene));
@@ -38,7 +41,8 @@ std::vector<ModelEntry> usual_models(const ModelRequest& request) {
   if (given.contact.law == scene::ContactLaw::duffing) add("paper", "paper as printed", as_printed);
   add("area_aware", "untuned, from the material",
       [](scene::Scene scene) { return with_untuned_area_law(corrected(std::move(scene))); });
-  add("response", "response, untuned", with_response);
+  add("response", given.fast.body_falloff_per_m > 0.0 ? "response, scene's falloff" : "response, untuned",
+      with_response);
   add("scene", "scene's own constants", [](scene::Scene scene) { return scene; });
   if (has_tuned) {
     const std::filesystem::path& file = request.parameters.front();

@@ -90,6 +90,7 @@ std::vector<std::string> notes_of(const StageFit& stage) {
 
 std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model) {
   std::vector<std::string> limits;
+  const bool response = model.formulation == scene::Formulation::response;
   const TuningOutcome& trained = model.outcomes.front();
   for (const char* differs : {"place", "tool", "depth", "track", "body"}) {
     const TuningOutcome* worst = nullptr;
@@ -129,13 +130,13 @@ std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model
         percent_text(*e.shape_rel_l2.value), tuning.data[worst->data].contact.name);
     if (e.shape_inside_r_rel_l2.value && e.shape_outside_r_rel_l2.value && e.shape_error_outside_share) {
       text += fmt::format(
-          " There it is {} within the local radius and {} outside, where {} of the squared error lies: only "
-          "the anchor points move the surface there, and the local factor has no effect.",
+          " There it is {} within the local radius and {} outside, where {} of the squared error lies{}.",
           percent_text(*e.shape_inside_r_rel_l2.value), percent_text(*e.shape_outside_r_rel_l2.value),
-          percent_text(*e.shape_error_outside_share));
+          percent_text(*e.shape_error_outside_share),
+          response ? "" : ": only the anchor points move the surface there, and the local factor has no effect");
     }
     if (e.shape_side_faces_rel_l2.value) {
-      text += fmt::format(" On untouched faces, which only the anchor points move, it is {}.",
+      text += fmt::format(" On untouched faces{} it is {}.", response ? "" : ", which only the anchor points move,",
                           percent_text(*e.shape_side_faces_rel_l2.value));
     }
     limits.push_back(std::move(text));

@@ -34,7 +34,9 @@ Tuning tune(const TuningStudy& study, const SolveReference& solve, const std::fu
     }
   }
   for (const scene::Formulation formulation : study.formulations) {
+    const bool response = formulation == scene::Formulation::response;
     for (const scene::ContactLaw law : study.laws) {
+      if (response && law != study.laws.front()) continue;
       TunedModel model{
           .formulation = formulation, .law = law, .stages = {}, .outcomes = {}, .shape_parts = {}, .limits = {}};
       for (const TuningStage stage : {TuningStage::force, TuningStage::shape}) {
@@ -45,7 +47,8 @@ Tuning tune(const TuningStudy& study, const SolveReference& solve, const std::fu
       tell(model.name() + ": errors on every contact");
       for (std::size_t k = 0; k < tuning.data.size(); ++k)
         model.outcomes.push_back(outcome_of(tuning, entry, model, k));
-      if (has_skeleton(entry.family)) model.shape_parts = shape_parts_of(tuning.data.front(), entry, model);
+      if (has_skeleton(entry.family) && !response)
+        model.shape_parts = shape_parts_of(tuning.data.front(), entry, model);
       model.limits = limits_of(tuning, model);
       tuning.models.push_back(std::move(model));
     }

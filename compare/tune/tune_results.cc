@@ -161,6 +161,7 @@ std::string parameters_toml(const Tuning& tuning, const TunedModel& model) {
   const auto written = [&](const Field& field) {
     if (!field.tunable || !scene::applies(field, values)) return false;
     if (tuned.contains(&field)) return true;
+    if (model.formulation == scene::Formulation::response) return field.key == "fast.formulation";
     if (!scene::in_optional_table(field))
       return scene::must_be_given(field) || field.tunable->stage == scene::TuningStage::model;
     return std::ranges::any_of(

@@ -51,10 +51,12 @@ void set_values(scene::Scene& scene, const std::vector<TuningParameter>& paramet
 }
 
 std::string TunedModel::name() const {
+  if (formulation == scene::Formulation::response) return "response";
   return std::string(scene::name_of(formulation)) + " " + std::string(scene::name_of(law).title);
 }
 
 std::string TunedModel::key() const {
+  if (formulation == scene::Formulation::response) return "response";
   return std::string(scene::name_of(formulation)) + "-" + std::string(scene::name_of(law).word);
 }
 

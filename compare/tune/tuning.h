@@ -70,8 +70,8 @@ struct TunedModel {
   std::optional<ShapeParts> shape_parts;  ///< of a skeleton
   std::vector<std::string> limits;        ///< what limits it on its held-out contacts, a sentence each
 
-  [[nodiscard]] std::string name() const;  ///< "corrected area-aware"
-  [[nodiscard]] std::string key() const;   ///< "corrected-area_aware", for files and figures
+  [[nodiscard]] std::string name() const;  ///< "corrected area-aware"; "response", which has no such law
+  [[nodiscard]] std::string key() const;   ///< "corrected-area_aware", for files and figures; "response"
 };
 
 struct Tuning {

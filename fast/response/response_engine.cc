@@ -75,6 +75,11 @@ ResponseEngine::ResponseEngine(const scene::Scene& scene, scene::Surface surface
       state_(model_),
       tool_reach_m_(scene::tool_surface(scene.tool, scene.fast.tool_samples).points_m.colwise().norm().maxCoeff()) {}
 
+void ResponseEngine::restart() {
+  state_ = ResponseState(model_);
+  restart_hash();
+}
+
 StepStatus ResponseEngine::force(const scene::Pose& pose) noexcept {
   state_.clock = clock();
   return response_force(model_, pose, state_);

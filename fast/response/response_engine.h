@@ -18,6 +18,8 @@ class ResponseEngine final : public Engine {
   /// @param scene  validated, one of which scene::response_needs() nothing; may go out of scope
   ResponseEngine(const scene::Scene& scene, scene::Surface surface, scene::Response response);
 
+  void set_constants(const scene::Scene& scene) override { model_.falloff_per_m = scene.fast.body_falloff_per_m; }
+  void restart() override;
   [[nodiscard]] scene::Wrench wrench() const noexcept override { return state_.wrench; }
   [[nodiscard]] bool in_contact() const noexcept override { return region_count() > 0; }
   [[nodiscard]] int region_count() const noexcept override {

@@ -150,7 +150,8 @@ ResponseModel::ResponseModel(const scene::Scene& scene, scene::Surface at_rest, 
       half_space(scene.body.material),
       rest_m(columns_of(surface.points_m)),
       rest_normal(columns_of(surface.normals)),
-      normals(normal_stencils(surface)) {
+      normals(normal_stencils(surface)),
+      falloff_per_m(scene.fast.body_falloff_per_m) {
   const scene::LoadGrid& grid = response.grid;
   const int n = grid.count();
   body_size_m = scene::body_size_m(scene.body);

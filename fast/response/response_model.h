@@ -11,6 +11,10 @@
 // C_ij = C_ji = (1 - nu^2) / (pi E |p_i - p_j|) and the rest from the columns, by Maxwell's and Betti's reciprocity.
 // All have one potential, so the order of the tips does not matter.
 //
+// Next to an inclusion C falls off within the contact. Then a contact of radius a has C / sqrt(1 + (kappa a)^4) in its
+// place: C under a small contact, ~ 1 / a^2 as under an even load under a large one. a = 3 F / (4 E* D_hs) is that of
+// Hertz's contact. kappa, fast.body_falloff_per_m, is fitted; 0 leaves C.
+//
 // With friction, the tool's motion along the surface is the sum of the contact's displacement on the half space
 // (slip_springs.h) and the body's, F s + C_t Q. On the rest surface the load lags behind the tool by the displacement
 // that friction causes: C_t Q and the contact's.
@@ -62,6 +66,7 @@ struct ResponseModel {
   Eigen::VectorXd own_compliance;  ///< C at the grid's points [m/N]
   Eigen::Matrix3Xd sway, tilt;     ///< s [m/N] and the slope's direction b [1/N] there, world
   double body_size_m;
+  double falloff_per_m;  ///< kappa
   CheckedRange checked;
   Eigen::VectorXd edge_distance_m;  ///< from the grid's points to the nearest edge; infinite where there is none
   Eigen::VectorXd largest_curvature_per_m;  ///< of the body there, over all directions, without its sign
@@ -92,7 +97,8 @@ struct ResponseContact {
   LoadPath path;
   scene::Vec3 sway_m_per_n = scene::Vec3::Zero(), tilt_per_n = scene::Vec3::Zero(), shift_m_per_n = scene::Vec3::Zero();
   double curvature_per_m = 0.0;                   ///< of the body
-  double compliance_m_per_n = 0.0;                ///< C of this force
+  double compliance_m_per_n = 0.0;                ///< C of this force and radius
+  double yielding = 0.0;                          ///< d(C F) / d(indentation)
   scene::Wrench wrench;                           ///< its part
   scene::Vec3 half_line_m = scene::Vec3::Zero();  ///< of a line: from the load's centre to the last patch's, world
   // Only with friction:

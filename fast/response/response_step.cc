@@ -23,19 +23,22 @@ using scene::Vec3;
 /// Gauss-Legendre with three points on [0, 1]: exact for the cubic C(p) along the load's way.
 constexpr std::array<double, 3> gauss_x{0.1127016653792583, 0.5, 0.8872983346207417};
 constexpr std::array<double, 3> gauss_weight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+/// With five, where C also depends on the contact's radius.
+constexpr std::array<double, 5> gauss5_x{0.0469100770306680, 0.2307653449471585, 0.5, 0.7692346550528415,
+                                         0.9530899229693320};
+constexpr std::array<double, 5> gauss5_weight{0.1184634425280945, 0.2393143352496832, 0.2844444444444444,
+                                              0.2393143352496832, 0.1184634425280945};
 
 double compliance_m_per_n(const ResponseModel& model, const Eigen::Vector2d& place) noexcept {
   return GridWeights(model.response.grid, place).sum<double>([&](int k) { return model.own_compliance[k]; });
 }
 
-/// int_0^F C(p(f)) f df.
-double body_energy_j(const ResponseModel& model, const LoadPath& path, double force_n) noexcept {
-  double sum = 0.0;
-  for (std::size_t q = 0; q < gauss_x.size(); ++q) {
-    const double f_n = gauss_x[q] * force_n;
-    sum += gauss_weight[q] * f_n * compliance_m_per_n(model, path.start + f_n * path.per_n);
-  }
-  return sum * force_n;
+/// Share of the body's compliance under a contact of this size: its radius is that of Hertz's contact with this force
+/// and indentation, 3 F / (4 E* D).
+double falloff(const ResponseModel& model, double force_n, double indentation_m) noexcept {
+  const double a_m = 0.75 * std::numbers::pi * model.half_space.surface_m2_per_n() * force_n / indentation_m;
+  const double a = model.falloff_per_m * a_m;
+  return 1.0 / std::sqrt(1.0 + a * a * a * a);
 }
 
 LocalContact local_contact(const TipLaw& tip, const GridWeights& weights, double indentation_m) noexcept {
@@ -58,6 +61,54 @@ LocalContact local_contact(const TipLaw& tip, const GridWeights& weights, double
 double local_energy_j(const TipLaw& tip, const GridWeights& weights, double indentation_m) noexcept {
   if (tip.tables.size() == 1) return tip.tables.front().energy_j(indentation_m);
   return weights.sum<double>([&](int k) { return tip.tables[static_cast<std::size_t>(k)].energy_j(indentation_m); });
+}
+
+/// The forces up to the contact's, by which int_0^F C f df is a sum: of weight C(p(force)), times scale.
+struct ForceSteps {
+  std::array<double, 2 * gauss5_x.size()> force_n{}, weight{};
+  std::size_t count = gauss_x.size();
+  double scale = 0.0;
+};
+
+ForceSteps force_steps(const ResponseModel& model, const TipLaw& tip, const ResponseContact& contact) noexcept {
+  ForceSteps out;
+  if (model.falloff_per_m == 0.0) {
+    out.scale = contact.law.force_n;
+    for (std::size_t q = 0; q < out.count; ++q) {
+      out.force_n[q] = gauss_x[q] * out.scale;
+      out.weight[q] = gauss_weight[q] * out.force_n[q];
+    }
+    return out;
+  }
+  // In u, with f = F u^(3/2), which is nearly the indentation's share under a ball: smooth there. Apart where the
+  // contact is small and C falls off.
+  constexpr double small = 0.2;
+  const double force_n = contact.law.force_n;
+  out.count = out.force_n.size();
+  out.scale = force_n * force_n;
+  for (std::size_t q = 0; q < out.count; ++q) {
+    const std::size_t i = q % gauss5_x.size();
+    const bool first = q < gauss5_x.size();
+    const double size = first ? small : 1.0 - small, u = (first ? 0.0 : small) + size * gauss5_x[i];
+    out.force_n[q] = force_n * u * std::sqrt(u);
+    double indentation_m = u * contact.indentation_m;
+    for (int newton = 0; newton < 2; ++newton) {
+      const LocalContact law = local_contact(tip, contact.weights, indentation_m);
+      indentation_m =
+          std::max(indentation_m - (law.force_n - out.force_n[q]) / law.stiffness_n_per_m, 0.1 * indentation_m);
+    }
+    out.weight[q] = size * gauss5_weight[i] * 1.5 * u * u * falloff(model, out.force_n[q], indentation_m);
+  }
+  return out;
+}
+
+/// int_0^F C(p(f)) f df.
+double body_energy_j(const ResponseModel& model, const LoadPath& path, const ForceSteps& steps) noexcept {
+  double sum = 0.0;
+  for (std::size_t q = 0; q < steps.count; ++q) {
+    sum += steps.weight[q] * compliance_m_per_n(model, path.start + steps.force_n[q] * path.per_n);
+  }
+  return sum * steps.scale;
 }
 
 /// Adds the smooth part of one column, or sets it.
@@ -239,6 +290,7 @@ void press(const ResponseModel& model, const TipLaw& tip, double indentation_m, 
   contact.indentation_m = indentation_m;
   contact.law = local_contact(tip, contact.weights, indentation_m);
   const LocalContact& law = contact.law;
+  contact.yielding = 0.0;
   if (!(indentation_m > 0.0)) return;
   // Radius that a ball of the same eccentricity has: of a punch 2 a^2 / (3 D).
   const double radius_m = tip.tip.ball() ? 1.0 / (1.0 / tip.tip.radius_m + contact.curvature_per_m)
@@ -254,6 +306,12 @@ void press(const ResponseModel& model, const TipLaw& tip, double indentation_m, 
   contact.path.per_n = {contact.shift_m_per_n.dot(grid.axes.col(0)) / grid.spacing_m[0],
                         contact.shift_m_per_n.dot(grid.axes.col(1)) / grid.spacing_m[1]};
   contact.compliance_m_per_n = compliance_m_per_n(model, contact.path.start + law.force_n * contact.path.per_n);
+  contact.yielding = contact.compliance_m_per_n * law.stiffness_n_per_m;
+  if (model.falloff_per_m == 0.0) return;
+  const double share = falloff(model, law.force_n, indentation_m), lost = 1.0 - share * share;
+  contact.compliance_m_per_n *= share;
+  contact.yielding = share * contact.yielding * (1.0 - 2.0 * lost) +
+                     2.0 * lost * contact.compliance_m_per_n * law.force_n / indentation_m;
 }
 
 /// Newton's method on the indentation of one tip; the law is convex or nearly so, and D itself is never too small a
@@ -262,9 +320,8 @@ void press_alone(const ResponseModel& model, const TipLaw& tip, double pulled_m,
   double indentation_m = contact.depth_m;
   for (int iteration = 0; iteration < 12; ++iteration) {
     press(model, tip, indentation_m, contact);
-    const double C = contact.compliance_m_per_n;
-    const double open_m = indentation_m + C * contact.law.force_n + pulled_m - contact.depth_m;
-    const double step_m = open_m / (1.0 + C * contact.law.stiffness_n_per_m);
+    const double open_m = indentation_m + contact.compliance_m_per_n * contact.law.force_n + pulled_m - contact.depth_m;
+    const double step_m = open_m / (1.0 + contact.yielding);
     indentation_m = std::max(indentation_m - step_m, 1e-3 * indentation_m);
     if (std::abs(step_m) < 1e-13 * contact.depth_m) break;
   }
@@ -324,7 +381,7 @@ void press_together(const ResponseModel& model, const Together& all, double deep
     for (Eigen::Index j = 0; j < n; ++j) {
       const double stiffness = contact(j).law.stiffness_n_per_m;
       slope.col(j) = stiffness * C.col(j);
-      slope(j, j) = 1.0 + contact(j).compliance_m_per_n * stiffness;
+      slope(j, j) = 1.0 + contact(j).yielding;
     }
     step_m = slope.partialPivLu().solve(open_m);
     const bool last = step_m.cwiseAbs().maxCoeff() < 1e-14 * deepest_m;
@@ -344,7 +401,8 @@ void press_together(const ResponseModel& model, const Together& all, double deep
 }
 
 /// How the energy of the body's part changes from place to place at these forces, along the surface [N].
-Vec3 lateral_n(const ResponseModel& model, const ResponseState& state, const ResponseContact& contact) noexcept {
+Vec3 lateral_n(const ResponseModel& model, const ResponseState& state, const ResponseContact& contact,
+               const ForceSteps& steps) noexcept {
   constexpr double e = 0.02;  // steps of the grid
   const scene::LoadGrid& grid = model.response.grid;
   const double force_n = contact.law.force_n;
@@ -353,7 +411,7 @@ Vec3 lateral_n(const ResponseModel& model, const ResponseState& state, const Res
     LoadPath low = contact.path, high = contact.path;
     low.start[axis] -= e;
     high.start[axis] += e;
-    slope_j[axis] = (body_energy_j(model, high, force_n) - body_energy_j(model, low, force_n)) / (2.0 * e);
+    slope_j[axis] = (body_energy_j(model, high, steps) - body_energy_j(model, low, steps)) / (2.0 * e);
     if (state.contacts.size() == 1) continue;
     const GridWeights below(grid, low.start), above(grid, high.start);
     for (const ResponseContact& other : state.contacts) {
@@ -380,11 +438,12 @@ Vec3 lateral_n(const ResponseModel& model, const ResponseState& state, const Res
 void finish_contact(const ResponseModel& model, const TipLaw& tip, const scene::Pose& pose, ResponseContact& contact,
                     ResponseState& state) noexcept {
   const double force_n = contact.law.force_n;
-  Vec3 along_n = lateral_n(model, state, contact);
+  const ForceSteps steps = force_steps(model, tip, contact);
+  Vec3 along_n = lateral_n(model, state, contact, steps);
   // The foot of a ball moves less than its centre over a round body.
   if (tip.tip.ball()) along_n /= 1.0 + contact.curvature_per_m * (tip.tip.radius_m - contact.depth_m);
   state.energy_j += local_energy_j(tip, contact.weights, contact.indentation_m) + contact.depth_m * force_n -
-                    contact.indentation_m * force_n - body_energy_j(model, contact.path, force_n);
+                    contact.indentation_m * force_n - body_energy_j(model, contact.path, steps);
   for (const ResponseContact& other : state.contacts) {
     if (&other == &contact || !other.touches()) continue;
     state.energy_j -=

@@ -149,6 +149,28 @@ struct Lines {
   }
 };
 
+/// The one number of the response model that may be fitted.
+std::string falloff_text(const scene::Scene& scene) {
+  if (scene.body.inclusions.empty()) return "";
+  const double falloff_per_m = scene.fast.body_falloff_per_m;
+  if (falloff_per_m == 0.0) return ", whatever the contact's size (fast.body_falloff_per_m = 0; `tune` can fit it)";
+  return fmt::format(
+      ", which falls to 0.71 of itself under a contact of {:.3g} mm radius (fast.body_falloff_per_m = {:.4g} 1/m)",
+      1e3 / falloff_per_m, falloff_per_m);
+}
+
+/// How far off the pressure was where it was compared with the reference (reports/response.md), of such tips.
+std::string pressure_text(const scene::Scene& scene, const std::vector<scene::ToolTip>& tips) {
+  const scene::ToolTip& tip = tips.front();
+  return std::string("at recorded instants, not in a step; ") +
+         (!scene.body.inclusions.empty() ? "NOT GOOD above a soft inclusion, up to 50 % off"
+          : tips.size() > 1              ? "18 % off under two pins"
+          : tip.line()                   ? "4 % off under a capsule's side, NOT GOOD near an edge, 37 %"
+          : !tip.ball()                  ? "5 % off under a pin, NOT GOOD under a wide disc with a narrow rim, 35 %"
+          : scene.contact.friction       ? "13 % off, with friction"
+                                         : "4 to 7 % off under a ball on a flat face, 11 % on a curved one");
+}
+
 scene::Plan response_plan(const scene::Scene& scene) {
   std::unique_ptr<Engine> engine;
   std::string not_there;
@@ -175,7 +197,8 @@ scene::Plan response_plan(const scene::Scene& scene) {
   lines.models(
       "contact force",
       "of a linear half space under the tool's true surface, tabulated over the depth, times a factor of finite "
-      "strain that depends on Poisson's ratio; in series with the body's compliance",
+      "strain that depends on Poisson's ratio; in series with the body's compliance" +
+          falloff_text(scene),
       cost({Stage::force}));
   if (const auto& friction = scene.contact.friction) {
     lines.models("friction",
@@ -197,6 +220,7 @@ scene::Plan response_plan(const scene::Scene& scene) {
                cost({Stage::interpolation}));
   lines.models("local surface", "points under the tool lie on it", cost({Stage::local_factor}));
   lines.models("normals", "of the deformed surface", cost({Stage::normals}));
+  lines.models("pressure", pressure_text(scene, tips));
   lines.models("checked range", checked_text(scene, engine ? measured.status : StepStatus::ok));
   if (engine) lines.whole(measured, *engine);
   lines.leaves_out("time dependence", "the force is static; the track's speed does not enter");

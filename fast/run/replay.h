@@ -6,6 +6,7 @@
 #include "fast/step/skeleton_engine.h"
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,7 +15,8 @@ namespace touchstone::fast {
 
 class Replay {
  public:
-  /// @param bytes_max  of what is kept of the ticks; where it does not suffice, every call steps through them anew
+  /// @param bytes_max  of what is kept of the ticks; where it does not suffice, every call steps through them anew, as
+  ///                   with the response model
   explicit Replay(const scene::Scene& scene, std::size_t bytes_max = std::size_t{512} << 20);
 
   /// Total force on the tool at every instant [N]; equal to run()'s bit for bit.
@@ -32,8 +34,9 @@ class Replay {
   [[nodiscard]] bool recorded() const noexcept { return recorded_.has_value(); }
 
  private:
-  SkeletonEngine engine_;
-  double r_th_m_;  ///< of the constructor's scene
+  std::unique_ptr<Engine> engine_;
+  SkeletonEngine* skeleton_;  ///< the same; null where it is another
+  double r_th_m_;             ///< of the constructor's scene
   std::optional<std::vector<RecordedTick>> recorded_;
   std::vector<ContactRegion> regions_;  ///< where recorded, per instant; what the shape follows from
 };

@@ -6,6 +6,7 @@
 #include "fast/surface/surface_patches.h"
 #include "scene/base/wrench.h"
 #include "scene/model/answer.h"
+#include "scene/model/scene.h"
 #include "scene/shape/surface.h"
 
 #include <cstdint>
@@ -29,6 +30,11 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
   virtual ~Engine() = default;
+
+  /// Takes over the constants that tuning may change; the state stays as it is.
+  virtual void set_constants(const scene::Scene& scene) = 0;
+  /// Back to before the first step.
+  virtual void restart() = 0;
 
   /// Pose in, wrench() out. A pose that is not finite leaves everything as it is and answers not_finite.
   StepStatus step_force(const scene::Pose& pose) noexcept;

@@ -26,10 +26,10 @@ class SkeletonEngine final : public Engine {
 
   /// Takes over constants, see FastModel::set_constants(); the state stays as it is. With another distance between
   /// regions the cells are chosen anew, and the engine begins anew.
-  void set_constants(const scene::Scene& scene);
-  /// Back to before the first step. @param max_regions as of FastState
+  void set_constants(const scene::Scene& scene) override;
+  /// @param max_regions as of FastState
   void restart(int max_regions);
-  void restart() { restart(model_.max_regions); }
+  void restart() override { restart(model_.max_regions); }
 
   [[nodiscard]] const FastModel& model() const noexcept { return model_; }
   [[nodiscard]] const FastState& state() const noexcept { return state_; }

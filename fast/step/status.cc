@@ -36,7 +36,8 @@ std::string status_text(std::uint32_t status) {
   add(StepStatus::material_unchecked,
       "the body's Poisson's ratio is below 0.5, which was not compared with the reference for this tool or with "
       "friction");
-  add(StepStatus::inclusion_unchecked, "the body has inclusions, and no such body was compared with the reference");
+  add(StepStatus::inclusion_unchecked,
+      "the body has inclusions, and such bodies were compared with the reference only above a soft ball");
   return text.empty() ? "ok" : text;
 }
 

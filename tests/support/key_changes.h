@@ -73,6 +73,7 @@ beta = 0.75
 mu_D = 0.3
 [fast]
 triangles = 200
+body_falloff_per_m = 100.0
 tool_samples = 400
 rate_hz = 200.0
 [reference]
@@ -103,7 +104,8 @@ inline std::string replaced(std::string text, const std::string& from, const std
 /// Scenes that together use every key.
 inline std::vector<std::string> scenes_of_all_keys() {
   const std::size_t inclusions = first_scene.find("[[body.inclusion]]"), tool = first_scene.find("[tool]");
-  const std::string plain = replaced(first_scene, first_scene.substr(inclusions, tool - inclusions), "");
+  std::string plain = replaced(first_scene, first_scene.substr(inclusions, tool - inclusions), "");
+  plain = replaced(plain, "body_falloff_per_m = 100.0\n", "");
   const std::string box = "shape = \"box\"\nsize_m = [0.06, 0.06, 0.06]\n";
   const std::string ball = "shape = \"sphere\"\nradius_m = 0.01\nmass_center_m = [0.0, 0.001, 0.001]\n";
   const std::string last = "position_m = [0.004, 0.0, 0.067]\n";

@@ -97,6 +97,7 @@ std::vector<Field<Scene>> make_scene_fields() {
       tool_cylinder = Condition<S>{"tool.shape", "tool.shape = \"cylinder\"", [](const S& s) { return s.tool.shape == ToolShape::cylinder; }},
       tool_box = Condition<S>{"tool.shape", "tool.shape = \"box\"", [](const S& s) { return s.tool.shape == ToolShape::box; }},
       tool_mesh = Condition<S>{"tool.shape", "tool.shape = \"mesh\"", [](const S& s) { return s.tool.shape == ToolShape::mesh; }},
+      inclusions = Condition<S>{"body.inclusion", "at least one [[body.inclusion]]", [](const S& s) { return !s.body.inclusions.empty(); }},
       duffing = Condition<S>{"contact.law", "contact.law = \"duffing\"", [](const S& s) { return s.contact.law == ContactLaw::duffing; }},
       area_aware = Condition<S>{"contact.law", "contact.law = \"area_aware\"", [](const S& s) { return s.contact.law == ContactLaw::area_aware; }},
       friction = Condition<S>{"contact.friction", "[contact.friction] given", [](const S& s) { return s.contact.friction.has_value(); }};
@@ -182,6 +183,8 @@ std::vector<Field<Scene>> make_scene_fields() {
       {"fast.s_c_m2", "m^2", above(0.0, 1e3), required, fast, +[](S& s) -> double& { return s.fast.s_c_m2; }, always,
            "s_c: cross-section area of all beams together.", shape,
            +[](const S& s) { return three_digits(body_size_m(s.body) * body_size_m(s.body) / 3.6); }, "L^2 / 3.6"},
+      {"fast.body_falloff_per_m", "1/m", between(0.0, 1e5), "0.0", fast, +[](S& s) -> double& { return s.fast.body_falloff_per_m; }, inclusions,
+           "Response model: kappa of the body's compliance C / sqrt(1 + (kappa a)^4), a the radius of Hertz's contact of the same force and indentation; 0: C.", Tunable{.stage = TuningStage::force, .formulation = Formulation::response}},
 
       {"live.force_max_n", "N", above(0.0, 1e4), "40.0", live, +[](S& s) -> double& { return s.live.force_max_n; }, always,
            "Device loop: largest norm of the force sent to the device."},

@@ -61,8 +61,9 @@ class Reader {
     for (const OptionalTable& table : optional_tables()) {
       if (document_.at_path(table.key).is_table()) table.give(scene);
     }
-    read_fields(scene_fields(), document_, "", scene);
+    // Before the keys that apply only with inclusions.
     scene.body.inclusions = read_rows(inclusion_fields(), document_.at_path(inclusion_key), inclusion_key);
+    read_fields(scene_fields(), document_, "", scene);
     scene.probes = read_rows(probe_fields(), document_.at_path(probe_key), probe_key);
     read_mesh(scene);
     const std::vector<TrackRow> rows = read_track();

@@ -132,14 +132,15 @@ struct Contact {
 /// Settings of the real-time model; names are the paper's symbols.
 struct FastSettings {
   Formulation formulation = Formulation::corrected;
-  int triangles = 0;     ///< body surface, also the rest points of every comparison
-  int tool_samples = 0;  ///< points on the tool's surface
-  double rate_hz = 0.0;  ///< ticks per second of virtual time
-  int max_regions = 1;   ///< contact regions at a time; a convex tool needs one
-  double r_R_m = 0.0;    ///< radius of the local neighbourhood R
-  double C_n = 0.0;      ///< local factor, strength
-  double C_r_m = 0.0;    ///< local factor, core radius
-  double s_c_m2 = 0.0;   ///< total beam cross-section, (19)
+  int triangles = 0;                ///< body surface, also the rest points of every comparison
+  int tool_samples = 0;             ///< points on the tool's surface
+  double rate_hz = 0.0;             ///< ticks per second of virtual time
+  int max_regions = 1;              ///< contact regions at a time; a convex tool needs one
+  double r_R_m = 0.0;               ///< radius of the local neighbourhood R
+  double C_n = 0.0;                 ///< local factor, strength
+  double C_r_m = 0.0;               ///< local factor, core radius
+  double s_c_m2 = 0.0;              ///< total beam cross-section, (19)
+  double body_falloff_per_m = 0.0;  ///< of the response model's body compliance; only with inclusions
   /// Folder of results; the response model reads its file there. Not a key: where a program runs decides.
   std::filesystem::path store = "out/reference-store";
 };

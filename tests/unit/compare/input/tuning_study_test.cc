@@ -153,8 +153,45 @@ TEST(TuningStudyModels, OnlyTheCorrectedOneHasFrictionsStiffnessRatio) {
   EXPECT_TRUE(applies(limit, Formulation::published, ContactLaw::duffing));
 }
 
+TEST_F(TuningStudyTest, OfTheResponseModelOnlyTheBodysFalloffIsTuned) {
+  const auto contact = [](const std::string& row, const std::string& scene, const std::string& set = "") {
+    return row + "scene = \"" + scenes + scene + "\"\nset = { compare.instants = 5" + set + " }\n";
+  };
+  const std::string train = "[[training]]\nname = \"above\"\n",
+                    judge = "[[held_out]]\nname = \"plain\"\ndiffers = \"body\"\n";
+  const std::string falloff = "[[parameter]]\nkey = \"fast.body_falloff_per_m\"\nbounds = [50.0, 1.0e3]\n";
+  const std::string response = head + "formulation = \"response\"\n", soft = "ellipsoid-pvc-inside.toml",
+                    rubber = "ellipsoid-rubber.toml";
+  const TuningStudy study = read(response + contact(train, soft) + contact(judge, rubber) + falloff);
+  EXPECT_THAT(study.formulations, ElementsAre(Formulation::response));
+  ASSERT_EQ(study.parameters.size(), 1u);
+  EXPECT_EQ(study.parameters[0].unit, "1/m");
+  EXPECT_TRUE(applies(study.parameters[0], Formulation::response, ContactLaw::duffing));
+  EXPECT_FALSE(applies(study.parameters[0], Formulation::corrected, ContactLaw::duffing));
+  TuningParameter other = study.parameters[0];
+  other.key = "contact.k1_n_per_m";
+  EXPECT_FALSE(applies(other, Formulation::response, ContactLaw::duffing));
+  // It is not the plain body's.
+  Scene written = study.held_out[0].scene;
+  set_parameter(written, "fast.body_falloff_per_m", 200.0);
+  EXPECT_EQ(written.fast.body_falloff_per_m, 0.0);
+
+  const auto with = [&](const std::string& set, const std::string& parameter) {
+    return refusal(response + contact(train, soft, set) + contact(judge, rubber) + parameter);
+  };
+  EXPECT_THAT(with("", stiffness), HasSubstr("of the response model only fast.body_falloff_per_m can be tuned"));
+  EXPECT_THAT(with(", \"track[0].position_m[2]\" = 0.2, \"track[1].position_m[2]\" = 0.2", falloff),
+              HasSubstr("the response model needs that the tool touches the body; contact \"above\""));
+  EXPECT_THAT(refusal(response + contact(train, rubber) + contact(judge, rubber) + falloff),
+              HasSubstr("only applies with at least one [[body.inclusion]]; expected a training contact with it"));
+  EXPECT_THAT(refusal(head + contact(train, soft) + contact(judge, rubber) + falloff),
+              HasSubstr("has no meaning under the models of this study"));
+  EXPECT_THAT(refusal(head + "formulation = \"exact\"\n" + contact(train, soft) + contact(judge, rubber) + falloff),
+              HasSubstr("expected \"published\" or \"corrected\" or \"response\""));
+}
+
 TEST(ShippedTuningStudies, HaveScenesWithoutFaultAndContactsHeldOut) {
-  for (const char* name : {"ball-on-cube", "ellipsoid", "friction", "mallet", "inclusion"}) {
+  for (const char* name : {"ball-on-cube", "ellipsoid", "friction", "mallet", "inclusion", "soft-ball"}) {
     const TuningStudy study = load_tuning_study(source_folder() + "/meshes/studies/" + std::string(name) + ".toml");
     EXPECT_FALSE(study.training.empty()) << name;
     EXPECT_FALSE(study.held_out.empty()) << name;

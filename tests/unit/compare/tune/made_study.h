@@ -38,6 +38,7 @@ namespace touchstone::compare::testing {
       static_cast<scene::InstantRecord&>(instant) = record;
       if (!record.regions.empty()) instant.region_middles_m = {scene::Vec3(0.0, 0.0, 0.06)};
       instant.displacement_uncertainty_m.setConstant(surface.points_m.cols(), 1e-6);
+      instant.traction_uncertainty_pa.setZero(record.traction_pa.cols());
       instant.force_uncertainty_n = 0.01;
     }
     result.shape_uncertainty_rel = 1e-4;

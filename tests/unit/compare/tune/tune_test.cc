@@ -1,14 +1,22 @@
 // Tuning against references computed by a model: the constants are recovered.
 #include "compare/tune/tune.h"
 
+#include "compare/model/usual_models.h"
+#include "compare/tune/tune_results.h"
 #include "fast/run/replay.h"
 #include "fast/run/run.h"
+#include "scene/base/files.h"
+#include "scene/response/response_file.h"
 #include "support/bounded_memory.h"
+#include "support/press.h"
 #include "support/spring.h"
+#include "support/synthetic_response.h"
+#include "support/temporary_folder.h"
 #include "unit/compare/tune/made_study.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <tuple>
 
 namespace touchstone::compare {
@@ -128,6 +136,64 @@ TEST(Tune, BringsBackTheConstantOfAModelThatNobodyHereKnows) {
   EXPECT_NEAR(found(model, "contact.k1_n_per_m").value, 900.0, 0.5);
   for (const TuningOutcome& outcome : model.outcomes) EXPECT_LT(*outcome.errors.force_nrmse.value, 1e-3);
   EXPECT_FALSE(model.shape_parts) << "those of a skeleton";
+}
+
+TEST(Tune, BringsBackTheResponseModelsFalloffAndNothingElse) {
+  const testing::TemporaryFolder folder;
+  const auto contact = [&](double radius_m) {
+    scene::Scene scene = test::ball_on_cube();
+    scene.body.inclusions.emplace_back();
+    scene.body.inclusions[0].material = scene.body.material;
+    scene.track.back().pose.position_m.z() += radius_m - scene.tool.radius_m;
+    scene.tool.radius_m = radius_m;
+    scene.fast.formulation = scene::Formulation::response;
+    scene.fast.triangles = 400;
+    scene.fast.store = folder.path();
+    const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
+    const std::string identity = scene::response_identity(scene.body, scene::load_grid(scene).grid.value(), surface);
+    const std::filesystem::path file = scene::response_path(folder.path(), identity);
+    std::filesystem::create_directories(file.parent_path());
+    scene::write_file(file, scene::response_bytes(test::synthetic_response(scene, surface), identity));
+    return scene;
+  };
+  TuningStudy made = study({free("fast.body_falloff_per_m", 20.0, 2e3), free("contact.k1_n_per_m", 1e3, 1e6)});
+  made.formulations = {scene::Formulation::response};
+  made.laws = {scene::ContactLaw::duffing, scene::ContactLaw::area_aware};  // it has neither
+  made.training = {{"ball", "", contact(0.010), {0.0, 1.0}}};
+  made.held_out = {{"smaller ball", "tool", contact(0.006), {0.0, 1.0}}};
+  const Tuning tuning = tune(made, made_with({{"fast.body_falloff_per_m", 230.0}}));
+  ASSERT_EQ(tuning.models.size(), 1u);
+  const TunedModel& model = tuning.models.front();
+  EXPECT_EQ(model.name(), "response");
+  EXPECT_FALSE(model.shape_parts.has_value());
+  ASSERT_EQ(model.stages.size(), 1u);
+  ASSERT_EQ(model.stages[0].parameters.size(), 1u);
+  const Determination& falloff = found(model, "fast.body_falloff_per_m");
+  EXPECT_NEAR(falloff.value, 230.0, 0.01);
+  EXPECT_TRUE(falloff.error.has_value());
+  for (const TuningOutcome& outcome : model.outcomes) {
+    EXPECT_LT(*outcome.errors.force_nrmse.value, 1e-5);
+    EXPECT_LT(*outcome.errors.shape_rel_l2.value, 1e-5);
+  }
+  // The file holds what makes it this model, and a scene takes it.
+  const std::string text = parameters_toml(tuning, model);
+  EXPECT_EQ(text.find("[contact]"), std::string::npos) << text;
+  const std::filesystem::path file = folder.path() / "parameters.toml";
+  scene::write_file(file, text);
+  scene::Scene plain = made.training[0].scene;
+  plain.fast.formulation = scene::Formulation::corrected;
+  const scene::Scene tuned = with_parameters(plain, file);
+  EXPECT_EQ(tuned.fast.formulation, scene::Formulation::response);
+  EXPECT_NEAR(tuned.fast.body_falloff_per_m, 230.0, 0.01);
+  // Beside the untuned one in the table of a comparison.
+  const std::vector<ModelEntry> models = usual_models({.scene = plain, .parameters = {file}});
+  const auto row = std::ranges::find(models, "tuned", &ModelEntry::key);
+  ASSERT_NE(row, models.end());
+  EXPECT_EQ(row->method, "half space, response");
+  EXPECT_EQ(std::ranges::count(models, "response", &ModelEntry::key), 1);
+  scene::Answer answer = unanswered(plain);
+  row->set_up(plain)->answer(answer);
+  EXPECT_NEAR(answer.instants.back().force_n().norm(), model.outcomes[0].errors.instants.back().force_fast_n, 1e-9);
 }
 
 TEST(Tune, JudgesOnlyTheInstantsOfTheAskedDepths) {

@@ -2,6 +2,7 @@
 #include "fast/response/response_engine.h"
 
 #include "fast/run/make_engine.h"
+#include "fast/run/replay.h"
 #include "fast/run/run.h"
 #include "scene/base/error.h"
 #include "scene/base/files.h"
@@ -48,6 +49,30 @@ class ResponseEngineTest : public ::testing::Test {
   compare::testing::TemporaryFolder folder_;
   scene::Scene scene_ = test::ball_on_cube();
 };
+
+TEST_F(ResponseEngineTest, AReplayEqualsTheRunBitForBitWithTheConstantsOfTheCall) {
+  store_response();
+  scene::Scene other = scene_;
+  other.fast.body_falloff_per_m = 200.0;
+  Replay replay(scene_);
+  EXPECT_FALSE(replay.recorded());
+  double last_n = 0.0;
+  for (const scene::Scene& now : {other, scene_}) {
+    const fast::Run run = fast::run(now);
+    const std::vector<scene::Vec3> force_n = replay.forces_n(now);
+    ASSERT_EQ(force_n.size(), run.instants.size());
+    for (std::size_t t = 0; t < force_n.size(); ++t) EXPECT_EQ(force_n[t], run.instants[t].force_n()) << t;
+    EXPECT_NE(force_n.back().norm(), last_n);
+    last_n = force_n.back().norm();
+    const std::vector<std::size_t> instants = {force_n.size() / 2, force_n.size() - 1};
+    std::size_t visited = 0;
+    replay.displacements(now, instants, [&](std::size_t k, const Columns3& displacement_m) {
+      EXPECT_EQ(matrix_of(displacement_m), run.instants[instants[k]].displacement_m) << k;
+      ++visited;
+    });
+    EXPECT_EQ(visited, instants.size());
+  }
+}
 
 TEST_F(ResponseEngineTest, RecordsTheContactInEquilibrium) {
   ResponseEngine engine = this->engine();

@@ -89,9 +89,10 @@ TEST_F(ResponseStep, FarAwayTheShapeIsTheHalfSpacesAndTheColumns) {
 }
 
 TEST_F(ResponseStep, ForceAndLateralForceHaveOnePotential) {
-  for (const double radius_m : {0.010, 0.006}) {
+  for (const auto& [radius_m, falloff_per_m] : {std::pair{0.010, 0.0}, {0.006, 0.0}, {0.010, 250.0}, {0.006, 400.0}}) {
     for (scene::Waypoint& waypoint : scene_.track) waypoint.pose.position_m.z() += radius_m - scene_.tool.radius_m;
     scene_.tool.radius_m = radius_m;
+    scene_.fast.body_falloff_per_m = falloff_per_m;
     const ResponseModel model = this->model();
     ResponseState state(model);
     const auto energy_j = [&](const scene::Vec3& center_m) {
@@ -113,6 +114,33 @@ TEST_F(ResponseStep, ForceAndLateralForceHaveOnePotential) {
       EXPECT_NEAR(state.wrench.torque_nm.norm(), 0.0, 1e-12);
     }
   }
+}
+
+TEST_F(ResponseStep, TheBodysComplianceFallsOffWithTheContactsRadius) {
+  const ResponseModel plain = this->model();
+  constexpr double falloff_per_m = 250.0;
+  scene_.fast.body_falloff_per_m = falloff_per_m;
+  const ResponseModel model = this->model();
+  ResponseState state(model), as_it_was(plain);
+  double last_n = 0.0;
+  for (const double depth_m : {1e-6, 0.0005, 0.001, 0.002, 0.003, 0.004, 0.005, 0.006}) {
+    (void)response_force(plain, test::pressed(depth_m), as_it_was);
+    (void)response_force(model, test::pressed(depth_m), state);
+    const ResponseContact& contact = state.contacts[0];
+    const double F = contact.law.force_n, a = falloff_per_m * 0.75 * F * 0.75 / 3.0e6 / contact.indentation_m;
+    const double C = 2e-5 * (1.0 + F * contact.shift_m_per_n.dot(scene::Vec3(40.0, -15.0, 0.0)) +
+                             900.0 * std::pow(F * contact.shift_m_per_n.x(), 2));
+    EXPECT_NEAR(contact.indentation_m + C / std::sqrt(1.0 + std::pow(a, 4)) * F, depth_m, 1e-6 * depth_m);
+    EXPECT_GT(F, last_n);
+    last_n = F;
+    const double over = F / as_it_was.contacts[0].law.force_n - 1.0;
+    if (depth_m < 1e-5) {
+      EXPECT_LT(std::abs(over), 1e-6) << "the linear limit is the same";
+    } else {
+      EXPECT_GT(over, 0.0);
+    }
+  }
+  EXPECT_GT(last_n, 1.1 * as_it_was.contacts[0].law.force_n);
 }
 
 TEST_F(ResponseStep, PointsUnderTheToolLieOnIt) {
