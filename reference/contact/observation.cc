@@ -180,7 +180,8 @@ Observation observe(const ContactModel<dim>& model, const ElasticBody<dim>& body
   // inside, (1 - t)^3 = q^2 t, q = 3 E* opening / (4 pressure length).
   const double E_star_pa = model.material.contact_modulus_pa();
   const auto edge_between = [&](int touching, int open) -> Point {
-    const Point from = place(touching), to = place(open);
+    Point from = place(touching);
+    const Point to = place(open);
     const double q = 0.75 * E_star_pa * std::max(opening_m[open], 0.0) / (pressure_pa[touching] * (to - from).norm());
     if (!(pressure_pa[touching] > 0.0) || !std::isfinite(q)) return from;
     double t = 0.0;  // left of the root of a convex falling function: Newton's method climbs to it

@@ -20,8 +20,9 @@ typename ContactModel<dim>::Nodal current_area_m2(const ContactModel<dim>& model
   std::vector<Shape<dim - 1>> at_node;
   for (int a = 0; a < count; ++a) {
     Eigen::Matrix<double, dim - 1, 1> xi;
+    const int row = a / 3;
     xi[0] = 0.5 * (a % 3);
-    if constexpr (dim == 3) xi[1] = 0.5 * (a / 3);
+    if constexpr (dim == 3) xi[1] = 0.5 * row;
     at_node.emplace_back(xi);
   }
   typename ContactModel<dim>::Nodal area_m2 = ContactModel<dim>::Nodal::Zero(dim, model.mesh.node_count());
