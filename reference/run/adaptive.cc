@@ -69,7 +69,8 @@ std::vector<double> fineness(const scene::Scene& scene, int dim, const std::vect
 
 BandRule force_rule(const scene::Scene& scene, int dim, const std::vector<scene::ReferenceInstant>& instants) {
   if (!scene.reference.adaptive_share) return {};
-  return {.most_order = 0.5 * dim, .refined_for = deep_instants(instants)};
+  constexpr double most_order_in_space = 1.2;  // in (N / N1)^(2/3)
+  return {.most_order = dim == 3 ? most_order_in_space : 1.0, .refined_for = deep_instants(instants)};
 }
 
 double adaptive_growth(const scene::Scene& scene, int dim) {

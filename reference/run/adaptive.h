@@ -27,9 +27,8 @@ template <int dim>
 [[nodiscard]] std::vector<double> fineness(const scene::Scene& scene, int dim, const std::vector<int>& unknowns);
 
 /// How the force's uncertainty is found from them. With reference.adaptive_share the instants are those deeper than
-/// deep_share of the deepest, for which the cells are chosen, and the error may fall as fast as with one over the
-/// number of unknowns: a mesh with twice as many halves the cells where the error is largest, and halving those at the
-/// worst edge of a support halves the error of the force that they make.
+/// deep_share of the deepest, for which the cells are chosen, and in space the error may fall as fast as N^-0.8 with
+/// the number N of unknowns. Most fall faster, but not those at the edge of a support (reports/reference.md).
 [[nodiscard]] BandRule force_rule(const scene::Scene& scene, int dim,
                                   const std::vector<scene::ReferenceInstant>& instants);
 

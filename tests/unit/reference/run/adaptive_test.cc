@@ -17,6 +17,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <vector>
 
 namespace touchstone::reference {
 namespace {
@@ -94,6 +95,19 @@ TEST_F(AdaptiveTest, IsFoundAgainWithItsMeshes) {
   const auto probe = inside(scene_, again, root_)->probes().back();
   EXPECT_LT(probe.values.displacement_m(2, 0), -1e-4);
   EXPECT_GT(probe.displacement_uncertainty_m[0], 0.0);
+}
+
+/// The fixed family's rule stays, in the plane the order too, and only deep instants count as refined for.
+TEST_F(AdaptiveTest, TheForceHasARuleOfItsOwn) {
+  std::vector<scene::ReferenceInstant> instants(3);
+  for (std::size_t i = 0; i < 3; ++i) instants[i].depth_m = std::vector{0.0, 0.0003, 0.004}[i];
+  EXPECT_EQ(force_rule(scene_, 2, instants).most_order, 1.0);
+  EXPECT_GT(force_rule(scene_, 3, instants).most_order, 1.0);
+  EXPECT_LT(force_rule(scene_, 3, instants).most_order, 1.5) << "the ball on a ball in space is missed by N^-1";
+  EXPECT_EQ(force_rule(scene_, 3, instants).refined_for, (std::vector<bool>{false, false, true}));
+  scene_.reference.adaptive_share.reset();
+  EXPECT_EQ(force_rule(scene_, 3, instants).most_order, 1.0);
+  EXPECT_TRUE(force_rule(scene_, 3, instants).refined_for.empty());
 }
 
 /// Neither where a run was stopped nor what it left of the cells to divide matters to the answer.
