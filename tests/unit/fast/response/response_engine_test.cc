@@ -229,6 +229,25 @@ TEST_F(ResponseEngineTest, FrictionIsInTheRecordsAndThePlan) {
   EXPECT_TRUE(planned);
 }
 
+TEST_F(ResponseEngineTest, ThePlanSaysHowFarThePressureIsOffAndWhatFallsOff) {
+  const auto reason = [&](const std::string& part) {
+    for (const scene::PlanLine& line : fast::plan(scene_)) {
+      if (line.part == part) return line.reason;
+    }
+    return std::string();
+  };
+  EXPECT_THAT(reason("pressure"), HasSubstr("under a ball on a flat face"));
+  EXPECT_THAT(reason("contact force"), ::testing::EndsWith("in series with the body's compliance"));
+  scene_.body.inclusions.push_back({});
+  EXPECT_THAT(reason("pressure"), HasSubstr("NOT GOOD above a soft inclusion"));
+  EXPECT_THAT(reason("contact force"), HasSubstr("fast.body_falloff_per_m = 0; `tune` can fit it"));
+  scene_.fast.body_falloff_per_m = 250.0;
+  EXPECT_THAT(reason("contact force"), HasSubstr("under a contact of 4 mm radius"));
+  scene_.body.inclusions.clear();
+  scene_.contact.friction = scene::Friction{.K = 0.4, .beta = 1.0, .mu_D = 0.4};
+  EXPECT_THAT(reason("pressure"), HasSubstr("13 % off, with friction"));
+}
+
 TEST_F(ResponseEngineTest, ReachesAsFarAsTheTool) { EXPECT_NEAR(engine().tool_reach_m(), scene_.tool.radius_m, 1e-9); }
 
 }  // namespace
