@@ -76,7 +76,7 @@ class StoredInside : public Inside {
   [[nodiscard]] std::string volume_file(std::size_t instant) const override {
     const Discretisation<dim>& mesh = this->mesh(finest());
     const Solved<dim> solved = this->solved(finest(), instant);
-    Interior values = of(mesh, solved);
+    const Interior values = of(mesh, solved);
     constexpr int count = Discretisation<dim>::nodes_per_cell;
     Eigen::MatrixXd displacement_m(dim, values.stress_pa.cols());
     for (int cell = 0; cell < mesh.cell_count(); ++cell) {
@@ -88,7 +88,7 @@ class StoredInside : public Inside {
     }
     fields.push_back({"stress_von_mises_pa", von_mises_pa(values.stress_pa)});
     fields.push_back({"pressure_pa", pressure_pa(values.stress_pa)});
-    fields.push_back({"J_minus_1", std::move(values.J_minus_1)});
+    fields.push_back({"J_minus_1", values.J_minus_1});
     return reference::volume_file(mesh, fields);
   }
 

@@ -55,7 +55,7 @@ Vec3 RigidTool<dim>::turned_into_tool_frame(const Point& direction) const {
 
 template <int dim>
 typename RigidTool<dim>::Point RigidTool<dim>::in_world(const Vec3& p_T_m) const {
-  const Vec3 x_m = to_world_ * p_T_m + pose_.position_m;
+  Vec3 x_m = to_world_ * p_T_m + pose_.position_m;
   if constexpr (dim == 3) {
     return x_m;
   } else {
