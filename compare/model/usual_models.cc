@@ -10,7 +10,7 @@
 namespace touchstone::compare {
 namespace {
 
-/// The response model has no constants but one.
+/// The response model has one constant.
 bool same_model(const scene::Scene& a, const scene::Scene& b) {
   if (a.fast.formulation != b.fast.formulation) return false;
   if (a.fast.formulation == scene::Formulation::response) {

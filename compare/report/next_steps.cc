@@ -95,7 +95,7 @@ class Finder {
     less_deep();
     more_regions();
     known_better();
-    if (scene_.fast.formulation == scene::Formulation::response) return std::move(steps_);  // no constants
+    if (scene_.fast.formulation == scene::Formulation::response) return std::move(steps_);  // the rest is about other models
     other_beams();
     area_law();
     tuning();
