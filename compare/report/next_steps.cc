@@ -95,7 +95,7 @@ class Finder {
     less_deep();
     more_regions();
     known_better();
-    if (scene_.fast.formulation == scene::Formulation::response) return std::move(steps_);  // the rest is about other models
+    if (scene_.fast.formulation == scene::Formulation::response) return std::move(steps_);  // no skeleton
     other_beams();
     area_law();
     tuning();
