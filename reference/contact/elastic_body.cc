@@ -439,7 +439,7 @@ void ElasticBody<dim>::follow(Order order) {
       (void)forces_of_share(receive_state());
       break;
     case Order::pattern:
-      prescribed_.resize(static_cast<std::size_t>(dim * mesh_.node_count()));
+      prescribed_.resize(dim * static_cast<std::size_t>(mesh_.node_count()));
       ranks::receive(prescribed_);
       number_unknowns(prescribed_, {});
       make_pattern(may_touch_);
