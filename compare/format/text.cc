@@ -146,7 +146,7 @@ std::string csv_cell(const std::string& text) {
   const char *begin = text.data() + (text.starts_with('+') ? 1 : 0), *end = text.data() + text.size();
   const bool number = std::from_chars(begin, end, ignored).ptr == end;
   const bool formula = !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos && !number;
-  const std::string told = formula ? "'" + text : text;
+  std::string told = formula ? "'" + text : text;
   if (told.find_first_of(",\"\r\n") == std::string::npos) return told;
   std::string out = "\"";
   for (const char c : told) out += c == '"' ? "\"\"" : std::string(1, c);

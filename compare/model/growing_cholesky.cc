@@ -51,6 +51,7 @@ void GrowingCholesky::remove(Eigen::Index row) {
   }
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a view of what it changes
 void GrowingCholesky::solve(Eigen::Ref<Eigen::VectorXd> x) const {
   const auto m = static_cast<Eigen::Index>(part_.size());
   if (m == 0) return;
