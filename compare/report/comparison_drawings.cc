@@ -245,7 +245,7 @@ std::optional<double> force_known_to(const Errors& errors) {
 
 std::string why_uncertainty_unknown(const reference::Result& result) {
   const std::string& why = result.refinement.why_ended;
-  const std::string ended = why.empty() ? "" : "Refinement ended: " + why + ".";
+  std::string ended = why.empty() ? "" : "Refinement ended: " + why + ".";
   if (why.find("uncertainty") != std::string::npos) return ended;
   const std::size_t meshes = result.levels.size();
   return (meshes < 3 ? fmt::format("It was solved on {} mesh{}, and an uncertainty needs three.",

@@ -333,7 +333,7 @@ std::string live_report_html(const scene::Scene& scene, const live::LiveOptions&
 std::filesystem::path write_live_report(const std::filesystem::path& folder, const scene::Scene& scene,
                                         const live::LiveOptions& options, const live::LiveResult& result,
                                         const scene::Manifest& manifest) {
-  const std::filesystem::path file = folder / "report.html";
+  std::filesystem::path file = folder / "report.html";
   scene::write_file(file, live_report_html(scene, options, result, manifest));
   return file;
 }
