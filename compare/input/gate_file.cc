@@ -97,7 +97,7 @@ class Reader : TomlReader {
   std::string given_text(const toml::table& table, const std::string& key, const std::string& row = "",
                          bool may_be_empty = false) {
     const toml::node* node = table.get(key);
-    const std::string value = node != nullptr ? node->value_or(std::string()) : std::string();
+    std::string value = node != nullptr ? node->value_or(std::string()) : std::string();
     if (node != nullptr && node->is_string() && (may_be_empty || !value.empty()) && is_plain_text(value)) return value;
     add(node != nullptr ? *node : table, row + key + ": expected a text without control characters");
     return "";

@@ -78,7 +78,7 @@ std::string short_name(const std::vector<Placed>& results, std::size_t at) {
     return out.generic_string();
   };
   for (int parts = 1; parts < 16; ++parts) {
-    const std::string name = tail(results[at].result.folder, parts);
+    std::string name = tail(results[at].result.folder, parts);
     const auto alike = std::count_if(results.begin(), results.end(),
                                      [&](const Placed& r) { return tail(r.result.folder, parts) == name; });
     if (alike == 1) return name;

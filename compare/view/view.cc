@@ -338,7 +338,7 @@ struct ResultView::Parts {
     vtkNew<vtkNamedColors> names;
     for (std::size_t i = 0; i < forces.size(); ++i) {
       vtkPlot* plot = chart->AddPlot(vtkChart::LINE);
-      plot->SetInputData(table, 0, static_cast<vtkIdType>(i + 1));
+      plot->SetInputData(table, 0, static_cast<vtkIdType>(i) + 1);
       const Look look = forces[i].name == "fast model" ? Look::fast : Look::reference;
       const vtkColor3ub rgb = names->HTMLColorToRGB(touchstone::compare::colour(look));
       plot->SetColor(rgb.GetRed(), rgb.GetGreen(), rgb.GetBlue(), 255);
