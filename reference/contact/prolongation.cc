@@ -44,7 +44,8 @@ State<dim> Prolongation<dim>::operator()(const State<dim>& state) const {
         Eigen::Map<const Eigen::Matrix<double, dim, Eigen::Dynamic>>(out.begin(), dim, to_.node_count()));
   };
   State<dim> out;
-  out.u_m = interpolated({state.u_m.data(), state.u_m.data() + state.u_m.size()});
+  const double* u_m = state.u_m.data();
+  out.u_m = interpolated(dealii::Vector<double>(u_m, u_m + state.u_m.size()));
   // Hanging nodes of the coarser mesh are never active by themselves: they are as much as their masters.
   dealii::Vector<double> active(from_.dof_handler().n_dofs());
   for (int dof = 0; dof < static_cast<int>(active.size()); ++dof) active[dof] = state.touching[dof / dim] ? 1.0 : 0.0;
