@@ -2,11 +2,12 @@
 //
 //   kind        = "tuning"
 //   title       = "A ball on a rubber cube"
-//   formulation = ["corrected", "published"]   # each is tuned for itself; the first gives parameters.toml; or
-//   "response" law         = ["duffing", "area_aware"]    # the same; without it the contacts' own starts      = 16 #
-//   of every fit: the given one, the others spread over the bounds force_floor = 0.01                         # least
-//   uncertainty of the reference, of a contact's peak force shape_floor = 0.01                         # the same, of
-//   its displacement
+//   formulation = ["corrected", "published"]   # each is tuned for itself; the first gives parameters.toml
+//                                              # "response", too, with fast.body_falloff_per_m alone
+//   law         = ["duffing", "area_aware"]    # the same; without it the contacts' own
+//   starts      = 16                           # of every fit: the given one, the others spread over the bounds
+//   force_floor = 0.01                         # least uncertainty of the reference, of a contact's peak force
+//   shape_floor = 0.01                         # the same, of its displacement
 //
 //   [set]                                      # in every contact; keys as for --set
 //   compare.instants = 23
