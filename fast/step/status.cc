@@ -37,7 +37,7 @@ std::string status_text(std::uint32_t status) {
       "the body's Poisson's ratio is below 0.5, which was not compared with the reference for this tool or with "
       "friction");
   add(StepStatus::inclusion_unchecked,
-      "the body has inclusions, and such bodies were compared with the reference only above a soft ball");
+      "the body has inclusions, and only two such bodies, each with a soft ball, were compared with the reference");
   return text.empty() ? "ok" : text;
 }
 
