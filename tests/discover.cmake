@@ -5,7 +5,7 @@
 # lists hold names of suites ("Prefix/Suite") or of cases ("Suite.Case", which stands for every parameter), separated by
 # blanks; ALL is all of them.
 cmake_minimum_required(VERSION 3.25)
-set(lists APART SOLVE BROWSER MPIRUN LONG PROGRAM NIGHTLY)
+set(lists APART SOLVE BROWSER MPIRUN LONG PROGRAM THOROUGH NIGHTLY)
 foreach(list ${lists})
   separate_arguments(${list} UNIX_COMMAND "${${list}}")
   set(unseen_${list} ${${list}})
@@ -26,7 +26,7 @@ set(entries 0)
 # Writes one entry; the labels are those of the lists that name the suite or the case.
 function(entry title filter suite case)
   set(labels ${LABELS})
-  foreach(list SOLVE BROWSER MPIRUN LONG PROGRAM NIGHTLY)
+  foreach(list SOLVE BROWSER MPIRUN LONG PROGRAM THOROUGH NIGHTLY)
     if(ALL IN_LIST ${list} OR suite IN_LIST ${list} OR "${suite}.${case}" IN_LIST ${list})
       string(TOLOWER ${list} label)
       list(APPEND labels ${label})

@@ -102,7 +102,7 @@ bool UnfinishedFile::finish() {
 }
 
 void write_file(const std::filesystem::path& path, std::string_view content) {
-  constexpr int attempts = 3;
+  constexpr int attempts = 20;
   for (int attempt = 0; attempt < attempts; ++attempt) {
     UnfinishedFile file(path);
     file.append(content);
