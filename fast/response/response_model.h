@@ -104,6 +104,7 @@ struct ResponseContact {
   // Only with friction:
   scene::Vec3 friction_n = scene::Vec3::Zero();  ///< on the tool
   scene::Vec3 stretch_m = scene::Vec3::Zero();   ///< by which friction moves the surface at the load
+  scene::Vec3 lead_m = scene::Vec3::Zero();      ///< by which friction moves the contact's middle over the ball
 
   [[nodiscard]] bool touches() const noexcept { return load.force_n > 0.0; }
 };
