@@ -230,7 +230,7 @@ void add_friction(const ResponseModel& model, const scene::Pose& pose, ResponseS
   if (!tip.ball()) return;
   // The ball touches the surface that friction has moved under it, and the pressure's middle leads the tool: all forces
   // turn about the ball's centre.
-  constexpr double lead = 0.1;  // of the contact's displacement; chosen, as in reports/response.md
+  constexpr double lead = 0.085;  // of the contact's displacement; chosen, as in reports/response.md
   scene::Pose behind = pose;
   behind.position_m -= contact.stretch_m;
   const Vec3 moved = scene::touch(*model.body, tip, behind).normal;
