@@ -32,6 +32,16 @@ CheckedRange checked_range(const scene::Scene& scene) {
   return out;
 }
 
+std::string_view pressure_errors(const scene::Scene& scene) {
+  const std::vector<scene::ToolTip> tips = scene::tool_tips(scene).tips;
+  if (!scene.body.inclusions.empty()) return "NOT GOOD above a soft inclusion, up to 50 % off";
+  if (tips.size() > 1) return "18 % off under two pins";
+  if (tips.front().line()) return "4 % off under a capsule's side, NOT GOOD near an edge, 37 %";
+  if (!tips.front().ball()) return "5 % off under a pin, NOT GOOD under a wide disc with a narrow rim, 35 %";
+  if (scene.contact.friction) return "13 % off, with friction";
+  return "4 to 7 % off under a ball on a flat face, 11 % on a curved one";
+}
+
 StepStatus beyond(const CheckedRange& checked, const ContactRange& range) noexcept {
   StepStatus status = checked.scene;
   if (range.depth_over_radius > checked.depth_over_radius ||

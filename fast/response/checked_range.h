@@ -4,6 +4,8 @@
 #include "fast/step/status.h"
 #include "scene/model/scene.h"
 
+#include <string_view>
+
 namespace touchstone::fast {
 
 /// Within which the model was compared with the reference.
@@ -21,6 +23,9 @@ struct CheckedRange {
 /// force and 10 % in shape. With a Poisson's ratio below 0.5 there are fewer, balls on flat faces; with friction flat
 /// faces.
 [[nodiscard]] CheckedRange checked_range(const scene::Scene& scene);
+
+/// How far off the pressure was where it was compared with the reference (reports/response.md), of such a scene.
+[[nodiscard]] std::string_view pressure_errors(const scene::Scene& scene);
 
 /// The same numbers of a contact.
 struct ContactRange {

@@ -17,7 +17,8 @@
 //
 // With friction, the tool's motion along the surface is the sum of the contact's displacement on the half space
 // (slip_springs.h) and the body's, F s + C_t Q. On the rest surface the load lags behind the tool by the displacement
-// that friction causes: C_t Q and the contact's.
+// that friction causes: C_t Q and the contact's. The surface under a ball is the one that this displacement has
+// moved there, and the pressure's middle leads the ball by a share of the contact's: its forces turn with the normal.
 #pragma once
 
 #include "fast/realtime/stage_clock.h"
@@ -104,6 +105,7 @@ struct ResponseContact {
   // Only with friction:
   scene::Vec3 friction_n = scene::Vec3::Zero();  ///< on the tool
   scene::Vec3 stretch_m = scene::Vec3::Zero();   ///< by which friction moves the surface at the load
+  scene::Vec3 lead_m = scene::Vec3::Zero();      ///< by which friction moves the contact's middle over the ball
 
   [[nodiscard]] bool touches() const noexcept { return load.force_n > 0.0; }
 };

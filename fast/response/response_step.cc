@@ -227,6 +227,21 @@ void add_friction(const ResponseModel& model, const scene::Pose& pose, ResponseS
   contact.load.ball_shear_n = -contact.friction_n - contact.load.punch_shear_n;
   contact.wrench.force_n += contact.friction_n;
   contact.wrench.torque_nm += arm_m.cross(contact.friction_n);
+  if (!tip.ball()) return;
+  // The ball touches the surface that friction has moved under it, and the pressure's middle leads the tool: all forces
+  // turn about the ball's centre.
+  constexpr double lead = 0.085;  // of the contact's displacement; chosen, as in reports/response.md
+  scene::Pose behind = pose;
+  behind.position_m -= contact.stretch_m;
+  const Vec3 moved = scene::touch(*model.body, tip, behind).normal;
+  const Vec3 turned = (moved - lead / tip.radius_m * (slips.frame * slipped.displacement_m)).normalized();
+  const auto turn = Eigen::Quaterniond::FromTwoVectors(n, turned);
+  const Vec3 center_m = pose.orientation * tip.center_T_m;
+  const Vec3 about_center_nm = contact.wrench.torque_nm - center_m.cross(contact.wrench.force_n);
+  contact.friction_n = turn * contact.friction_n;
+  contact.wrench.force_n = turn * contact.wrench.force_n;
+  contact.wrench.torque_nm = turn * about_center_nm + center_m.cross(contact.wrench.force_n);
+  contact.lead_m = tip.radius_m * (n - turned);
 }
 
 /// One of the equal patches of a load along a line; of any other contact its only one.
@@ -570,9 +585,9 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
   for (ResponseContact& contact : state.contacts) {
     if (!contact.touches()) continue;
     const Eigen::Vector2d moved = contact.law.force_n * contact.path.per_n;
-    const scene::SurfaceQuery loaded =
-        model.body->query(contact.at.point_m - contact.stretch_m + moved[0] * grid.spacing_m[0] * grid.axes.col(0) +
-                          moved[1] * grid.spacing_m[1] * grid.axes.col(1));
+    const scene::SurfaceQuery loaded = model.body->query(contact.at.point_m - contact.stretch_m + contact.lead_m +
+                                                         moved[0] * grid.spacing_m[0] * grid.axes.col(0) +
+                                                         moved[1] * grid.spacing_m[1] * grid.axes.col(1));
     contact.load.center_m = loaded.point_m;
     contact.load.normal = loaded.normal;
   }

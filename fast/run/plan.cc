@@ -159,18 +159,6 @@ std::string falloff_text(const scene::Scene& scene) {
       1e3 / falloff_per_m, falloff_per_m);
 }
 
-/// How far off the pressure was where it was compared with the reference (reports/response.md), of such tips.
-std::string pressure_text(const scene::Scene& scene, const std::vector<scene::ToolTip>& tips) {
-  const scene::ToolTip& tip = tips.front();
-  return std::string("at recorded instants, not in a step; ") +
-         (!scene.body.inclusions.empty() ? "NOT GOOD above a soft inclusion, up to 50 % off"
-          : tips.size() > 1              ? "18 % off under two pins"
-          : tip.line()                   ? "4 % off under a capsule's side, NOT GOOD near an edge, 37 %"
-          : !tip.ball()                  ? "5 % off under a pin, NOT GOOD under a wide disc with a narrow rim, 35 %"
-          : scene.contact.friction       ? "13 % off, with friction"
-                                         : "4 to 7 % off under a ball on a flat face, 11 % on a curved one");
-}
-
 scene::Plan response_plan(const scene::Scene& scene) {
   std::unique_ptr<Engine> engine;
   std::string not_there;
@@ -220,7 +208,7 @@ scene::Plan response_plan(const scene::Scene& scene) {
                cost({Stage::interpolation}));
   lines.models("local surface", "points under the tool lie on it", cost({Stage::local_factor}));
   lines.models("normals", "of the deformed surface", cost({Stage::normals}));
-  lines.models("pressure", pressure_text(scene, tips));
+  lines.models("pressure", "at recorded instants, not in a step; " + std::string(pressure_errors(scene)));
   lines.models("checked range", checked_text(scene, engine ? measured.status : StepStatus::ok));
   if (engine) lines.whole(measured, *engine);
   lines.leaves_out("time dependence", "the force is static; the track's speed does not enter");

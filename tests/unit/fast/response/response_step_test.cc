@@ -301,7 +301,8 @@ TEST_F(ResponseFriction, DragsTheSurfaceAlongUpToTheLimit) {
   EXPECT_GT(stuck, 20);
   EXPECT_LT(stuck, 300);
   const double F = state.contacts[0].load.force_n;
-  EXPECT_NEAR(state.contacts[0].friction_n.x(), -mu * F, 1e-6 * F);
+  EXPECT_LT(state.contacts[0].friction_n.x(), 0.0);
+  EXPECT_NEAR(state.contacts[0].friction_n.norm(), mu * F, 1e-6 * F);
   EXPECT_NEAR(state.contacts[0].load.shear_n().x(), mu * F, 1e-6 * F);
   // The point of the surface that it loads is behind the tool by the body's and the contact's displacement.
   const double x_m = 0.004, C_t = 1.5 * 2e-5 * (1.0 + 40.0 * x_m + 900.0 * x_m * x_m);
@@ -316,6 +317,32 @@ TEST_F(ResponseFriction, DragsTheSurfaceAlongUpToTheLimit) {
   (model.surface.points_m.colwise() - state.contacts[0].load.center_m).colwise().norm().minCoeff(&nearest);
   EXPECT_NEAR(state.field.displacement_m[0][static_cast<std::size_t>(nearest)], state.contacts[0].stretch_m.x(),
               0.3 * state.contacts[0].stretch_m.x());
+}
+
+TEST_F(ResponseFriction, TheForcesTurnAsTheSurfaceThatFrictionMovesUnderTheBall) {
+  C_m_per_n_ = 0.0;
+  constexpr double R_m = 0.010, body_m = 0.030, depth_m = 0.002;
+  for (const bool round : {false, true}) {
+    if (round) {
+      scene_.body.shape = scene::BodyShape::sphere;
+      scene_.body.radius_m = body_m;
+      scene_.body.support_height_m = 0.005;
+      surface_ = scene::tessellate(*scene::body_shape(scene_.body), 1200);
+    }
+    const ResponseModel model = this->model();
+    ResponseState state(model);
+    for (int i = 0; i <= 100; ++i) (void)response_force(model, test::pressed(depth_m, 2e-5 * (i - 100)), state);
+    const ResponseContact& contact = state.contacts[0];
+    const scene::Vec3 normal_n = state.wrench.force_n - contact.friction_n;
+    const double moved_m = contact.stretch_m.x();
+    EXPECT_GT(moved_m, 3e-4);
+    EXPECT_NEAR(contact.friction_n.dot(normal_n), 0.0, 1e-9 * normal_n.squaredNorm());
+    const double turned = 0.085 * moved_m / R_m + (round ? moved_m / (body_m + R_m - depth_m) : 0.0);
+    EXPECT_NEAR(-normal_n.x() / normal_n.z(), turned, 0.02 * turned) << round;
+    // The pressure acts through the ball's centre, which is the tool's.
+    EXPECT_LT(std::abs(state.wrench.torque_nm.dot(contact.friction_n)), 1e-9);
+    EXPECT_GT(state.wrench.torque_nm.norm(), 0.9 * contact.friction_n.norm() * (R_m - depth_m));
+  }
 }
 
 TEST_F(ResponseFriction, WithoutACoefficientItIsTheFrictionlessContact) {
