@@ -196,7 +196,7 @@ void set(Columns3& columns, std::int32_t i, const Vec3& value) noexcept {
   }
 }
 
-/// Friction of the tick: its part of the load and of the wrench.
+/// Friction of the tick: its part of the load and of the wrench, and the turn of a ball's forces.
 void add_friction(const ResponseModel& model, const scene::Pose& pose, ResponseState& state) noexcept {
   ResponseContact& contact = state.contacts.front();
   const scene::ToolTip& tip = model.tips.front().tip;
@@ -231,7 +231,7 @@ void add_friction(const ResponseModel& model, const scene::Pose& pose, ResponseS
   // The ball touches the surface that friction has moved under it, and the pressure's middle leads the tool: all forces
   // turn about the ball's centre.
   constexpr double lead = 0.085;  // of the contact's displacement; chosen, as in reports/response.md
-  // 3 degrees were measured. Where nothing slips the displacement has no bound.
+  // On the scenes compared it is 4 degrees at most. The displacement of a contact that sticks has no bound.
   constexpr double largest_turn_rad = 0.5;
   scene::Pose behind = pose;
   behind.position_m -= contact.stretch_m;
