@@ -38,7 +38,7 @@ std::string_view pressure_errors(const scene::Scene& scene) {
   if (tips.size() > 1) return "18 % off under two pins";
   if (tips.front().line()) return "4 % off under a capsule's side, NOT GOOD near an edge, 37 %";
   if (!tips.front().ball()) return "5 % off under a pin, NOT GOOD under a wide disc with a narrow rim, 35 %";
-  if (scene.contact.friction) return "13 % off, with friction";
+  if (scene.contact.friction) return "13 % off on a flat face, 23 % on a curved one, with friction";
   return "4 to 7 % off under a ball on a flat face, 11 % on a curved one";
 }
 
