@@ -208,8 +208,10 @@ scene::Response made_up_response(const scene::Scene& scene, const scene::Surface
   constexpr double own_m_per_n = 2e-5;
   scene::Response out;
   out.grid = scene::load_grid(scene).grid.value();
-  out.smooth_m_per_n.setConstant(3 * surface.points_m.cols(), out.grid.count(), static_cast<float>(0.1 * own_m_per_n));
-  out.own_m_per_n = -own_m_per_n * out.grid.normals;
+  const int columns = scene::load_kinds(scene).per_point() * out.grid.count();
+  out.smooth_m_per_n.setConstant(3 * surface.points_m.cols(), columns, static_cast<float>(0.1 * own_m_per_n));
+  out.own_m_per_n.setZero(3, columns);
+  out.own_m_per_n.leftCols(out.grid.count()) = -own_m_per_n * out.grid.normals;
   out.tilt_per_n.setZero(2, out.grid.count());
   return out;
 }

@@ -1,5 +1,8 @@
-// How finite strain changes the contact force and pressure of a half space.
+// How finite strain changes the contact force, pressure and shape of a half space, and a body's curvature the shape.
 #pragma once
+
+#include <array>
+#include <cstddef>
 
 namespace touchstone::fast {
 
@@ -20,5 +23,32 @@ struct FiniteStrain {
 /// Those of the reference's neo-Hookean material, by Poisson's ratio alone: fitted once to its answers for a ball of
 /// 10 mm on a cylinder and a block with nu = 0, 0.3 and 0.5, a parabola in between. See reports/response.md.
 [[nodiscard]] FiniteStrain finite_strain(double poissons_ratio) noexcept;
+
+/// What the linear displacement of the surface under and beside a ball lacks, over D a / R: D the indentation, a the
+/// contact's radius, 1 / R the sum of the curvatures of ball and body. It is of second order in a / R, and where the
+/// body is curved, of first order in the body's share of 1 / R. Far away it is that of a radial double force, which
+/// falls off as 1 / r^2.
+class BallField {
+ public:
+  /// Tables of the same answers of the reference, a parabola in between. See reports/response.md.
+  explicit BallField(double poissons_ratio) noexcept;
+
+  struct Value {
+    double outward;  ///< along the surface, away from the axis
+    double up;       ///< along the normal; under the ball it is not used
+  };
+  /// @param rho  distance from the axis over a
+  /// @param body_share  curvature of the body over that of both
+  [[nodiscard]] Value at(double rho, double body_share) const noexcept;
+  /// Beyond: outward along a plane, times rho^2.
+  [[nodiscard]] double far(double body_share) const noexcept { return reach * reach * at(reach, body_share).outward; }
+
+  static constexpr double reach = 3.0;  ///< of the tables
+
+ private:
+  static constexpr std::size_t steps = 15;
+  using Table = std::array<double, steps + 1>;
+  Table outward_{}, up_{};
+};
 
 }  // namespace touchstone::fast

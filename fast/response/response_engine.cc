@@ -60,8 +60,8 @@ Vec3 traction_pa(const TipLaw& law, const ResponseContact& contact, const Vec3& 
 }  // namespace
 
 scene::Response stored_response(const scene::Scene& scene, const scene::Surface& surface) {
-  const std::string identity = scene::response_identity(scene.body, scene::load_grid(scene).grid.value(), surface,
-                                                        scene.contact.friction.has_value());
+  const std::string identity =
+      scene::response_identity(scene.body, scene::load_grid(scene).grid.value(), surface, scene::load_kinds(scene));
   const std::filesystem::path file = scene::response_path(scene.fast.store, identity);
   if (!std::filesystem::exists(file)) {
     throw scene::InputError("fast.formulation: the response of this body is not there; expected the file " +

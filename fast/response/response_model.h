@@ -61,6 +61,7 @@ struct ResponseModel {
   std::vector<TipLaw> tips;
   scene::Response response;
   HalfSpace half_space;
+  BallField field;
   Columns3 rest_m, rest_normal;
   NormalStencils normals;
   std::vector<float> free;         ///< 0 where the surface is held, else 1

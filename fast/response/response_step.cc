@@ -260,10 +260,11 @@ SpreadLoad patch(const ResponseContact& contact, int k, int patches) noexcept {
 /// little to spare, and the tool is below the free surface there.
 void follow_tool(const ResponseModel& model, const scene::ToolTip& tip, const ResponseContact& contact,
                  std::span<const std::int32_t> near, SurfaceField& field) noexcept {
-  constexpr double rim = 1.15;   // of the radius: finite strain widens the linear contact
-  constexpr double slide = 0.2;  // outward, of depth times slope in the middle; chosen, as in reports/response.md
+  constexpr double rim = 1.15;  // of the radius: finite strain widens the linear contact
   const Vec3 p0 = contact.at.point_m, n = contact.at.normal;
   const double a_m = contact.law.radius_m, half_m = tip.half_line_T_m.norm();
+  // Outward, of depth times slope in the middle; chosen, as in reports/response.md. A ball's is in its field.
+  const double slide = tip.round() ? 0.0 : 0.2;
   const Vec3 line = half_m > 0.0 ? contact.half_line_m.normalized() : Vec3::Zero();
   // From the nearest point of the line.
   const auto from_line_m = [&](const Vec3& x_m) -> Vec3 {
@@ -559,6 +560,13 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
     }
     contact.load = {contact.at.point_m, contact.at.normal, law.force_n, law.patch_radius_m,
                     law.flat,           law.widening,      law.peaked};
+    const scene::ToolTip& tip = model.tips[static_cast<std::size_t>(&contact - state.contacts.data())].tip;
+    if (tip.round()) {
+      const double curvature_per_m = 1.0 / tip.radius_m + contact.curvature_per_m;
+      contact.load.field = &model.field;
+      contact.load.field_m = contact.indentation_m * law.widening * law.radius_m * curvature_per_m;
+      contact.load.body_share = contact.curvature_per_m / curvature_per_m;
+    }
     if (contact.half_line_m.isZero(0.0)) continue;
     // Equal patches whose places have the mean square of an even line's.
     const double n = model.tips[static_cast<std::size_t>(&contact - state.contacts.data())].patches;
@@ -646,12 +654,17 @@ void response_shape(const ResponseModel& model, ResponseState& state) noexcept {
         weights[point] += weight / patches;
       }
     }
+    const double apart_nm = model.half_space.double_force_nm(contact.load.apart_m3());
     const Vec3& force_n = contact.wrench.force_n;
     const Vec3 lateral_n = force_n - force_n.dot(contact.at.normal) * contact.at.normal;
     for (int point = 0; point < grid.count(); ++point) {
       if (weights[point] == 0.0) continue;
       sum.add(model.response.smooth_m_per_n.col(point).data(),
               static_cast<float>(weights[point] * contact.load.force_n));
+      if (contact.load.field != nullptr) {
+        sum.add(model.response.smooth_m_per_n.col(model.response.apart(point)).data(),
+                static_cast<float>(weights[point] * apart_nm));
+      }
       if (!state.slip) continue;
       const Eigen::Vector2d along_n = weights[point] * grid.along(point).transpose() * -lateral_n;
       for (int axis = 0; axis < 2; ++axis) {

@@ -25,6 +25,22 @@ double spread_pressure_pa(const SpreadLoad& load, const Vec3& x_m) noexcept {
   return load.force_n / (std::numbers::pi * a2) * ((1.0 - load.peaked) * spread + 2.5 * load.peaked * rim * rim * rim);
 }
 
+namespace {
+
+/// What a ball's load adds near it.
+Vec3 beside_ball_m(const SpreadLoad& load, const HalfSpace& half_space, const Vec3& across_m, double z) noexcept {
+  if (load.field == nullptr) return Vec3::Zero();
+  const double rho_m = std::sqrt(across_m.squaredNorm() + z * z), c2 = z * z / (rho_m * rho_m);
+  if (!(rho_m > 0.0)) return Vec3::Zero();
+  // Below the plane as the double force.
+  const double k = 0.5 / (1.0 - half_space.nu);
+  const auto [outward, up] = load.field->at(rho_m / (load.widening * load.radius_m), load.body_share);
+  const double down = outward * k * z / rho_m * (2.0 * half_space.nu - 3.0 * c2) - up * (1.0 - c2);
+  return load.field_m * (outward * (1.0 - 3.0 * k * c2) / rho_m * across_m - down * load.normal);
+}
+
+}  // namespace
+
 Vec3 spread_displacement_m(const SpreadLoad& load, const HalfSpace& half_space, const Vec3& x_m) noexcept {
   const Vec3 d_m = x_m - load.center_m;
   const double z = std::max(-d_m.dot(load.normal), 0.0), a = load.radius_m;
@@ -54,7 +70,7 @@ Vec3 spread_displacement_m(const SpreadLoad& load, const HalfSpace& half_space, 
   const double chi_r_per_r = r2 > 1e-9 * sum ? flux / r2 : on_axis;
   const double u_r_per_r = -scale_m2 * ((1.0 - 2.0 * half_space.nu) * chi_r_per_r + z * Vr_per_r);
   const double u_z = scale_m2 * (2.0 * (1.0 - half_space.nu) * V - z * Vz);
-  Vec3 u_m = u_r_per_r * across_m - u_z * load.normal;
+  Vec3 u_m = u_r_per_r * across_m - u_z * load.normal + beside_ball_m(load, half_space, across_m, z);
   const Vec3 Q_n = load.shear_n();
   if (Q_n.isZero(0.0)) return u_m;
 
@@ -155,6 +171,8 @@ std::int32_t spread_displacements_m(const SpreadLoad& load, const HalfSpace& hal
   const auto half_moment = static_cast<float>(0.5 * a2 * (0.2 + load.flat * (1.0 / 3.0 - 0.2)));
   const auto across = static_cast<float>(1.0 - 2.0 * half_space.nu);
   const auto along = static_cast<float>(2.0 * (1.0 - half_space.nu));
+  const auto apart = static_cast<float>(load.apart_m3());
+  const auto k = static_cast<float>(0.5 / (1.0 - half_space.nu)), nu2 = static_cast<float>(2.0 * half_space.nu);
   const auto near2 = static_cast<float>(near_radii * near_radii * a2);
   const float* const x = rest_m[0].data();
   const float* const y = rest_m[1].data();
@@ -175,8 +193,9 @@ std::int32_t spread_displacements_m(const SpreadLoad& load, const HalfSpace& hal
     const float Vz = -below * by_rho3 * (1.0f + half_moment * by_rho2 * (9.0f - 15.0f * c2));
     const float Vr_per_r = -by_rho3 * (1.0f + half_moment * by_rho2 * (3.0f - 15.0f * c2));
     const float chi_r_per_r = by_rho / (rho + below + 1e-9f) - half_moment * 3.0f * below * by_rho3 * by_rho2;
-    const float radial = -scale * (across * chi_r_per_r + below * Vr_per_r);
-    const float inward = scale * (along * V - below * Vz);
+    const float A = apart * by_rho3;
+    const float radial = A * (1.0f - 3.0f * k * c2) - scale * (across * chi_r_per_r + below * Vr_per_r);
+    const float inward = A * k * below * (nu2 - 3.0f * c2) + scale * (along * V - below * Vz);
     ux[i] = radial * rx - inward * nx;
     uy[i] = radial * ry - inward * ny;
     uz[i] = radial * rz - inward * nz;

@@ -10,8 +10,13 @@
 // Shear along x with the same distributions, dpsi/dz = chi (K. L. Johnson, Contact Mechanics (1985), 3.6):
 //   u_x = (2 V + 2 nu psi_xx - z chi_xx) / (4 pi G),   u_y = (2 nu psi_xy - z chi_xy) / (4 pi G),
 //   u_z = ((1 - 2 nu) chi_x - z V_x) / (4 pi G).
+//
+// A radial double force, that is forces of Cerruti along x and y drawn apart, whose displacement on the plane is
+// A / r^2:
+//   u_r = A r (1 - 3 k z^2 / rho^2) / rho^3,   u_z = A k z (2 nu - 3 z^2 / rho^2) / rho^3,   k = 1 / (2 (1 - nu)).
 #pragma once
 
+#include "fast/response/finite_strain.h"
 #include "fast/surface/surface_patches.h"
 #include "scene/model/scene.h"
 
@@ -31,6 +36,15 @@ struct SpreadLoad {
   double peaked = 0.0;    ///< share of a pressure as (1 - r^2)^(3/2)
   // Friction on the body, along the surface: the parts with the ball's and the flat punch's distribution.
   scene::Vec3 ball_shear_n = scene::Vec3::Zero(), punch_shear_n = scene::Vec3::Zero();
+  // Under a ball, what finite strain and the body's curvature add; without a table nothing.
+  const BallField* field = nullptr;
+  double field_m = 0.0;     ///< D a / R
+  double body_share = 0.0;  ///< curvature of the body over that of both
+  /// Far away: a radial double force with this outward displacement on the plane times r^2.
+  [[nodiscard]] double apart_m3() const noexcept {
+    const double a_m = widening * radius_m;
+    return field == nullptr ? 0.0 : field_m * field->far(body_share) * a_m * a_m;
+  }
   [[nodiscard]] scene::Vec3 shear_n() const noexcept { return ball_shear_n + punch_shear_n; }
 };
 
@@ -41,6 +55,8 @@ struct HalfSpace {
   double nu;
   /// Normal displacement of the surface by a point load, times the distance: (1 - nu^2) / (pi E).
   [[nodiscard]] double surface_m2_per_n() const noexcept { return 2.0 * (1.0 - nu) * scale_m2_per_n; }
+  /// Strength of a radial double force by its displacement on the plane times r^2.
+  [[nodiscard]] double double_force_nm(double apart_m3) const noexcept { return apart_m3 / surface_m2_per_n(); }
 };
 
 /// At one point, by the closed forms [m].

@@ -47,8 +47,8 @@ Prepared prepare_response(const scene::Scene& scene, const scene::Surface& surfa
                           const std::function<void(const SmoothProgress&)>& progress) {
   const scene::FoundGrid found = scene::load_grid(scene);
   if (!found.grid) throw scene::InputError("the response model needs that " + found.why);
-  const std::string identity =
-      scene::response_identity(scene.body, *found.grid, surface, scene.contact.friction.has_value());
+  const scene::LoadKinds loads = scene::load_kinds(scene);
+  const std::string identity = scene::response_identity(scene.body, *found.grid, surface, loads);
   Prepared out;
   out.file = scene::response_path(store, identity);
   if (std::filesystem::exists(out.file)) {
@@ -77,7 +77,7 @@ Prepared prepare_response(const scene::Scene& scene, const scene::Surface& surfa
       throw;
     }
   };
-  const SmoothResponseOptions options{.friction = scene.contact.friction.has_value()};
+  const SmoothResponseOptions options{.loads = loads};
   out.response =
       smooth_response(scene.body, *found.grid, surface.points_m, options, keep_and_say, kept(unfinished, identity));
   out.computed = true;

@@ -142,7 +142,7 @@ scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& 
   const SurfaceSampler<3> sampler(mesh, wanted_m, false, false);
 
   scene::Response& out = first.response;
-  const Eigen::Index columns = options.friction ? 3 * n : n;
+  const Eigen::Index columns = options.loads.per_point() * n, doubles = options.loads.apart ? columns - n : columns;
   if (first.done == 0) {
     out.grid = grid;
     out.unknowns = problem.unknowns();
@@ -152,10 +152,13 @@ scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& 
   }
   if (progress) progress({Next::matrix, first});
   for (Eigen::Index column = first.done; column < columns; ++column) {
-    const bool along = column >= n;
-    const Eigen::Index k = along ? (column - n) / 2 : column;
+    const bool apart = column >= doubles, along = !apart && column >= n;
+    const Eigen::Index k = apart ? column - doubles : along ? (column - n) / 2 : column;
     PointLoad load{grid.points_m.col(k), grid.normals.col(k)};
-    if (along) {
+    if (apart) {
+      load.force_n = 0.0;
+      load.apart_nm = 1.0;
+    } else if (along) {
       load.force_n = 0.0;
       load.along_n = grid.along(static_cast<int>(k)).col((column - n) % 2);
     }
@@ -172,7 +175,7 @@ scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& 
     const Eigen::Matrix3Xd w_m = sampler.at_points(problem.linear_displacement_m());
     out.smooth_m_per_n.col(column) = w_m.leftCols(m).transpose().reshaped().cast<float>();
     out.own_m_per_n.col(column) = w_m.col(m + 5 * k);
-    for (int axis = 0; axis < 2 && !along; ++axis) {
+    for (int axis = 0; axis < 2 && column < n; ++axis) {
       const Eigen::Index low = m + 5 * k + 1 + 2 * axis;
       const double rise_m = (w_m.col(low + 1) - w_m.col(low)).dot(load.normal);
       const double run_m = (wanted_m.col(low + 1) - wanted_m.col(low)).dot(grid.axes.col(axis));

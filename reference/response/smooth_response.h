@@ -16,8 +16,8 @@
 namespace touchstone::reference {
 
 struct SmoothResponseOptions {
-  double cells = 10.0;    ///< to the body's size; as many again to the spread of the loads
-  bool friction = false;  ///< with loads along the surface
+  double cells = 10.0;  ///< to the body's size; as many again to the spread of the loads
+  scene::LoadKinds loads;
 };
 
 /// A response of which the first columns are computed; the others are zero.

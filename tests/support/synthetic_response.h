@@ -15,9 +15,10 @@ inline scene::Response synthetic_response(const scene::Scene& scene, const scene
   out.grid = scene::load_grid(scene).grid.value();
   const int n = out.grid.count();
   const auto m = surface.points_m.cols();
-  const int columns = scene.contact.friction ? 3 * n : n;
+  const scene::LoadKinds loads = scene::load_kinds(scene);
+  const int columns = loads.per_point() * n;
   out.smooth_m_per_n.setZero(3 * m, columns);
-  out.own_m_per_n.resize(3, columns);
+  out.own_m_per_n.setZero(3, columns);
   out.tilt_per_n.resize(2, n);
   for (int k = 0; k < n; ++k) {
     const scene::Vec3 p_m = out.grid.points_m.col(k), normal = out.grid.normals.col(k);
@@ -26,7 +27,8 @@ inline scene::Response synthetic_response(const scene::Scene& scene, const scene
     out.tilt_per_n.col(k) = Eigen::Vector2d(-60.0, 25.0) * C_m_per_n;
     const Eigen::VectorXf height = (surface.points_m.row(2).transpose() / 0.06).cast<float>();
     out.smooth_m_per_n.col(k).tail(m) = static_cast<float>(-C) * height;
-    if (!scene.contact.friction) continue;
+    if (loads.apart) out.smooth_m_per_n.col(out.apart(k)).tail(m) = static_cast<float>(30.0 * C) * height;
+    if (!loads.along) continue;
     const Eigen::Matrix<double, 3, 2> along = out.grid.along(k);
     for (int axis = 0; axis < 2; ++axis) {
       const double sway = out.own_m_per_n.col(k).dot(along.col(axis));

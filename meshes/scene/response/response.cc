@@ -2,9 +2,12 @@
 
 #include "scene/base/hash.h"
 #include "scene/model/body_text.h"
+#include "scene/response/find_tips.h"
 
+#include <algorithm>
 #include <iomanip>
 #include <sstream>
+#include <vector>
 
 namespace touchstone::scene {
 namespace {
@@ -20,14 +23,21 @@ std::string hash_of(const Matrix& matrix) {
 
 }  // namespace
 
+LoadKinds load_kinds(const Scene& scene) {
+  const std::vector<ToolTip> tips = tool_tips(scene).tips;
+  return {.along = scene.contact.friction.has_value(),
+          .apart = std::any_of(tips.begin(), tips.end(), [](const ToolTip& tip) { return tip.round(); })};
+}
+
 std::string response_needs(const Scene& scene) { return load_grid(scene).why; }
 
-std::string response_identity(const Body& body, const LoadGrid& grid, const Surface& surface, bool friction) {
+std::string response_identity(const Body& body, const LoadGrid& grid, const Surface& surface, const LoadKinds& loads) {
   std::ostringstream text;
   text << std::setprecision(17) << method_version << '\n' << body_text(body);
-  text << (friction ? "loads in 3 directions " : "loads ") << grid.counts[0] << " x " << grid.counts[1] << " places "
+  text << (loads.along ? "loads in 3 directions " : "loads ") << grid.counts[0] << " x " << grid.counts[1] << " places "
        << hash_of(grid.points_m) << '\n'
        << "rest points " << surface.vertex_count() << " places " << hash_of(surface.points_m) << '\n';
+  if (loads.apart) text << "with double forces\n";
   return text.str();
 }
 

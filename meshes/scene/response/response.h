@@ -11,8 +11,9 @@ namespace touchstone::scene {
 
 /// Displacement per newton of loads on a grid's points, on the elastic body with its support and inclusions, minus
 /// half_space_displacement_m() of the same load. It is smooth, also at the load's own place. n grid points, m rest
-/// points, c columns: n for loads against the normals, and for scenes with friction 2 n more for loads along the
-/// surface, both directions of LoadGrid::along() of a point after each other.
+/// points, c columns: n for loads against the normals, for scenes with friction 2 n more for loads along the surface,
+/// both directions of LoadGrid::along() of a point after each other, and for balls n more for radial double forces [per
+/// N m], which are smooth but for 1 / distance on curved bodies.
 struct Response {
   LoadGrid grid;
   Eigen::MatrixXf smooth_m_per_n;  ///< 3 m x c, world: x of all rest points, then y, then z
@@ -22,15 +23,24 @@ struct Response {
   int unknowns = 0;                ///< of the linear systems
 
   [[nodiscard]] Eigen::Index rest_points() const noexcept { return smooth_m_per_n.rows() / 3; }
+  /// The column of a radial double force, where there are some.
+  [[nodiscard]] Eigen::Index apart(int point) const noexcept { return smooth_m_per_n.cols() - grid.count() + point; }
 };
+
+/// Loads that a scene needs besides those against the normals.
+struct LoadKinds {
+  bool along = false;  ///< for friction
+  bool apart = false;  ///< for balls
+  [[nodiscard]] int per_point() const noexcept { return 1 + (along ? 2 : 0) + (apart ? 1 : 0); }
+};
+[[nodiscard]] LoadKinds load_kinds(const Scene& scene);
 
 /// Why the response model cannot answer a scene, completing "the response model needs that ..."; empty when it can.
 [[nodiscard]] std::string response_needs(const Scene& scene);
 
 /// Everything that a response depends on, as text that a reader can compare; its hash names the file.
-/// @param surface   whose points are the rest points
-/// @param friction  with loads along the surface
+/// @param surface  whose points are the rest points
 [[nodiscard]] std::string response_identity(const Body& body, const LoadGrid& grid, const Surface& surface,
-                                            bool friction = false);
+                                            const LoadKinds& loads = {});
 
 }  // namespace touchstone::scene

@@ -20,6 +20,8 @@ struct ToolTip {
   /// Round below; also where it is swept along a line.
   [[nodiscard]] bool ball() const noexcept { return axis_T.isZero(0.0); }
   [[nodiscard]] bool line() const noexcept { return !half_line_T_m.isZero(0.0); }
+  /// A ball that is not swept.
+  [[nodiscard]] bool round() const noexcept { return ball() && !line(); }
   /// The radius up to which there is a tip.
   [[nodiscard]] double reach_m() const noexcept { return flat_radius_m + radius_m; }
   /// Height of the tip's surface over its lowest plane at radius r [m], of a line at distance r from it; beyond its

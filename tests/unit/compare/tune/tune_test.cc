@@ -150,7 +150,8 @@ TEST(Tune, BringsBackTheResponseModelsFalloffAndNothingElse) {
     scene.fast.triangles = 400;
     scene.fast.store = folder.path();
     const scene::Surface surface = scene::tessellate(*scene::body_shape(scene.body), scene.fast.triangles);
-    const std::string identity = scene::response_identity(scene.body, scene::load_grid(scene).grid.value(), surface);
+    const std::string identity =
+        scene::response_identity(scene.body, scene::load_grid(scene).grid.value(), surface, scene::load_kinds(scene));
     const std::filesystem::path file = scene::response_path(folder.path(), identity);
     std::filesystem::create_directories(file.parent_path());
     scene::write_file(file, scene::response_bytes(test::synthetic_response(scene, surface), identity));

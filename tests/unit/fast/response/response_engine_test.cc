@@ -38,7 +38,7 @@ class ResponseEngineTest : public ::testing::Test {
   }
   [[nodiscard]] std::string identity() const {
     return scene::response_identity(scene_.body, scene::load_grid(scene_).grid.value(), surface(),
-                                    scene_.contact.friction.has_value());
+                                    scene::load_kinds(scene_));
   }
   void store_response() const {
     const auto file = scene::response_path(folder_.path(), identity());

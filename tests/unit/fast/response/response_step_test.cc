@@ -75,8 +75,12 @@ TEST_F(ResponseStep, FarAwayTheShapeIsTheHalfSpacesAndTheColumns) {
     if (model.free[static_cast<std::size_t>(i)] == 0.0f || (x_m - load.center_m).norm() < 0.02) continue;
     scene::Vec3 expected_m = spread_displacement_m(load, model.half_space, x_m);
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      expected_m[axis] += load.force_n * weights.sum<double>([&](int k) {
+      const auto column = [&](Eigen::Index k) {
         return static_cast<double>(model.response.smooth_m_per_n(axis * surface_.points_m.cols() + i, k));
+      };
+      expected_m[axis] += weights.sum<double>([&](int k) {
+        return load.force_n * column(k) +
+               model.half_space.double_force_nm(load.apart_m3()) * column(model.response.apart(k));
       });
     }
     const auto k = static_cast<std::size_t>(i);

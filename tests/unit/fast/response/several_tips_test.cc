@@ -246,7 +246,7 @@ TEST_F(SeveralTips, AreInTheRecordsAndThePlan) {
   scene_.fast.triangles = 20000;
   surface_ = scene::tessellate(*scene::body_shape(scene_.body), scene_.fast.triangles);
   const std::string identity =
-      scene::response_identity(scene_.body, scene::load_grid(scene_).grid.value(), surface_, false);
+      scene::response_identity(scene_.body, scene::load_grid(scene_).grid.value(), surface_, scene::load_kinds(scene_));
   const auto file = scene::response_path(folder.path(), identity);
   std::filesystem::create_directories(file.parent_path());
   scene::write_file(file, scene::response_bytes(test::synthetic_response(scene_, surface_), identity));

@@ -142,6 +142,35 @@ TEST(SpreadLoad, PressureCarriesTheForce) {
   }
 }
 
+TEST(SpreadLoad, FarFromABallItsFieldIsADoubleForce) {
+  const Vec3 side = normal.unitOrthogonal();
+  for (const double nu : {0.0, 0.3, 0.5}) {
+    const scene::Material material{3.0e6, nu};
+    const HalfSpace half_space(material);
+    const BallField field(nu);
+    SpreadLoad load{center_m, normal, 1.0, 0.004};
+    SpreadLoad with = load;
+    with.field = &field;
+    with.field_m = 0.001;
+    with.body_share = 0.3;
+    const scene::PointLoad apart{
+        .point_m = center_m, .normal = normal, .force_n = 0.0, .apart_nm = half_space.double_force_nm(with.apart_m3())};
+    EXPECT_LT(apart.apart_nm, 0.0) << "the surface is drawn inwards";
+    for (const auto& [r, z] : {std::pair(0.013, 0.0), {0.02, 0.0}, {0.02, 0.01}, {0.0, 0.03}}) {
+      const Vec3 x_m = center_m + r * side - z * normal;
+      const Vec3 expected_m = scene::half_space_displacement_m(apart, material, x_m);
+      const Vec3 found_m = spread_displacement_m(with, half_space, x_m) - spread_displacement_m(load, half_space, x_m);
+      EXPECT_LT((found_m - expected_m).norm(), 1e-9 * expected_m.norm()) << nu << ' ' << r << ' ' << z;
+    }
+    // Its tables end there.
+    const double reach_m = BallField::reach * load.radius_m;
+    const auto at = [&](double r_m) { return spread_displacement_m(with, half_space, center_m + r_m * side); };
+    EXPECT_LT((at(reach_m * (1.0 - 1e-9)) - at(reach_m * (1.0 + 1e-9))).norm(), 1e-8 * with.field_m);
+    // Flat bodies have less of it.
+    EXPECT_GT(field.far(0.0), field.far(0.3));
+  }
+}
+
 TEST(SpreadLoad, TheLoopAgreesFromTheNearVerticesOn) {
   const double a = 0.004;
   Columns3 rest_m, out_m;
@@ -158,7 +187,10 @@ TEST(SpreadLoad, TheLoopAgreesFromTheNearVerticesOn) {
   }
   for (const double nu : {0.0, 0.5}) {
     for (const double flat : {0.0, 1.0}) {
-      const SpreadLoad load{center_m, normal, 20.0, a, flat};
+      SpreadLoad load{center_m, normal, 20.0, a, flat};
+      const BallField field(nu);
+      load.field = &field;
+      load.field_m = 0.05;
       const HalfSpace half_space({3.0e6, nu});
       const std::int32_t count = spread_displacements_m(load, half_space, rest_m, out_m, near.data());
       EXPECT_GT(count, 100);

@@ -67,7 +67,8 @@ void expect_the_same_far_away(const scene::Body& body, double tolerance) {
   grid.points_m = p_m;
   grid.normals = Vec3::UnitZ();
   const Eigen::Matrix3Xd points_m = mesh.points_m(Eigen::all, nodes);
-  const scene::Response response = smooth_response(body, grid, points_m, {.cells = coarse.cells, .friction = true});
+  const scene::Response response =
+      smooth_response(body, grid, points_m, {.cells = coarse.cells, .loads = {.along = true, .apart = true}});
   const Eigen::Matrix<double, 3, 2> along = grid.along(0);
   const std::array loads{scene::PointLoad{p_m, Vec3::UnitZ(), 1.0},
                          scene::PointLoad{p_m, Vec3::UnitZ(), 0.0, along.col(0)},
@@ -81,6 +82,19 @@ void expect_the_same_far_away(const scene::Body& body, double tolerance) {
     const Eigen::Matrix3Xd expected_m = by_a_node(body, p_m, load.along_n - load.force_n * load.normal, nodes, problem);
     EXPECT_LT((u_m - expected_m).norm(), tolerance * expected_m.norm()) << body.material.poissons_ratio << ' ' << k;
   }
+  // A double force is four forces on nodes beside it.
+  const double apart_m = edge_m / 16.0;
+  Eigen::Matrix3Xd u_m =
+      response.smooth_m_per_n.col(response.apart(0)).reshaped(points_m.cols(), 3).transpose().cast<double>();
+  Eigen::Matrix3Xd expected_m = Eigen::Matrix3Xd::Zero(3, points_m.cols());
+  for (Eigen::Index i = 0; i < points_m.cols(); ++i) {
+    u_m.col(i) +=
+        scene::half_space_displacement_m({p_m, Vec3::UnitZ(), 0.0, Vec3::Zero(), 1.0}, body.material, points_m.col(i));
+  }
+  for (const Vec3& out : {Vec3(1.0, 0.0, 0.0), Vec3(-1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.0, -1.0, 0.0)}) {
+    expected_m += by_a_node(body, p_m + apart_m * out, 0.5 / apart_m * out, nodes, problem);
+  }
+  EXPECT_LT((u_m - expected_m).norm(), 4.0 * tolerance * expected_m.norm()) << body.material.poissons_ratio;
 }
 
 TEST(SmoothResponse, IsTheBodysOwnAwayFromTheLoad) {
@@ -110,7 +124,7 @@ TEST(SmoothResponse, IsReciprocalAndTiltsAsItsPlaceChangesIt) {
   const scene::LoadGrid grid = scene::load_grid(scene).grid.value();
   const int n = grid.count();
   const scene::Response response =
-      smooth_response(scene.body, grid, grid.points_m, {.cells = coarse.cells, .friction = true});
+      smooth_response(scene.body, grid, grid.points_m, {.cells = coarse.cells, .loads = {.along = true}});
   // u_z of point i under load j.
   const Eigen::MatrixXd down_m = response.smooth_m_per_n.bottomLeftCorner(n, n).cast<double>();
   const double size_m = down_m.cwiseAbs().maxCoeff();

@@ -87,7 +87,7 @@ TEST_F(ResponseFile, IdentityIsEverythingThatCounts) {
   Body other = scene_.body;
   other.material.poissons_ratio = 0.3;
   EXPECT_NE(response_identity(other, response_.grid, surface), identity);
-  EXPECT_NE(response_identity(scene_.body, response_.grid, surface, true), identity);
+  EXPECT_NE(response_identity(scene_.body, response_.grid, surface, {.along = true}), identity);
   other = scene_.body;
   other.size_m.z() = 0.05;
   EXPECT_NE(response_identity(other, response_.grid, surface), identity);
