@@ -208,7 +208,8 @@ scene::Response made_up_response(const scene::Scene& scene, const scene::Surface
   constexpr double own_m_per_n = 2e-5;
   scene::Response out;
   out.grid = scene::load_grid(scene).grid.value();
-  const int columns = scene::load_kinds(scene).per_point() * out.grid.count();
+  out.loads = scene::load_kinds(scene);
+  const int columns = out.loads.columns(out.grid.count());
   out.smooth_m_per_n.setConstant(3 * surface.points_m.cols(), columns, static_cast<float>(0.1 * own_m_per_n));
   out.own_m_per_n.setZero(3, columns);
   out.own_m_per_n.leftCols(out.grid.count()) = -own_m_per_n * out.grid.normals;

@@ -53,6 +53,7 @@ Vec3 traction_pa(const TipLaw& law, const ResponseContact& contact, const Vec3& 
   const double r_m = across_m.norm();
   const double slope = tip.slope(std::min(r_m, 0.99 * tip.reach_m()));
   const Vec3 out = (r_m > 0.0 ? Vec3(axis + slope / r_m * across_m) : axis).normalized();
+  if (contact.friction_n.isZero(0.0)) return pressure * out;
   const Vec3 shear_pa = spread_shear_pa(contact.load, x_m - contact.stretch_m);
   return pressure * out + shear_pa - shear_pa.dot(out) * out;
 }

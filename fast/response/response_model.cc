@@ -181,7 +181,7 @@ ResponseModel::ResponseModel(const scene::Scene& scene, scene::Surface at_rest, 
     springs.emplace(*scene.contact.friction, scene.body.material.poissons_ratio, tips.front().tables.front());
     for (int k = 0; k < n; ++k) {
       const Eigen::Matrix<double, 3, 2> along = grid.along(k);
-      const Eigen::Matrix2d own = along.transpose() * response.own_m_per_n.middleCols<2>(n + 2 * k);
+      const Eigen::Matrix2d own = along.transpose() * response.own_m_per_n.middleCols<2>(response.along(k, 0));
       shear_compliance.emplace_back(along * (0.5 * (own + own.transpose())) * along.transpose());
     }
   }

@@ -252,6 +252,7 @@ SpreadLoad patch(const ResponseContact& contact, int k, int patches) noexcept {
   SpreadLoad load = contact.load;
   if (patches == 1) return load;
   load.force_n /= patches;
+  load.ball_shear_n /= patches;
   load.center_m += (2.0 * k / (patches - 1) - 1.0) * contact.half_line_m;
   return load;
 }
@@ -601,6 +602,12 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
                                                          moved[1] * grid.spacing_m[1] * grid.axes.col(1));
     contact.load.center_m = loaded.point_m;
     contact.load.normal = loaded.normal;
+    if (state.slip) continue;
+    // The pressure leans with the surface under the tip.
+    constexpr double least_lean = 1e-4;
+    const Vec3& force_n = contact.wrench.force_n;
+    const Vec3 along_n = force_n - force_n.dot(loaded.normal) * loaded.normal;
+    if (along_n.norm() > least_lean * contact.law.force_n) contact.load.ball_shear_n = -along_n;
   }
   return status;
 }
@@ -646,9 +653,10 @@ void response_shape(const ResponseModel& model, ResponseState& state) noexcept {
     // The body carries the load where the tool is.
     Eigen::VectorXd& weights = state.column_weight;
     weights.setZero();
+    const Vec3 moved_m = contact.stretch_m + contact.law.force_n * contact.sway_m_per_n;
     const int patches = model.tips[static_cast<std::size_t>(&contact - state.contacts.data())].patches;
     for (int k = 0; k < patches; ++k) {
-      const GridWeights one(grid, grid.place(patch(contact, k, patches).center_m + contact.stretch_m));
+      const GridWeights one(grid, grid.place(patch(contact, k, patches).center_m + moved_m));
       for (int t = 0; t < one.count; ++t) {
         const auto [point, weight] = one.terms[static_cast<std::size_t>(t)];
         weights[point] += weight / patches;
@@ -657,6 +665,13 @@ void response_shape(const ResponseModel& model, ResponseState& state) noexcept {
     const double apart_nm = model.half_space.double_force_nm(contact.load.apart_m3());
     const Vec3& force_n = contact.wrench.force_n;
     const Vec3 lateral_n = force_n - force_n.dot(contact.at.normal) * contact.at.normal;
+    const auto add_along = [&](int point, double weight) {
+      const Eigen::Vector2d along_n = weight * grid.along(point).transpose() * -lateral_n;
+      for (int axis = 0; axis < 2; ++axis) {
+        sum.add(model.response.smooth_m_per_n.col(model.response.along(point, axis)).data(),
+                static_cast<float>(along_n[axis]));
+      }
+    };
     for (int point = 0; point < grid.count(); ++point) {
       if (weights[point] == 0.0) continue;
       sum.add(model.response.smooth_m_per_n.col(point).data(),
@@ -665,13 +680,10 @@ void response_shape(const ResponseModel& model, ResponseState& state) noexcept {
         sum.add(model.response.smooth_m_per_n.col(model.response.apart(point)).data(),
                 static_cast<float>(weights[point] * apart_nm));
       }
-      if (!state.slip) continue;
-      const Eigen::Vector2d along_n = weights[point] * grid.along(point).transpose() * -lateral_n;
-      for (int axis = 0; axis < 2; ++axis) {
-        sum.add(model.response.smooth_m_per_n.col(grid.count() + 2 * point + axis).data(),
-                static_cast<float>(along_n[axis]));
-      }
+      if (state.slip) add_along(point, weights[point]);
     }
+    // Without friction there is little of it: the columns of the middle will do.
+    if (!state.slip && !contact.load.shear_n().isZero(0.0)) add_along(grid.middle(), 1.0);
   }
   sum.finish();
   hold(model.free, shape_m);

@@ -142,9 +142,10 @@ scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& 
   const SurfaceSampler<3> sampler(mesh, wanted_m, false, false);
 
   scene::Response& out = first.response;
-  const Eigen::Index columns = options.loads.per_point() * n, doubles = options.loads.apart ? columns - n : columns;
+  const Eigen::Index columns = options.loads.columns(grid.count());
   if (first.done == 0) {
     out.grid = grid;
+    out.loads = options.loads;
     out.unknowns = problem.unknowns();
     out.smooth_m_per_n.setZero(3 * m, columns);
     out.own_m_per_n.setZero(3, columns);
@@ -152,8 +153,11 @@ scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& 
   }
   if (progress) progress({Next::matrix, first});
   for (Eigen::Index column = first.done; column < columns; ++column) {
-    const bool apart = column >= doubles, along = !apart && column >= n;
-    const Eigen::Index k = apart ? column - doubles : along ? (column - n) / 2 : column;
+    const bool apart = column >= out.apart(0), along = !apart && column >= n;
+    const Eigen::Index k = apart                ? column - out.apart(0)
+                           : !along             ? column
+                           : out.loads.friction ? (column - n) / 2
+                                                : grid.middle();
     PointLoad load{grid.points_m.col(k), grid.normals.col(k)};
     if (apart) {
       load.force_n = 0.0;

@@ -17,7 +17,7 @@ namespace touchstone::reference {
 
 struct SmoothResponseOptions {
   double cells = 10.0;  ///< to the body's size; as many again to the spread of the loads
-  scene::LoadKinds loads;
+  scene::LoadKinds loads = {};
 };
 
 /// A response of which the first columns are computed; the others are zero.

@@ -15,8 +15,8 @@ inline scene::Response synthetic_response(const scene::Scene& scene, const scene
   out.grid = scene::load_grid(scene).grid.value();
   const int n = out.grid.count();
   const auto m = surface.points_m.cols();
-  const scene::LoadKinds loads = scene::load_kinds(scene);
-  const int columns = loads.per_point() * n;
+  out.loads = scene::load_kinds(scene);
+  const int columns = out.loads.columns(n);
   out.smooth_m_per_n.setZero(3 * m, columns);
   out.own_m_per_n.setZero(3, columns);
   out.tilt_per_n.resize(2, n);
@@ -27,15 +27,15 @@ inline scene::Response synthetic_response(const scene::Scene& scene, const scene
     out.tilt_per_n.col(k) = Eigen::Vector2d(-60.0, 25.0) * C_m_per_n;
     const Eigen::VectorXf height = (surface.points_m.row(2).transpose() / 0.06).cast<float>();
     out.smooth_m_per_n.col(k).tail(m) = static_cast<float>(-C) * height;
-    if (loads.apart) out.smooth_m_per_n.col(out.apart(k)).tail(m) = static_cast<float>(30.0 * C) * height;
-    if (!loads.along) continue;
+    if (out.loads.ball) out.smooth_m_per_n.col(out.apart(k)).tail(m) = static_cast<float>(30.0 * C) * height;
+    if (!out.loads.friction && k != out.grid.middle()) continue;
     const Eigen::Matrix<double, 3, 2> along = out.grid.along(k);
     for (int axis = 0; axis < 2; ++axis) {
       const double sway = out.own_m_per_n.col(k).dot(along.col(axis));
       const scene::Vec3 own = 1.5 * C * along.col(axis) - sway * normal;
-      out.own_m_per_n.col(n + 2 * k + axis) = own;
+      out.own_m_per_n.col(out.along(k, axis)) = own;
       for (Eigen::Index i = 0; i < 3; ++i) {
-        out.smooth_m_per_n.col(n + 2 * k + axis).segment(i * m, m) = static_cast<float>(own[i]) * height;
+        out.smooth_m_per_n.col(out.along(k, axis)).segment(i * m, m) = static_cast<float>(own[i]) * height;
       }
     }
   }

@@ -19,6 +19,8 @@ struct LoadGrid {
   Eigen::Matrix3Xd normals;   ///< outward there
 
   [[nodiscard]] int count() const noexcept { return counts[0] * counts[1]; }
+  /// The point nearest to the middle.
+  [[nodiscard]] int middle() const noexcept { return counts[1] / 2 * counts[0] + counts[0] / 2; }
   /// Directions of the loads along the surface at a point, unit and perpendicular: the first is nearest to axes' first.
   [[nodiscard]] Eigen::Matrix<double, 3, 2> along(int point) const noexcept {
     const Vec3 normal = normals.col(point), first = axes.col(0) - axes.col(0).dot(normal) * normal;

@@ -13,7 +13,7 @@ namespace touchstone::scene {
 namespace {
 
 /// Raised with every change of method that moves a response.
-constexpr const char* method_version = "touchstone response method 1";
+constexpr const char* method_version = "touchstone response method 2";
 
 template <class Matrix>
 std::string hash_of(const Matrix& matrix) {
@@ -25,8 +25,8 @@ std::string hash_of(const Matrix& matrix) {
 
 LoadKinds load_kinds(const Scene& scene) {
   const std::vector<ToolTip> tips = tool_tips(scene).tips;
-  return {.along = scene.contact.friction.has_value(),
-          .apart = std::any_of(tips.begin(), tips.end(), [](const ToolTip& tip) { return tip.round(); })};
+  return {.friction = scene.contact.friction.has_value(),
+          .ball = std::any_of(tips.begin(), tips.end(), [](const ToolTip& tip) { return tip.round(); })};
 }
 
 std::string response_needs(const Scene& scene) { return load_grid(scene).why; }
@@ -34,10 +34,10 @@ std::string response_needs(const Scene& scene) { return load_grid(scene).why; }
 std::string response_identity(const Body& body, const LoadGrid& grid, const Surface& surface, const LoadKinds& loads) {
   std::ostringstream text;
   text << std::setprecision(17) << method_version << '\n' << body_text(body);
-  text << (loads.along ? "loads in 3 directions " : "loads ") << grid.counts[0] << " x " << grid.counts[1] << " places "
-       << hash_of(grid.points_m) << '\n'
+  text << (loads.friction ? "loads in 3 directions " : "loads ") << grid.counts[0] << " x " << grid.counts[1]
+       << " places " << hash_of(grid.points_m) << '\n'
        << "rest points " << surface.vertex_count() << " places " << hash_of(surface.points_m) << '\n';
-  if (loads.apart) text << "with double forces\n";
+  if (loads.ball) text << "with double forces\n";
   return text.str();
 }
 

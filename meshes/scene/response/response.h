@@ -9,13 +9,23 @@
 
 namespace touchstone::scene {
 
+/// Loads of a response besides those against the normals.
+struct LoadKinds {
+  bool friction = false;  ///< along the surface, two at every grid point; else two at the middle one alone
+  bool ball = false;      ///< radial double forces, one at every grid point
+  [[nodiscard]] int columns(int points) const noexcept {
+    return points + (friction ? 2 * points : 2) + (ball ? points : 0);
+  }
+};
+
 /// Displacement per newton of loads on a grid's points, on the elastic body with its support and inclusions, minus
 /// half_space_displacement_m() of the same load. It is smooth, also at the load's own place. n grid points, m rest
-/// points, c columns: n for loads against the normals, for scenes with friction 2 n more for loads along the surface,
-/// both directions of LoadGrid::along() of a point after each other, and for balls n more for radial double forces [per
-/// N m], which are smooth but for 1 / distance on curved bodies.
+/// points, c columns: n for loads against the normals; for loads along the surface both directions of LoadGrid::along()
+/// of a point after each other; and n for radial double forces [per N m], which are smooth but for 1 / distance on
+/// curved bodies.
 struct Response {
   LoadGrid grid;
+  LoadKinds loads;
   Eigen::MatrixXf smooth_m_per_n;  ///< 3 m x c, world: x of all rest points, then y, then z
   Eigen::Matrix3Xd own_m_per_n;    ///< the same at the load's place, 3 x c
   Eigen::Matrix2Xd tilt_per_n;     ///< slope of the normal component there by a load against the normal, along the
@@ -23,16 +33,15 @@ struct Response {
   int unknowns = 0;                ///< of the linear systems
 
   [[nodiscard]] Eigen::Index rest_points() const noexcept { return smooth_m_per_n.rows() / 3; }
-  /// The column of a radial double force, where there are some.
-  [[nodiscard]] Eigen::Index apart(int point) const noexcept { return smooth_m_per_n.cols() - grid.count() + point; }
+  // Columns of loads at a point:
+  [[nodiscard]] Eigen::Index along(int point, int axis) const noexcept {
+    return grid.count() + (loads.friction ? 2 * point : 0) + axis;
+  }
+  [[nodiscard]] Eigen::Index apart(int point) const noexcept {
+    return grid.count() + (loads.friction ? 2 * grid.count() : 2) + point;
+  }
 };
 
-/// Loads that a scene needs besides those against the normals.
-struct LoadKinds {
-  bool along = false;  ///< for friction
-  bool apart = false;  ///< for balls
-  [[nodiscard]] int per_point() const noexcept { return 1 + (along ? 2 : 0) + (apart ? 1 : 0); }
-};
 [[nodiscard]] LoadKinds load_kinds(const Scene& scene);
 
 /// Why the response model cannot answer a scene, completing "the response model needs that ..."; empty when it can.

@@ -16,12 +16,12 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "files are little-endian");
 
 // "what it is, checksum, line feed, content". Content: the identity's hash, counts, numbers.
-constexpr std::string_view magic = "touchstone response 2: m, m/N, 1/N\n";
+constexpr std::string_view magic = "touchstone response 3: m, m/N, 1/N\n";
 constexpr std::size_t hash_size = 32;
 constexpr InputKind response_input{"a response file", std::uintmax_t{2} << 30};
 
 struct Counts {
-  std::int64_t loads_0 = 0, loads_1 = 0, directions = 0, rest_points = 0, unknowns = 0;
+  std::int64_t loads_0 = 0, loads_1 = 0, friction = 0, ball = 0, rest_points = 0, unknowns = 0;
 };
 
 class Writer {
@@ -62,8 +62,8 @@ std::filesystem::path response_path(const std::filesystem::path& store, const st
 
 std::string response_bytes(const Response& response, const std::string& identity) {
   const LoadGrid& grid = response.grid;
-  const Counts counts{grid.counts[0], grid.counts[1], response.own_m_per_n.cols() / grid.count(),
-                      response.rest_points(), response.unknowns};
+  const Counts counts{grid.counts[0],      grid.counts[1],         response.loads.friction,
+                      response.loads.ball, response.rest_points(), response.unknowns};
   Writer content;
   content.bytes = hash_text(identity);
   content.bytes.append(reinterpret_cast<const char*>(&counts), sizeof counts);
@@ -97,14 +97,17 @@ Response response_from(const std::string& bytes, const std::string& identity) {
   for (const std::int64_t count : {counts.loads_0, counts.loads_1, counts.rest_points}) {
     if (count < 1 || count > most) throw InputError("it has invalid counts");
   }
-  if (counts.directions < 1 || counts.directions > 4) throw InputError("it has invalid counts");
+  if ((counts.friction | counts.ball | 1) != 1) throw InputError("it has invalid counts");
   Response out;
   out.unknowns = static_cast<int>(counts.unknowns);
   out.grid.counts = {static_cast<int>(counts.loads_0), static_cast<int>(counts.loads_1)};
-  const std::int64_t n = counts.loads_0 * counts.loads_1, columns = n * counts.directions;
+  const std::int64_t n = counts.loads_0 * counts.loads_1;
+  if (n > most) throw InputError("it has invalid counts");
+  out.loads = {counts.friction == 1, counts.ball == 1};
+  const std::int64_t columns = out.loads.columns(static_cast<int>(n));
   const auto needed = static_cast<std::size_t>(n) * 8 * sizeof(double) +
                       static_cast<std::size_t>(columns) * 3 * (sizeof(double) + sizeof(float) * counts.rest_points);
-  if (n > most || reader.left() != needed + 14 * sizeof(double)) throw InputError("its size and its counts differ");
+  if (reader.left() != needed + 14 * sizeof(double)) throw InputError("its size and its counts differ");
   Eigen::Vector2d spacing_m;
   reader.take(out.grid.middle_m, 3, 1);
   reader.take(out.grid.axes, 3, 3);

@@ -61,13 +61,14 @@ TEST(Prepare, SaysWhatItDoesAndAfterASignalGoesOnWithItsColumns) {
       if (!at.empty() && line.find(at) != std::string::npos) std::raise(SIGTERM);
     });
   };
-  EXPECT_THAT([&] { (void)prepare_and_stop("2 of 9 columns"); },
-              ::testing::ThrowsMessage<reference::Interrupted>(HasSubstr("interrupted; 3 of 9 columns")));
-  EXPECT_THAT(lines, ElementsAre(HasSubstr("computed once: mesh"), ContainsRegex("[0-9]+ unknowns, about .* 9 columns"),
-                                 ContainsRegex("2 of 9 columns, about .* left")));
+  EXPECT_THAT([&] { (void)prepare_and_stop("2 of 20 columns"); },
+              ::testing::ThrowsMessage<reference::Interrupted>(HasSubstr("interrupted; 3 of 20 columns")));
+  EXPECT_THAT(lines,
+              ElementsAre(HasSubstr("computed once: mesh"), ContainsRegex("[0-9]+ unknowns, about .* 20 columns"),
+                          ContainsRegex("2 of 20 columns, about .* left")));
   const reference::Prepared rest = prepare_and_stop("");
   EXPECT_TRUE(rest.computed);
-  EXPECT_THAT(lines, ElementsAre(HasSubstr("mesh"), HasSubstr("then 6 of 9 columns"), HasSubstr("5 of 9 columns")));
+  EXPECT_THAT(lines, ElementsAre(HasSubstr("mesh"), HasSubstr("then 17 of 20 columns"), HasSubstr("5 of 20 columns")));
   EXPECT_FALSE(prepare_and_stop("").computed);
   EXPECT_THAT(lines, IsEmpty());
 }

@@ -66,8 +66,15 @@ TEST_F(ResponseStep, FarAwayTheShapeIsTheHalfSpacesAndTheColumns) {
   const ResponseModel model = this->model();
   ResponseState state(model);
   (void)response_step(model, test::pressed(0.002, 0.002, 0.001), state);
-  const SpreadLoad& load = state.contacts[0].load;
-  const GridWeights weights(model.response.grid, model.response.grid.place(load.center_m));
+  const ResponseContact& contact = state.contacts[0];
+  const SpreadLoad& load = contact.load;
+  const scene::LoadGrid& grid = model.response.grid;
+  // The columns where the tool is: the load's place at rest has swayed.
+  const GridWeights weights(grid, grid.place(load.center_m + load.force_n * contact.sway_m_per_n));
+  // The pressure leans.
+  const Eigen::Vector2d along_n = grid.along(grid.middle()).transpose() * load.ball_shear_n;
+  EXPECT_GT(along_n.norm(), 1e-3 * load.force_n);
+  EXPECT_LT((load.ball_shear_n + state.wrench.force_n - load.force_n * load.normal).norm(), 1e-9 * load.force_n);
   ASSERT_NE(weights.count % 4, 0) << "the columns that are added one by one are tested, too";
   int compared = 0;
   for (Eigen::Index i = 0; i < surface_.points_m.cols(); ++i) {
@@ -78,6 +85,9 @@ TEST_F(ResponseStep, FarAwayTheShapeIsTheHalfSpacesAndTheColumns) {
       const auto column = [&](Eigen::Index k) {
         return static_cast<double>(model.response.smooth_m_per_n(axis * surface_.points_m.cols() + i, k));
       };
+      for (int side = 0; side < 2; ++side) {
+        expected_m[axis] += along_n[side] * column(model.response.along(grid.middle(), side));
+      }
       expected_m[axis] += weights.sum<double>([&](int k) {
         return load.force_n * column(k) +
                model.half_space.double_force_nm(load.apart_m3()) * column(model.response.apart(k));
@@ -264,8 +274,9 @@ TEST_F(ResponseLine, TheBodyIsInSeriesAndTakesTheLoadOverTheLine) {
   EXPECT_NEAR(state.column_weight.sum(), 1.0, 1e-12);
   const scene::LoadGrid& grid = model.response.grid;
   const scene::Vec3 along = contact.half_line_m.normalized(), middle_m = grid.points_m * state.column_weight;
-  EXPECT_LT((middle_m - contact.load.center_m).norm(), 1e-6);
-  const Eigen::VectorXd along_m = (grid.points_m.colwise() - contact.load.center_m).transpose() * along;
+  const scene::Vec3 tool_m = contact.load.center_m + contact.load.force_n * contact.sway_m_per_n;
+  EXPECT_LT((middle_m - tool_m).norm(), 1e-6);
+  const Eigen::VectorXd along_m = (grid.points_m.colwise() - tool_m).transpose() * along;
   const double spread_m2 = along_m.cwiseAbs2().dot(state.column_weight);
   EXPECT_NEAR(spread_m2, contact.law.half_line_m * contact.law.half_line_m / 3.0, 0.01 * spread_m2);
 }

@@ -68,7 +68,7 @@ void expect_the_same_far_away(const scene::Body& body, double tolerance) {
   grid.normals = Vec3::UnitZ();
   const Eigen::Matrix3Xd points_m = mesh.points_m(Eigen::all, nodes);
   const scene::Response response =
-      smooth_response(body, grid, points_m, {.cells = coarse.cells, .loads = {.along = true, .apart = true}});
+      smooth_response(body, grid, points_m, {.cells = coarse.cells, .loads = {.friction = true, .ball = true}});
   const Eigen::Matrix<double, 3, 2> along = grid.along(0);
   const std::array loads{scene::PointLoad{p_m, Vec3::UnitZ(), 1.0},
                          scene::PointLoad{p_m, Vec3::UnitZ(), 0.0, along.col(0)},
@@ -124,7 +124,7 @@ TEST(SmoothResponse, IsReciprocalAndTiltsAsItsPlaceChangesIt) {
   const scene::LoadGrid grid = scene::load_grid(scene).grid.value();
   const int n = grid.count();
   const scene::Response response =
-      smooth_response(scene.body, grid, grid.points_m, {.cells = coarse.cells, .loads = {.along = true}});
+      smooth_response(scene.body, grid, grid.points_m, {.cells = coarse.cells, .loads = {.friction = true}});
   // u_z of point i under load j.
   const Eigen::MatrixXd down_m = response.smooth_m_per_n.bottomLeftCorner(n, n).cast<double>();
   const double size_m = down_m.cwiseAbs().maxCoeff();

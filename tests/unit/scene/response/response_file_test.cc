@@ -21,8 +21,9 @@ class ResponseFile : public ::testing::Test {
   ResponseFile() {
     response_.grid = load_grid(scene_).grid.value();
     const int n = response_.grid.count();
-    response_.smooth_m_per_n = Eigen::MatrixXf::Random(15, 3 * n);
-    response_.own_m_per_n = Eigen::Matrix3Xd::Random(3, 3 * n);
+    response_.loads = {.friction = true, .ball = true};
+    response_.smooth_m_per_n = Eigen::MatrixXf::Random(15, 4 * n);
+    response_.own_m_per_n = Eigen::Matrix3Xd::Random(3, 4 * n);
     response_.tilt_per_n = Eigen::Matrix2Xd::Random(2, n);
     response_.unknowns = 77;
     bytes_ = response_bytes(response_, "body");
@@ -87,7 +88,7 @@ TEST_F(ResponseFile, IdentityIsEverythingThatCounts) {
   Body other = scene_.body;
   other.material.poissons_ratio = 0.3;
   EXPECT_NE(response_identity(other, response_.grid, surface), identity);
-  EXPECT_NE(response_identity(scene_.body, response_.grid, surface, {.along = true}), identity);
+  EXPECT_NE(response_identity(scene_.body, response_.grid, surface, {.friction = true}), identity);
   other = scene_.body;
   other.size_m.z() = 0.05;
   EXPECT_NE(response_identity(other, response_.grid, surface), identity);
