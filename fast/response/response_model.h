@@ -11,6 +11,11 @@
 // C_ij = C_ji = (1 - nu^2) / (pi E |p_i - p_j|) and the rest from the columns, by Maxwell's and Betti's reciprocity.
 // All have one potential, so the order of the tips does not matter.
 //
+// In the shape, the columns act where the tool is, F s away from the load's place at rest: the force's line of action
+// moves with the body. Without friction the pressure leans with the surface; its part along it is a shear of the patch,
+// which two columns of the grid's middle carry. Under and beside a ball BallField (finite_strain.h) adds what finite
+// strain and the body's curvature do, and columns of double forces the body's answer to that.
+//
 // Next to an inclusion C falls off within the contact. Then a contact of radius a has C / sqrt(1 + (kappa a)^4) in its
 // place: C under a small contact, ~ 1 / a^2 as under an even load under a large one. a = 3 F / (4 E* D_hs) is that of
 // Hertz's contact. kappa, fast.body_falloff_per_m, is fitted; 0 leaves C.

@@ -196,8 +196,9 @@ void set(Columns3& columns, std::int32_t i, const Vec3& value) noexcept {
   }
 }
 
-/// Friction of the tick: its part of the load and of the wrench, and the turn of a ball's forces.
-void add_friction(const ResponseModel& model, const scene::Pose& pose, ResponseState& state) noexcept {
+/// Friction of the tick: its part of the load and of the wrench.
+/// @returns the contact's displacement on the half space [m]
+Vec3 add_friction(const ResponseModel& model, const scene::Pose& pose, ResponseState& state) noexcept {
   ResponseContact& contact = state.contacts.front();
   const scene::ToolTip& tip = model.tips.front().tip;
   const LocalContact& law = contact.law;
@@ -227,17 +228,22 @@ void add_friction(const ResponseModel& model, const scene::Pose& pose, ResponseS
   contact.load.ball_shear_n = -contact.friction_n - contact.load.punch_shear_n;
   contact.wrench.force_n += contact.friction_n;
   contact.wrench.torque_nm += arm_m.cross(contact.friction_n);
-  if (!tip.ball()) return;
-  // The ball touches the surface that friction has moved under it, and the pressure's middle leads the tool: all forces
-  // turn about the ball's centre.
+  return slips.frame * slipped.displacement_m;
+}
+
+/// The ball touches the surface that friction has moved under it, and the pressure's middle leads the tool: all forces
+/// turn about the ball's centre.
+void turn_about_ball(const ResponseModel& model, const scene::Pose& pose, const Vec3& displacement_m,
+                     ResponseContact& contact) noexcept {
   constexpr double lead = 0.085;  // of the contact's displacement; chosen, as in reports/response.md
   // On the scenes compared it is 4 degrees at most. The displacement of a contact that sticks has no bound.
   constexpr double largest_turn_rad = 0.5;
+  const scene::ToolTip& tip = model.tips.front().tip;
+  const Vec3 n = contact.at.normal;
   scene::Pose behind = pose;
   behind.position_m -= contact.stretch_m;
   const Vec3 moved = scene::touch(*model.body, tip, behind).normal;
-  const Vec3 turned = moved - lead / tip.radius_m * (slips.frame * slipped.displacement_m);
-  Eigen::AngleAxisd turn(Eigen::Quaterniond::FromTwoVectors(n, turned));
+  Eigen::AngleAxisd turn(Eigen::Quaterniond::FromTwoVectors(n, moved - lead / tip.radius_m * displacement_m));
   turn.angle() = std::min(turn.angle(), largest_turn_rad);
   const Vec3 center_m = pose.orientation * tip.center_T_m;
   const Vec3 about_center_nm = contact.wrench.torque_nm - center_m.cross(contact.wrench.force_n);
@@ -586,7 +592,8 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
   }
   state.lap(Stage::force);
   if (state.slip) {
-    add_friction(model, pose, state);
+    const Vec3 displacement_m = add_friction(model, pose, state);
+    if (model.tips.front().tip.ball()) turn_about_ball(model, pose, displacement_m, state.contacts.front());
     state.lap(Stage::friction);
   }
   for (const ResponseContact& contact : state.contacts) {
