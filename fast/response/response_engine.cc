@@ -41,7 +41,7 @@ double pressure_pa(const TipLaw& tip, const ResponseContact& contact, const Vec3
 /// across it, and so is the normal traction on a surface of any slope. Shear is along the tool's surface.
 Vec3 traction_pa(const TipLaw& law, const ResponseContact& contact, const Vec3& x_m, const Vec3& axis) {
   const scene::ToolTip& tip = law.tip;
-  const double pressure = pressure_pa(law, contact, x_m - contact.stretch_m - contact.load.center_m);
+  const double pressure = pressure_pa(law, contact, x_m - contact.moved_m() - contact.load.center_m);
   if (pressure == 0.0) return Vec3::Zero();
   Vec3 from_axis_m = x_m - contact.at.point_m;
   if (tip.line()) {
@@ -54,7 +54,7 @@ Vec3 traction_pa(const TipLaw& law, const ResponseContact& contact, const Vec3& 
   const double slope = tip.slope(std::min(r_m, 0.99 * tip.reach_m()));
   const Vec3 out = (r_m > 0.0 ? Vec3(axis + slope / r_m * across_m) : axis).normalized();
   if (contact.friction_n.isZero(0.0)) return pressure * out;
-  const Vec3 shear_pa = spread_shear_pa(contact.load, x_m - contact.stretch_m);
+  const Vec3 shear_pa = spread_shear_pa(contact.load, x_m - contact.moved_m());
   return pressure * out + shear_pa - shear_pa.dot(out) * out;
 }
 

@@ -113,6 +113,8 @@ struct ResponseContact {
   scene::Vec3 stretch_m = scene::Vec3::Zero();   ///< by which friction moves the surface at the load
   scene::Vec3 lead_m = scene::Vec3::Zero();      ///< by which friction moves the contact's middle over the ball
 
+  /// By which the surface at the load has moved along itself: the tool is there.
+  [[nodiscard]] scene::Vec3 moved_m() const noexcept { return stretch_m + law.force_n * sway_m_per_n; }
   [[nodiscard]] bool touches() const noexcept { return load.force_n > 0.0; }
 };
 

@@ -660,7 +660,7 @@ void response_shape(const ResponseModel& model, ResponseState& state) noexcept {
     // The body carries the load where the tool is.
     Eigen::VectorXd& weights = state.column_weight;
     weights.setZero();
-    const Vec3 moved_m = contact.stretch_m + contact.law.force_n * contact.sway_m_per_n;
+    const Vec3 moved_m = contact.moved_m();
     const int patches = model.tips[static_cast<std::size_t>(&contact - state.contacts.data())].patches;
     for (int k = 0; k < patches; ++k) {
       const GridWeights one(grid, grid.place(patch(contact, k, patches).center_m + moved_m));
