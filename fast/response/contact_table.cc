@@ -173,8 +173,8 @@ ContactTable::ContactTable(const scene::ToolTip& tip, const LocalShape& local, d
     const double moment_m2 = i > 0 ? at.moment_m4 / at.sum_m2 : 0.0, a2_m2 = at.a_m * at.a_m;
     const double flat = a2_m2 > 0.0 ? (moment_m2 / a2_m2 - 1.0 / 5.0) / (1.0 / 3.0 - 1.0 / 5.0) : 0.0;
     const double widening = tip.ball() ? strain.widening(x) : 1.0, between = std::clamp(flat, 0.0, 1.0);
-    // (1 - peaked) (3/2 - flat) + 5/2 peaked is the pressure in the middle over its mean.
-    const double peaked = tip.ball() ? (strain.peak(x) * widening * widening - 1.5 + between) / (1.0 + between) : 0.0;
+    // 3/2 + peaked is the pressure in the middle over its mean.
+    const double peaked = tip.ball() ? strain.peak(x) * widening * widening - 1.5 : 0.0;
     nodes_.push_back({linear_n * factor, dF_dD * 2.0 * s, at.a_m, between, widening, peaked, 0.0, at.a_m, 0.0});
   }
   if (tip.flat_radius_m > 0.0) nodes_[0].flat = 1.0;

@@ -65,6 +65,25 @@ struct GridWeights {
     }
   }
 
+  /// Between the four points around a place: for what is small, of which a step in the slope does not show.
+  [[nodiscard]] static GridWeights linear(const scene::LoadGrid& grid, const Eigen::Vector2d& place) noexcept {
+    GridWeights out;
+    std::array<int, 2> low{};
+    std::array<double, 2> share{};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double x = place[static_cast<Eigen::Index>(i)];
+      low[i] = std::clamp(static_cast<int>(std::floor(x)), 0, grid.counts[i] - 2);
+      share[i] = std::clamp(x - low[i], 0.0, 1.0);
+    }
+    for (int j = 0; j < 2; ++j) {
+      for (int i = 0; i < 2; ++i) {
+        const double weight = (i == 0 ? 1.0 - share[0] : share[0]) * (j == 0 ? 1.0 - share[1] : share[1]);
+        out.terms[static_cast<std::size_t>(out.count++)] = {(low[1] + j) * grid.counts[0] + low[0] + i, weight};
+      }
+    }
+    return out;
+  }
+
   /// @param value  of a point, as a Result
   template <class Result, class Value>
   [[nodiscard]] Result sum(const Value& value) const noexcept {

@@ -611,7 +611,7 @@ StepStatus response_force(const ResponseModel& model, const scene::Pose& given, 
     contact.load.normal = loaded.normal;
     if (state.slip) continue;
     // The pressure leans with the surface under the tip.
-    constexpr double least_lean = 1e-4;
+    constexpr double least_lean = 1e-3;
     const Vec3& force_n = contact.wrench.force_n;
     const Vec3 along_n = force_n - force_n.dot(loaded.normal) * loaded.normal;
     if (along_n.norm() > least_lean * contact.law.force_n) contact.load.ball_shear_n = -along_n;
@@ -669,7 +669,6 @@ void response_shape(const ResponseModel& model, ResponseState& state) noexcept {
         weights[point] += weight / patches;
       }
     }
-    const double apart_nm = model.half_space.double_force_nm(contact.load.apart_m3());
     const Vec3& force_n = contact.wrench.force_n;
     const Vec3 lateral_n = force_n - force_n.dot(contact.at.normal) * contact.at.normal;
     const auto add_along = [&](int point, double weight) {
@@ -683,11 +682,16 @@ void response_shape(const ResponseModel& model, ResponseState& state) noexcept {
       if (weights[point] == 0.0) continue;
       sum.add(model.response.smooth_m_per_n.col(point).data(),
               static_cast<float>(weights[point] * contact.load.force_n));
-      if (contact.load.field != nullptr) {
-        sum.add(model.response.smooth_m_per_n.col(model.response.apart(point)).data(),
-                static_cast<float>(weights[point] * apart_nm));
-      }
       if (state.slip) add_along(point, weights[point]);
+    }
+    if (contact.load.field != nullptr) {
+      const auto apart_nm = static_cast<float>(model.half_space.double_force_nm(contact.load.apart_m3()));
+      const GridWeights four = GridWeights::linear(grid, grid.place(contact.load.center_m + moved_m));
+      for (int t = 0; t < four.count; ++t) {
+        const auto [point, weight] = four.terms[static_cast<std::size_t>(t)];
+        sum.add(model.response.smooth_m_per_n.col(model.response.apart(point)).data(),
+                static_cast<float>(weight) * apart_nm);
+      }
     }
     // Without friction there is little of it: the columns of the middle will do.
     if (!state.slip && !contact.load.shear_n().isZero(0.0)) add_along(grid.middle(), 1.0);

@@ -21,7 +21,8 @@ double spread_pressure_pa(const SpreadLoad& load, const Vec3& x_m) noexcept {
   const double r2 = d_m.squaredNorm() - below_m * below_m;
   if (!(r2 < a2)) return 0.0;
   const double rim = std::sqrt(std::max(1.0 - r2 / a2, 1e-6));
-  const double spread = 1.5 * (1.0 - load.flat) * rim + 0.5 * load.flat / rim;
+  const double flat = load.field == nullptr ? load.flat : 0.0;  // under a ball the pressure ends in zero
+  const double spread = 1.5 * (1.0 - flat) * rim + 0.5 * flat / rim;
   return load.force_n / (std::numbers::pi * a2) * ((1.0 - load.peaked) * spread + 2.5 * load.peaked * rim * rim * rim);
 }
 
@@ -104,6 +105,7 @@ Vec3 spread_shear_pa(const SpreadLoad& load, const Vec3& x_m) noexcept {
   SpreadLoad one = load;
   one.force_n = 1.0;
   one.peaked = 0.0;
+  one.field = nullptr;
   one.flat = 0.0;
   const double ball = spread_pressure_pa(one, x_m);
   one.flat = 1.0;

@@ -139,6 +139,11 @@ TEST(SpreadLoad, PressureCarriesTheForce) {
     EXPECT_NEAR(sum_n, force_n, 1e-3 * force_n) << flat;
     EXPECT_EQ(spread_pressure_pa(load, center_m + 1.01 * a * side), 0.0);
     EXPECT_EQ(spread_pressure_pa(load, center_m - 0.5 * a * normal), spread_pressure_pa(load, center_m));
+    // A ball's ends in zero, though its field on the half space is a little like a flat punch's.
+    const BallField field(0.5);
+    SpreadLoad ball = load;
+    ball.field = &field;
+    EXPECT_LT(spread_pressure_pa(ball, center_m + 0.999999 * a * side), 0.01 * spread_pressure_pa(ball, center_m));
   }
 }
 
