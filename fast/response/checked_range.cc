@@ -36,10 +36,10 @@ std::string_view pressure_errors(const scene::Scene& scene) {
   const std::vector<scene::ToolTip> tips = scene::tool_tips(scene).tips;
   if (!scene.body.inclusions.empty()) return "NOT GOOD above a soft inclusion, up to 50 % off";
   if (tips.size() > 1) return "18 % off under two pins";
-  if (tips.front().line()) return "4 % off under a capsule's side, NOT GOOD near an edge, 37 %";
+  if (tips.front().line()) return "4 % off under a capsule's side, 9 % near an edge";
   if (!tips.front().ball()) return "5 % off under a pin, NOT GOOD under a wide disc with a narrow rim, 35 %";
-  if (scene.contact.friction) return "13 % off on a flat face, 23 % on a curved one, with friction";
-  return "4 to 7 % off under a ball on a flat face, 11 % on a curved one";
+  if (scene.contact.friction) return "9 % off on a flat face with friction";
+  return "3 to 4 % off under a ball, up to 9 % near an edge";
 }
 
 StepStatus beyond(const CheckedRange& checked, const ContactRange& range) noexcept {
