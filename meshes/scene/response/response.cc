@@ -22,6 +22,10 @@ std::string hash_of(const Matrix& matrix) {
 
 std::string response_needs(const Scene& scene) { return load_grid(scene).why; }
 
+std::string formulation_needs(const Scene& scene) {
+  return scene.fast.formulation == Formulation::response ? response_needs(scene) : "";
+}
+
 std::string response_identity(const Body& body, const LoadGrid& grid, const Surface& surface, bool friction) {
   std::ostringstream text;
   text << std::setprecision(17) << method_version << '\n' << body_text(body);
