@@ -3,9 +3,11 @@
 #include "compare/errors/compute_errors.h"
 #include "compare/format/text.h"
 #include "compare/input/tuning_study.h"
+#include "compare/model/registry.h"
 #include "fast/step/state.h"
 #include "scene/base/files.h"
 #include "support/source_folder.h"
+#include "support/spring.h"
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
 
@@ -20,10 +22,11 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::vector<NextStep> steps_of(const testing::Sides& sides) {
+std::vector<NextStep> steps_of(const testing::Sides& sides, const ModelEntry& model) {
   return next_steps(sides.scene, sides.run, sides.result, compute_errors(sides.scene, sides.run, sides.result.instants),
-                    sides.call);
+                    sides.call, model);
 }
+std::vector<NextStep> steps_of(const testing::Sides& sides) { return steps_of(sides, fast_model(sides.scene)); }
 
 /// The first step whose reason or command contains this part; an empty one if there is none.
 NextStep find(const std::vector<NextStep>& steps, const std::string& part) {
@@ -146,6 +149,27 @@ TEST(NextSteps, NameTheStudyThatTrainsOnTheScene) {
   EXPECT_THAT(find(steps_of(sides), "Tune").command, ::testing::EndsWith("/meshes/studies/ball-on-cube.toml"));
   sides.call.compare.parameters = "tuned.toml";
   EXPECT_EQ(find(steps_of(sides), "Tune").why, "");
+}
+
+TEST(NextSteps, AreTheModelsOwn) {
+  const testing::Sides sides = really_run();
+  const std::vector<NextStep> steps = steps_of(sides, testing::springs({.scene = sides.scene}).front());
+  EXPECT_THAT(find(steps, "another spring").command, HasSubstr(" --set contact.k1_n_per_m=80.0"));
+  EXPECT_EQ(find(steps, "area-aware").command, "");
+}
+
+TEST(NextSteps, TuneTheResponseModelsFalloffWhereTheBodyHasAnInclusion) {
+  testing::Sides sides = testing::pressed(5, 200);
+  sides.scene.fast.formulation = scene::Formulation::response;
+  sides.call.scene_file = source_folder() + "/meshes/scenes/ellipsoid-pvc-inside.toml";
+  EXPECT_EQ(find(steps_of(sides), "Tune").why, "") << "it has no other constant";
+  sides.scene.body.inclusions.emplace_back();
+  const NextStep step = find(steps_of(sides), "Tune");
+  EXPECT_EQ(step.why, "Tune fast.body_falloff_per_m to the reference on this and other contacts.");
+  EXPECT_THAT(step.command, ::testing::EndsWith("/meshes/studies/soft-ball.toml"));
+  // The skeleton's study trains on the same scene.
+  sides.scene.fast.formulation = scene::Formulation::corrected;
+  EXPECT_THAT(find(steps_of(sides), "Tune").command, ::testing::EndsWith("/meshes/studies/inclusion.toml"));
 }
 
 TEST(NextSteps, SayHowFarTheTrackPassesTheBody) {
