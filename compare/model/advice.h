@@ -43,6 +43,9 @@ class Advice {
   virtual void again(const std::string& why, const std::string& options) = 0;
   /// Suggests the command again, with a file of parameters NAME.toml of this text.
   virtual void with_parameters(const std::string& why, const std::string& name, const std::string& text) = 0;
+  /// Suggests to tune the scene's constants where an error is large.
+  /// @param example  of a study, where the scene has none; @param tried  a sentence with a space before, or empty
+  virtual void tune(const std::string& example, const std::string& tried) = 0;
 };
 
 }  // namespace touchstone::compare

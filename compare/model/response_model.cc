@@ -1,11 +1,13 @@
 #include "compare/model/response_model.h"
 
+#include "compare/format/text.h"
 #include "compare/model/engine_model.h"
 #include "fast/command/stop_signals.h"
 #include "reference/run/cost.h"
 #include "reference/run/options.h"
 #include "scene/base/error.h"
 #include "scene/base/stopwatch.h"
+#include "scene/model/solid_kinds.h"
 #include "scene/response/response.h"
 
 #include <fmt/format.h>
@@ -23,6 +25,27 @@ void prepare_missing_response(const scene::Scene& scene, const Say& say) {
     say(fmt::format("the body's response: {} columns in {:.3g} s: {}", prepared.response.own_m_per_n.cols(),
                     prepared.seconds, prepared.file.string()));
   }
+}
+
+/// The falloff next to an inclusion, where a trial gives smaller errors.
+void advise_falloff(Advice& advice) {
+  const scene::Scene& scene = advice.scene();
+  const Errors& errors = advice.errors();
+  if (scene.body.inclusions.empty() || !errors.force_nrmse.value || !errors.shape_rel_l2.value) return;
+  const auto sum = [](const Trial& trial) { return trial.force_nrmse + trial.shape_rel_l2; };
+  const Trial before{*errors.force_nrmse.value, *errors.shape_rel_l2.value};
+  Trial best = before;
+  for (const double share : {16.0, 32.0, 8.0}) {  // of the body's size over the layer's thickness, about
+    if (!advice.time_left()) break;
+    scene::Scene changed = scene;
+    changed.fast.body_falloff_per_m = share / scene::body_size_m(scene.body);
+    if (const Trial trial = advice.tried(changed); sum(trial) < sum(best)) best = trial;
+  }
+  if (sum(best) > Advice::worth_it * sum(before)) return;
+  advice.tune("meshes/studies/soft-ball.toml",
+              fmt::format(" Tried with a guess: force error from {} to {}, shape error from {} to {}.",
+                          percent_text(before.force_nrmse), percent_text(best.force_nrmse),
+                          percent_text(before.shape_rel_l2), percent_text(best.shape_rel_l2)));
 }
 
 }  // namespace
@@ -98,7 +121,8 @@ ModelEntry response_model(const scene::Scene&, const Say& say) {
               [](const scene::Scene& scene) {
                 prepare_missing_response(scene, {});
                 return engine_replay(scene);
-              }};
+              },
+          .account = {.advise = advise_falloff}};
 }
 
 std::vector<ModelEntry> response_models(const ModelRequest& request) {

@@ -155,9 +155,10 @@ Reason force_cause(const scene::Scene& scene, const Errors& errors) {
   return out;
 }
 
-void advise(Advice& advice) {
+void advise_skeleton(Advice& advice) {
   other_beams(advice);
   area_law(advice);
+  advice.tune("meshes/studies/ball-on-cube.toml", "");
 }
 
 ModelEntry skeleton(ModelEntry entry, const SceneChange& change) {
@@ -225,7 +226,7 @@ ModelEntry skeleton_model(const Scene& scene, const Say&) {
                   .parts_sentence = "{3} with the contact point's kernel function alone, {1} with the anchor points' "
                                     "displacements added, {2} with the local factor added instead, {0} with both",
                   .cause = force_cause,
-                  .advise = advise}};
+                  .advise = advise_skeleton}};
 }
 
 std::vector<ModelEntry> skeleton_models(const ModelRequest& request) {

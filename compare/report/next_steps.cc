@@ -70,7 +70,6 @@ class Finder final : Advice {
     more_regions();
     known_better();
     if (model_.account.advise) model_.account.advise(*this);
-    tuning();
     return std::move(steps_);
   }
 
@@ -105,6 +104,25 @@ class Finder final : Advice {
     call.compare.parameters = call_.folder / file;
     steps_.push_back(
         {why, command_text(call, " --out " + fast::shell_word(call_.folder.string() + "-" + name)), file, text});
+  }
+
+  void tune(const std::string& example, const std::string& tried) override {
+    const auto matters = [](const Measure& error) {
+      return error.value.value_or(0.0) > small_error && error.distinguishable();
+    };
+    if (!call_.compare.parameters.empty() || (!matters(errors_.force_nrmse) && !matters(errors_.shape_rel_l2))) return;
+    Constants constants = scene::tunable_fields(scene_);
+    std::erase_if(constants, [](const auto* field) { return field->tunable->stage == TuningStage::model; });
+    const std::string what = constants.size() == 1 ? std::string(constants.front()->key) : "the constants";
+    if (const std::filesystem::path study = tuning_study_of(call_.scene_file, constants); !study.empty()) {
+      add("Tune " + what + " to the reference on this and other contacts." + tried,
+          "touchstone tune " + fast::shell_word(study.string()));
+    } else {
+      add("Tune " + what +
+          " to the reference with touchstone tune and a study of this scene, as reports/tuning.md "
+          "describes. " +
+          example + " is an example." + tried);
+    }
   }
 
   void add(std::string why, std::string command = "") { steps_.push_back({std::move(why), std::move(command)}); }
@@ -161,25 +179,6 @@ class Finder final : Advice {
       const double half = 0.5 * std::max(*force, *errors_.shape_rel_l2.uncertainty);
       more.reference.error = std::stod(typed(std::clamp(half, 1e-4, 0.5)));
       add("Refine the reference: an error is no larger than its uncertainty.", command_text(more, ""));
-    }
-  }
-
-  void tuning() {
-    const auto matters = [](const Measure& error) {
-      return error.value.value_or(0.0) > small_error && error.distinguishable();
-    };
-    if (!call_.compare.parameters.empty() || (!matters(errors_.force_nrmse) && !matters(errors_.shape_rel_l2))) return;
-    Constants constants = scene::tunable_fields(scene_);
-    std::erase_if(constants, [](const auto* field) { return field->tunable->stage == TuningStage::model; });
-    if (constants.empty()) return;
-    const std::string what = constants.size() == 1 ? std::string(constants.front()->key) : "the constants";
-    if (const std::filesystem::path study = tuning_study_of(call_.scene_file, constants); !study.empty()) {
-      add("Tune " + what + " to the reference on this and other contacts.",
-          "touchstone tune " + fast::shell_word(study.string()));
-    } else {
-      add("Tune " + what +
-          " to the reference with touchstone tune and a study of this scene, as reports/tuning.md "
-          "describes. meshes/studies/ball-on-cube.toml is an example.");
     }
   }
 

@@ -102,7 +102,7 @@ std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model
     if (worst == nullptr) continue;
     const Errors& e = worst->errors;
     std::string text = fmt::format(
-        "Force at {} (worst: {}): an error of {} of the peak, {} at the peak.", in_what(differs),
+        "Force at {} (worst: \"{}\"): an error of {} of the peak, {} at the peak.", in_what(differs),
         tuning.data[worst->data].contact.name, percent_text(*e.force_nrmse.value),
         *e.force_peak_rel.value < 0.0 ? fmt::format("{} too weak", percent_text(-*e.force_peak_rel.value))
                                       : fmt::format("{} too strong", percent_text(*e.force_peak_rel.value)));
@@ -110,7 +110,8 @@ std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model
     const auto here = forces_at_n(*worst, depth_m), there = forces_at_n(trained, depth_m);
     if (here && there && (*there)[0] > 0.0 && (*there)[1] > 0.0) {
       text += fmt::format(
-          " From the training contact {} to this one, at {} depth, the reference's force changes by a factor of {}, "
+          " From the training contact \"{}\" to this one, at {} depth, the reference's force changes by a factor of "
+          "{}, "
           "the model's by {}.",
           tuning.data[trained.data].contact.name, quantity_text(depth_m, "m"), number_text((*here)[0] / (*there)[0]),
           number_text((*here)[1] / (*there)[1]));
@@ -126,7 +127,8 @@ std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model
   if (worst != nullptr && trained.errors.shape_rel_l2.value) {
     const Errors& e = worst->errors;
     std::string text = fmt::format(
-        "Shape: an error of {} of the displacement on the training contact {}, and up to {} on held-out contacts ({}).",
+        "Shape: an error of {} of the displacement on the training contact \"{}\", and up to {} on held-out contacts "
+        "(\"{}\").",
         percent_text(*trained.errors.shape_rel_l2.value), tuning.data[trained.data].contact.name,
         percent_text(*e.shape_rel_l2.value), tuning.data[worst->data].contact.name);
     if (e.shape_inside_r_rel_l2.value && e.shape_outside_r_rel_l2.value && e.shape_error_outside_share) {
@@ -143,7 +145,7 @@ std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model
     if (model.shape_parts.empty()) return limits;
     fmt::dynamic_format_arg_store<fmt::format_context> errors;
     for (const double error : model.shape_parts) errors.push_back(percent_text(error));
-    limits.push_back(fmt::format("Shape error by parts of the model, on the training contact {}: {}.",
+    limits.push_back(fmt::format("Shape error by parts of the model, on the training contact \"{}\": {}.",
                                  tuning.data[trained.data].contact.name, fmt::vformat(account.parts_sentence, errors)));
   }
   return limits;

@@ -51,7 +51,7 @@ TEST(Findings, SayWhatThePartsOfTheShapeAreGoodFor) {
   EXPECT_NEAR(whole, *model.outcomes.at(0).errors.shape_rel_l2.value, 1e-9);
   // The reference has both parts.
   for (std::size_t k = 1; k < 4; ++k) EXPECT_GT(model.shape_parts[k], whole + 0.01) << k;
-  EXPECT_THAT(model.limits.back(), HasSubstr("Shape error by parts of the model, on the training contact pole"));
+  EXPECT_THAT(model.limits.back(), HasSubstr("Shape error by parts of the model, on the training contact \"pole\""));
 }
 
 TEST(Findings, AreInTheWordsOfTheModel) {
@@ -59,7 +59,7 @@ TEST(Findings, AreInTheWordsOfTheModel) {
                              [](const scene::Scene& scene) { return springs({.scene = scene}).front(); });
   const TunedModel& model = tuning.models.at(0);
   EXPECT_THAT(model.limits, Contains(HasSubstr("of the squared error lies, and a spring is nowhere else.")));
-  EXPECT_THAT(model.limits.back(), HasSubstr("on the training contact pole: 100\u00a0% with the spring."));
+  EXPECT_THAT(model.limits.back(), HasSubstr("on the training contact \"pole\": 100\u00a0% with the spring."));
   EXPECT_NE(scene::find_figure(tuning_figures(tuning), "spring.training.shape_parts.whole"), nullptr);
 }
 
