@@ -9,7 +9,7 @@
 #include "compare/app/verbs.h"
 #include "compare/app/verify_verb.h"
 #include "compare/app/view_verb.h"
-#include "compare/model/engine_model.h"
+#include "compare/model/registry.h"
 #include "compare/report/live_report.h"
 #include "compare/solve/reference_run.h"
 #include "fast/app/completion.h"

@@ -1,6 +1,6 @@
 #include "compare/app/prepare_verb.h"
 
-#include "compare/model/engine_model.h"
+#include "compare/model/response_model.h"
 #include "fast/command/exit_code.h"
 #include "fast/command/progress_line.h"
 

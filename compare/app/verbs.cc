@@ -2,8 +2,7 @@
 
 #include "compare/comparison/compare.h"
 #include "compare/input/tuning_study.h"
-#include "compare/model/engine_model.h"
-#include "compare/model/skeleton_model.h"
+#include "compare/model/registry.h"
 #include "compare/report/fast_report.h"
 #include "compare/report/inside_files.h"
 #include "compare/report/plot_files.h"
@@ -86,7 +85,7 @@ int run_compare(const fast::VerbOptions& options, const ReferenceOptions& refere
   scene::Manifest manifest = scene::make_manifest(scene, "touchstone compare");
   prepare_missing(scene, fast::progress_lines(options.quiet));
   const scene::Stopwatch fast_watch;
-  const fast::Run run = fast_model().set_up(scene)->track().value();
+  const fast::Run run = fast_model(scene).set_up(scene)->track().value();
   manifest.times.push_back(fast_watch.read("fast"));
   const scene::Stopwatch reference_watch;
   const reference::Result result = solve_with_progress(given, run.surface, reference, options.quiet);

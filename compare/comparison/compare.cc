@@ -4,6 +4,7 @@
 #include "compare/errors/figures.h"
 #include "compare/format/svg_plot.h"
 #include "compare/model/engine_model.h"
+#include "compare/model/registry.h"
 #include "compare/report/comparison_drawings.h"
 #include "compare/report/model_table.h"
 #include "compare/report/plot_files.h"
@@ -51,7 +52,7 @@ Comparison write_comparison(const std::filesystem::path& folder, const scene::Sc
                             const Contenders& contenders, const Call& call, const reference::Inside* inside) {
   const Errors errors = compute_errors(scene, run, result.instants);
   const Plans plans{fast::plan(scene), reference::plan(scene)};
-  const Verdict told = verdict(scene, run, result, errors, call);
+  const Verdict told = verdict(scene, run, result, errors, call, fast_model(scene));
   const std::vector<JudgedModel> models = judge_models(contenders, run.surface, result.instants,
                                                        {.force_nrmse = errors.force_nrmse,
                                                         .shape_rel_l2 = errors.shape_rel_l2,

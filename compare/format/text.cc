@@ -113,7 +113,7 @@ std::string quantity_text(double value, std::string_view unit) {
 }
 
 std::string quantity_text(const std::optional<double>& value, std::string_view unit, std::string_view absent) {
-  return value ? quantity_text(*value, unit) : std::string(absent);
+  return value && std::isfinite(*value) ? quantity_text(*value, unit) : std::string(absent);
 }
 
 std::string wrapped(std::string_view text, std::size_t width) {

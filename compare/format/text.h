@@ -27,7 +27,7 @@ inline constexpr double least_ratio = 1e-6;
 /// byte; a ratio has the unit "" and is given as a percentage. With a unit, less than 1e-15 is rounding and given as 0.
 [[nodiscard]] std::string quantity_text(double value, std::string_view unit);
 
-/// The same, or a word for an absent value.
+/// The same, or a word for a value that is absent or not finite.
 [[nodiscard]] std::string quantity_text(const std::optional<double>& value, std::string_view unit,
                                         std::string_view absent);
 

@@ -4,7 +4,7 @@
 #include "compare/errors/figures.h"
 #include "compare/gate/stored_reference.h"
 #include "compare/model/judge.h"
-#include "compare/model/skeleton_model.h"
+#include "compare/model/registry.h"
 #include "compare/solve/reference_run.h"
 #include "reference/verification/closed_forms.h"
 #include "scene/input/scene_io.h"
@@ -65,7 +65,7 @@ std::size_t deepest(const scene::Instants& instants) {
 }
 
 ModelEntry model_of(const GateFile& file, const scene::Scene& scene, const std::vector<ModelList>& models) {
-  return file.model.empty() ? fast_model() : find_model({.scene = scene}, file.model, models);
+  return file.model.empty() ? fast_model(scene) : find_model({.scene = scene}, file.model, models);
 }
 
 scene::Figures model_figures(const GateFile& file, const scene::Scene& own, const scene::Scene& changed,

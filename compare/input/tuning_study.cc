@@ -211,20 +211,14 @@ class TuningReader : TomlReader {
     const Scene& first = study.training.front().scene;
     if (study.formulations.empty()) study.formulations = {first.fast.formulation};
     if (study.laws.empty()) study.laws = {first.contact.law};
-    if (std::ranges::count(study.formulations, Formulation::response) != 0 &&
-        std::ranges::none_of(study.parameters, [&](const TuningParameter& one) {
-          return applies(one, Formulation::response, study.laws.front());
-        })) {
-      add(document_,
-          "formulation: of the response model only fast.body_falloff_per_m can be tuned, on a body with inclusions; "
-          "expected a [[parameter]] with it, or formulation = [\"corrected\"], [\"published\"] or both");
-      return;
-    }
-    if (std::ranges::count(study.formulations, Formulation::response) != 0) {
+    for (const Formulation formulation : study.formulations) {
       for (const auto* list : {&study.training, &study.held_out}) {
         for (const TuningContact& one : *list) {
-          if (const std::string needs = response_needs(one.scene); !needs.empty()) {
-            add(document_, "formulation: the response model needs that " + needs + "; contact \"" + one.name + "\"");
+          Scene scene = one.scene;
+          scene.fast.formulation = formulation;
+          if (const std::string needs = formulation_needs(scene); !needs.empty()) {
+            add(document_, "formulation: the " + std::string(name_of(formulation)) + " model needs that " + needs +
+                               "; contact \"" + one.name + "\"");
           }
         }
       }
@@ -329,9 +323,7 @@ class ParameterReader : TomlReader {
 
 bool applies(const TuningParameter& parameter, Formulation formulation, ContactLaw law) {
   const Field<Scene>* field = tunable_field(parameter.key);
-  if (field == nullptr || field->tunable->formulation.value_or(formulation) != formulation) return false;
-  // The skeletons' constants are none of the response model's.
-  if (formulation == Formulation::response && !field->tunable->formulation) return false;
+  if (field == nullptr || !tunable_in(*field, formulation)) return false;
   Scene full = with_law({}, law);
   full.body.inclusions.emplace_back();
   for (const OptionalTable& table : optional_tables()) table.give(full);

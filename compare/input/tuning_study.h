@@ -3,7 +3,7 @@
 //   kind        = "tuning"
 //   title       = "A ball on a rubber cube"
 //   formulation = ["corrected", "published"]   # each is tuned for itself; the first gives parameters.toml
-//                                              # "response", too, with fast.body_falloff_per_m alone
+//                                              # "response", too; reports/scene-reference.md has its constant
 //   law         = ["duffing", "area_aware"]    # the same; without it the contacts' own
 //   starts      = 16                           # of every fit: the given one, the others spread over the bounds
 //   force_floor = 0.01                         # least uncertainty of the reference, of a contact's peak force
@@ -76,8 +76,7 @@ struct TuningStudy {
   std::vector<TuningParameter> parameters;
 };
 
-/// Has the parameter a meaning in the model? Only the corrected formulation has friction's stiffness ratio, and only
-/// the response model has fast.body_falloff_per_m, and nothing else.
+/// Has the parameter a meaning in the model? The column `tunable` of the table of keys says so.
 [[nodiscard]] bool applies(const TuningParameter& parameter, scene::Formulation formulation, scene::ContactLaw law);
 
 /// Writes a value into a scene; nothing where the key does not apply, as friction's in a scene without it. omega0^2 and

@@ -1,6 +1,7 @@
 // What a contact model must offer to be judged: a step that is timed, and an answer that is compared.
 #pragma once
 
+#include "compare/model/advice.h"
 #include "fast/run/run.h"
 #include "scene/model/answer.h"
 #include "scene/model/scene.h"
@@ -12,6 +13,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace touchstone::compare {
@@ -26,11 +28,6 @@ enum class ModelFamily {
   reference,   ///< the reference's levels
   other,
 };
-
-/// Is it the paper's beam skeleton, whatever its law?
-[[nodiscard]] constexpr bool has_skeleton(ModelFamily family) noexcept {
-  return family == ModelFamily::paper || family == ModelFamily::area_aware;
-}
 
 /// Why a model cannot answer; what() completes "absent: ".
 class Unavailable : public std::runtime_error {
@@ -90,6 +87,33 @@ class ModelReplay {
   virtual void displacements(const scene::Scene& scene, std::span<const std::size_t> instants, const Visit& visit) = 0;
 };
 
+/// Says one line about what takes long; may be empty.
+using Say = std::function<void(const std::string&)>;
+
+/// From a scene to the one that a model is set up for.
+using SceneChange = std::function<scene::Scene(scene::Scene)>;
+
+/// The model with some of its parts switched off.
+struct ModelParts {
+  std::string key;  ///< of summary.json
+  SceneChange change;
+};
+
+/// What a model says of itself where it is tuned and on the page of a comparison. Which of its constants can be tuned
+/// is a column of the table of keys (scene/input/fields.h).
+struct ModelAccount {
+  std::string name{};  ///< in sentences, "corrected Duffing"; empty: the entry's
+  /// Clauses of the findings on the shape, each with its punctuation: what moves the surface away from the contact, and
+  /// on faces that nothing touches.
+  std::string far_shape{}, untouched_faces{};
+  /// Their effect on the shape error, and the sentence on it, in which {0} is that of the first.
+  std::vector<ModelParts> parts{};
+  std::string parts_sentence{};
+  /// The likely cause of the force error, as far as the scene's own numbers show it.
+  std::function<Reason(const scene::Scene&, const Errors&)> cause{};
+  std::function<void(Advice&)> advise{};
+};
+
 /// A model by name: what the registry holds.
 struct ModelEntry {
   std::string name;      ///< "corrected skeleton, 4k triangles"
@@ -97,15 +121,28 @@ struct ModelEntry {
   std::string label{};   ///< short, for the plot
   std::string method{};  ///< law and skeleton, "Duffing, published"; empty: the name says it
   ModelFamily family = ModelFamily::other;
+  /// Computes what set_up() reads from the store and does not find there. Empty: it reads nothing.
+  std::function<void(const scene::Scene&, const Say&)> prepare{};
   /// @throws Unavailable
   std::function<std::unique_ptr<ContactModel>(const scene::Scene&)> set_up{};
   /// A faster way to repeat set_up() and answer() with other constants. Empty: there is none.
   std::function<std::unique_ptr<ModelReplay>(const scene::Scene&)> replay{};
+  ModelAccount account{};
   bool gives_force = true;
   bool own = false;                ///< the model that a comparison's page is about
   bool finest_reference = false;   ///< the reference's finest level, by which all are judged
   std::optional<int> triangles{};  ///< of the surface it is judged on; absent: the scene's
   std::string absent{};            ///< why the model is not available; then set_up is not called
 };
+
+/// The entry, for a changed scene.
+[[nodiscard]] inline ModelEntry changed(ModelEntry entry, const SceneChange& change) {
+  entry.set_up = [set_up = std::move(entry.set_up), change](const scene::Scene& scene) {
+    return set_up(change(scene));
+  };
+  entry.prepare = {};
+  entry.replay = {};
+  return entry;
+}
 
 }  // namespace touchstone::compare

@@ -12,6 +12,14 @@ namespace touchstone::compare {
 /// key. A new kind is a line here. Which of them every comparison judges: `usual_models.h`.
 [[nodiscard]] const std::vector<ModelList>& registered_models();
 
+/// The fast model of a scene, with the scene's own constants: what `fast`, `compare`, `tune` and gates are about. What
+/// it needs from the reference's side is prepared when it is set up, or read from the store. A formulation is a line
+/// here.
+[[nodiscard]] ModelEntry fast_model(const scene::Scene& scene, const Say& say = {});
+
+/// Prepares it. @throws as prepare() of the response model
+void prepare_missing(const scene::Scene& scene, const Say& say = {});
+
 [[nodiscard]] std::vector<ModelEntry> list_models(const ModelRequest& request, const std::vector<ModelList>& kinds);
 
 /// The model of this key, judged on the scene's own surface.

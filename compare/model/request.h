@@ -20,11 +20,8 @@ struct ModelRequest {
   std::function<int()> reference_levels{};          ///< that every contact's reference has; empty: it is no model here
   /// The reference of a contact on a number of levels.
   std::function<reference::Result(const scene::Scene&, const scene::Surface&, int levels)> solve{};
-  std::function<void(const std::string&)> say{};  ///< one line about what takes long; may be empty
+  Say say{};
 };
-
-/// From a scene to the one that a model is set up for.
-using SceneChange = std::function<scene::Scene(scene::Scene)>;
 
 /// Some models of one kind.
 using ModelList = std::vector<ModelEntry> (*)(const ModelRequest&);

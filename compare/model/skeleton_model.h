@@ -1,10 +1,10 @@
-// The paper's beam skeleton: in both formulations, with the scene's law, the area-aware law or tuned constants, and on
-// surfaces of several sizes.
+// The paper's beam skeleton: in both formulations, with the scene's law or the area-aware law, and on surfaces of
+// several sizes.
 #pragma once
 
 #include "compare/model/request.h"
 
-#include <string>
+#include <optional>
 #include <vector>
 
 namespace touchstone::compare {
@@ -17,14 +17,15 @@ namespace touchstone::compare {
 /// tuned for.
 [[nodiscard]] scene::Scene with_untuned_area_law(scene::Scene scene);
 
-/// The skeleton for a changed scene. The second has method and family of the changed scene, and no name.
-[[nodiscard]] ModelEntry skeleton_model(ModelEntry entry, const SceneChange& change);
-[[nodiscard]] ModelEntry skeleton_model(const std::string& key, const scene::Scene& given, const SceneChange& change);
+/// Hertz's force of a ball on the scene's box, ball or ellipsoid top [N]: 4/3 E/(1-nu^2) sqrt(R) depth^1.5, R the
+/// effective radius; nothing for other tools and bodies, and with inclusions. For small depths and small strain; an
+/// order of magnitude for the scene's material, not a reference.
+[[nodiscard]] std::optional<double> hertz_force_n(const scene::Scene& scene, double depth_m);
 
-/// The fast model with the scene's own constants, which `fast`, `compare`, `tune` and gates are about.
-[[nodiscard]] ModelEntry fast_model();
+/// The model of a scene that has it, as of fast_model().
+[[nodiscard]] ModelEntry skeleton_model(const scene::Scene& scene, const Say& say);
 
-/// Both formulations with both laws, and one model for every file of tuned constants.
+/// Both formulations with both laws.
 [[nodiscard]] std::vector<ModelEntry> skeleton_models(const ModelRequest& request);
 
 /// The corrected skeleton, tuned where there is a parameter file, on other surfaces than the scene's.

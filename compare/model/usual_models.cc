@@ -1,8 +1,10 @@
 #include "compare/model/usual_models.h"
 
 #include "compare/input/tuning_study.h"
+#include "compare/model/registry.h"
 #include "compare/model/response_model.h"
 #include "compare/model/skeleton_model.h"
+#include "scene/input/fields.h"
 
 #include <algorithm>
 #include <utility>
@@ -10,13 +12,11 @@
 namespace touchstone::compare {
 namespace {
 
-/// The response model has one constant.
 bool same_model(const scene::Scene& a, const scene::Scene& b) {
-  if (a.fast.formulation != b.fast.formulation) return false;
-  if (a.fast.formulation == scene::Formulation::response) {
-    return a.fast.body_falloff_per_m == b.fast.body_falloff_per_m;
-  }
-  return a.contact == b.contact && a.fast.s_c_m2 == b.fast.s_c_m2;
+  const auto constants = scene::tunable_fields(a);
+  return constants == scene::tunable_fields(b) && std::ranges::all_of(constants, [&](const auto* field) {
+           return scene::value_text(*field, a) == scene::value_text(*field, b);
+         });
 }
 
 }  // namespace
@@ -30,10 +30,8 @@ std::vector<ModelEntry> usual_models(const ModelRequest& request) {
     scene::Scene scene = change(given);
     const auto same = [&](const scene::Scene& other) { return same_model(other, scene); };
     if (!tuned && std::ranges::any_of(scenes, same)) return;
-    const bool response = scene.fast.formulation == scene::Formulation::response;
-    ModelEntry& entry =
-        models.emplace_back(response ? response_model({.name = "", .key = tuned ? key : "response"}, change, request)
-                                     : skeleton_model(key, given, change));
+    ModelEntry& entry = models.emplace_back(changed(fast_model(scene, request.say), change));
+    entry.key = key;
     entry.name = name;
     entry.own = has_tuned ? tuned : same_model(scene, given);
     scenes.push_back(std::move(scene));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "compare/errors/errors.h"
+#include "compare/model/model.h"
 #include "compare/report/call.h"
 #include "fast/run/run.h"
 #include "reference/solver.h"
@@ -20,7 +21,9 @@ struct NextStep {
 };
 
 /// The most important first; empty where nothing is left to do, and without a scene file.
+/// @param model  that the run is of
 [[nodiscard]] std::vector<NextStep> next_steps(const scene::Scene& scene, const fast::Run& run,
-                                               const reference::Result& result, const Errors& errors, const Call& call);
+                                               const reference::Result& result, const Errors& errors, const Call& call,
+                                               const ModelEntry& model);
 
 }  // namespace touchstone::compare

@@ -3,8 +3,6 @@
 #include "compare/format/text.h"
 #include "compare/report/comparison_drawings.h"
 #include "fast/step/status.h"
-#include "reference/verification/closed_forms.h"
-#include "scene/model/solid_kinds.h"
 
 #include <fmt/format.h>
 
@@ -18,12 +16,6 @@
 
 namespace touchstone::compare {
 namespace {
-
-/// The paper's Table I for rubber, read in millimetres and newtons: k1 = m w0^2, k3 = (3/4) m b0^2 eps (errata E2).
-constexpr double table1_k1_n_per_m = 40.0, table1_k3_n_per_m3 = 3.0e8;
-
-/// The law disagrees with the material if one gives this many times the other's force.
-constexpr double mismatch = 2.0;
 
 /// A penetration above this fraction of the depth is mentioned.
 constexpr double large_penetration_share = 0.1;
@@ -83,72 +75,6 @@ Reason force_paragraph(const Errors& errors) {
                     newtons(deepest.force_error_n));
   }
   return {.about = "Force", .detail = text};
-}
-
-/// Cause of the force error, as far as the scene's own numbers show it; else empty.
-Reason cause_paragraph(const scene::Scene& scene, const Errors& errors) {
-  // The response model has no contact constants.
-  if (scene.fast.formulation == scene::Formulation::response) return {};
-  const InstantErrors& deepest = errors.instants[errors.deepest];
-  if (!errors.force_peak_rel.distinguishable() || !(deepest.force_fast_n > 0.0)) return {};
-  const double d = deepest.depth_m;
-  const double law_n = scene.contact.k1_n_per_m * d + scene.contact.k3_n_per_m3 * d * d * d;
-  // As in Hertz's formula, Duffing's force depends on the depth alone.
-  const bool duffing = scene.contact.law == scene::ContactLaw::duffing;
-  const std::optional<double> hertz_n = duffing ? hertz_force_n(scene, d) : std::nullopt;
-  Reason out{.about = "Likely cause"};
-  const bool too_low = hertz_n && law_n * mismatch < *hertz_n && deepest.force_fast_n < deepest.force_reference_n;
-  const bool too_high = hertz_n && law_n > mismatch * *hertz_n && deepest.force_fast_n > deepest.force_reference_n;
-  if (too_low || too_high) {
-    out.brief = fmt::format(
-        "The contact constants do not describe the material: the contact law gives {} at D = {}, Hertz's formula "
-        "about {}.",
-        newtons(law_n), quantity_text(d, "m"), newtons(*hertz_n));
-    out.detail = fmt::format(
-        "The law is F\u00a0=\u00a0k1\u00a0D\u00a0+\u00a0k3\u00a0D³ with k1 = {} N/m and k3 = {} N/m³; Hertz's formula "
-        "takes "
-        "E = {} MPa and ν = {}. k1 and k3 do not follow from Young's modulus: they must be tuned.",
-        number_text(scene.contact.k1_n_per_m), number_text(scene.contact.k3_n_per_m3),
-        number_text(1e-6 * scene.body.material.youngs_modulus_pa), number_text(scene.body.material.poissons_ratio));
-    if (scene.contact.k1_n_per_m == table1_k1_n_per_m && scene.contact.k3_n_per_m3 == table1_k3_n_per_m3) {
-      out.detail += " These constants are the paper's Table I for rubber, read in millimetres and newtons.";
-    }
-    if (deepest.force_fast_n < 0.95 * law_n) {
-      out.detail += fmt::format(
-          " The model's force of {} is less than that, because its depth is a mean over the contact region.",
-          newtons(deepest.force_fast_n));
-    }
-  }
-  // A constant factor can be corrected by scaling; a factor that varies with the depth cannot.
-  double least = std::numeric_limits<double>::infinity(), most = 0.0, at_least_m = 0.0, at_most_m = 0.0;
-  for (const InstantErrors& e : errors.instants) {
-    if (!e.deep || !(e.force_reference_n > 0.0)) continue;
-    const double ratio = e.force_fast_n / e.force_reference_n;
-    if (ratio < least) {
-      least = ratio;
-      at_least_m = e.depth_m;
-    }
-    if (ratio > most) {
-      most = ratio;
-      at_most_m = e.depth_m;
-    }
-  }
-  if (most > 1.3 * least) {
-    const std::string form = fmt::format(
-        "the fast model gives {} of the reference's force at {} and {} at {}, so no constant factor can correct it.",
-        percent_text(least), quantity_text(at_least_m, "m"), percent_text(most), quantity_text(at_most_m, "m"));
-    if (out.brief.empty()) {
-      out.brief = "The form of the contact law: " + form;
-    } else {
-      out.detail += " The law's form matters too: " + form;
-    }
-  } else if (out.brief.empty() && least < most * (1.0 + 1e-12) && std::isfinite(least) && std::abs(most - 1.0) > 0.05) {
-    out.brief = fmt::format(
-        "The contact constants are not tuned to this contact. The fast model gives {} to {} of the reference's force "
-        "at every depth, so another constant would correct it.",
-        percent_text(least), percent_text(most));
-  }
-  return out;
 }
 
 /// A sentence for every status bit of the fast model.
@@ -280,15 +206,6 @@ Reason cost_paragraph(const fast::Run& run, const reference::Result& result) {
 
 }  // namespace
 
-std::optional<double> hertz_force_n(const scene::Scene& scene, double depth_m) {
-  const scene::Body& body = scene.body;
-  if (scene.tool.shape != scene::ToolShape::sphere || body.shape == scene::BodyShape::revolution ||
-      !body.inclusions.empty())
-    return std::nullopt;
-  const double curvature_per_m = 1.0 / scene.tool.radius_m + scene::top_curvature_per_m(body);
-  return verification::hertz(body.material.contact_modulus_pa(), 1.0 / curvature_per_m, depth_m).force_n;
-}
-
 std::string reference_sentence(const reference::Result& result, const Errors& errors) {
   const std::optional<double> force = force_known_to(errors);
   const auto& shape = errors.shape_rel_l2.uncertainty;
@@ -306,10 +223,8 @@ std::string reference_sentence(const reference::Result& result, const Errors& er
   return text;
 }
 
-std::string Reason::text() const { return brief + (brief.empty() || detail.empty() ? "" : " ") + detail; }
-
 Verdict verdict(const scene::Scene& scene, const fast::Run& run, const reference::Result& result, const Errors& errors,
-                const Call& call) {
+                const Call& call, const ModelEntry& model) {
   Verdict out;
   const auto add = [&](Reason reason) {
     if (!reason.text().empty()) out.reasons.push_back(std::move(reason));
@@ -326,14 +241,14 @@ Verdict verdict(const scene::Scene& scene, const fast::Run& run, const reference
     out.force = force_sentence(errors);
     out.shape = shape_sentence(errors);
     for (Reason& status : status_paragraphs(run.status)) add(std::move(status));
-    add(cause_paragraph(scene, errors));
+    if (model.account.cause) add(model.account.cause(scene, errors));
     add(force_paragraph(errors));
     add(friction_paragraph(errors));
     add(shape_paragraph(scene, run, result, errors));
     add({.about = "Reference", .detail = reference_sentence(result, errors)});
     add(cost_paragraph(run, result));
   }
-  out.next = next_steps(scene, run, result, errors, call);
+  out.next = next_steps(scene, run, result, errors, call, model);
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include "compare/format/text.h"
 
+#include <fmt/args.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -90,7 +91,7 @@ std::vector<std::string> notes_of(const StageFit& stage) {
 
 std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model) {
   std::vector<std::string> limits;
-  const bool response = model.formulation == scene::Formulation::response;
+  const ModelAccount& account = model.entry.account;
   const TuningOutcome& trained = model.outcomes.front();
   for (const char* differs : {"place", "tool", "depth", "track", "body"}) {
     const TuningOutcome* worst = nullptr;
@@ -101,7 +102,7 @@ std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model
     if (worst == nullptr) continue;
     const Errors& e = worst->errors;
     std::string text = fmt::format(
-        "Force at {} (worst: {}): an error of {} of the peak, {} at the peak.", in_what(differs),
+        "Force at {} (worst: \"{}\"): an error of {} of the peak, {} at the peak.", in_what(differs),
         tuning.data[worst->data].contact.name, percent_text(*e.force_nrmse.value),
         *e.force_peak_rel.value < 0.0 ? fmt::format("{} too weak", percent_text(-*e.force_peak_rel.value))
                                       : fmt::format("{} too strong", percent_text(*e.force_peak_rel.value)));
@@ -109,7 +110,8 @@ std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model
     const auto here = forces_at_n(*worst, depth_m), there = forces_at_n(trained, depth_m);
     if (here && there && (*there)[0] > 0.0 && (*there)[1] > 0.0) {
       text += fmt::format(
-          " From the training contact {} to this one, at {} depth, the reference's force changes by a factor of {}, "
+          " From the training contact \"{}\" to this one, at {} depth, the reference's force changes by a factor of "
+          "{}, "
           "the model's by {}.",
           tuning.data[trained.data].contact.name, quantity_text(depth_m, "m"), number_text((*here)[0] / (*there)[0]),
           number_text((*here)[1] / (*there)[1]));
@@ -125,29 +127,26 @@ std::vector<std::string> limits_of(const Tuning& tuning, const TunedModel& model
   if (worst != nullptr && trained.errors.shape_rel_l2.value) {
     const Errors& e = worst->errors;
     std::string text = fmt::format(
-        "Shape: an error of {} of the displacement on the training contact {}, and up to {} on held-out contacts ({}).",
+        "Shape: an error of {} of the displacement on the training contact \"{}\", and up to {} on held-out contacts "
+        "(\"{}\").",
         percent_text(*trained.errors.shape_rel_l2.value), tuning.data[trained.data].contact.name,
         percent_text(*e.shape_rel_l2.value), tuning.data[worst->data].contact.name);
     if (e.shape_inside_r_rel_l2.value && e.shape_outside_r_rel_l2.value && e.shape_error_outside_share) {
-      text += fmt::format(
-          " There it is {} within the local radius and {} outside, where {} of the squared error lies{}.",
-          percent_text(*e.shape_inside_r_rel_l2.value), percent_text(*e.shape_outside_r_rel_l2.value),
-          percent_text(*e.shape_error_outside_share),
-          response ? "" : ": only the anchor points move the surface there, and the local factor has no effect");
+      text +=
+          fmt::format(" There it is {} within the local radius and {} outside, where {} of the squared error lies{}.",
+                      percent_text(*e.shape_inside_r_rel_l2.value), percent_text(*e.shape_outside_r_rel_l2.value),
+                      percent_text(*e.shape_error_outside_share), account.far_shape);
     }
     if (e.shape_side_faces_rel_l2.value) {
-      text += fmt::format(" On untouched faces{} it is {}.", response ? "" : ", which only the anchor points move,",
+      text += fmt::format(" On untouched faces{} it is {}.", account.untouched_faces,
                           percent_text(*e.shape_side_faces_rel_l2.value));
     }
     limits.push_back(std::move(text));
-    if (!model.shape_parts) return limits;
-    const ShapeParts& parts = *model.shape_parts;
-    limits.push_back(fmt::format(
-        "Shape error by parts of the model, on the training contact {}: {} with the contact point's kernel function "
-        "alone, {} with the "
-        "anchor points' displacements added, {} with the local factor added instead, {} with both.",
-        tuning.data[trained.data].contact.name, percent_text(parts.hat_alone), percent_text(parts.without_local_factor),
-        percent_text(parts.anchors_at_rest), percent_text(parts.whole)));
+    if (model.shape_parts.empty()) return limits;
+    fmt::dynamic_format_arg_store<fmt::format_context> errors;
+    for (const double error : model.shape_parts) errors.push_back(percent_text(error));
+    limits.push_back(fmt::format("Shape error by parts of the model, on the training contact \"{}\": {}.",
+                                 tuning.data[trained.data].contact.name, fmt::vformat(account.parts_sentence, errors)));
   }
   return limits;
 }

@@ -71,26 +71,22 @@ double shape_error_rel(const TuningData& data, const scene::Scene& scene, ModelR
 
 }  // namespace
 
-TuningOutcome outcome_of(const Tuning& tuning, const ModelEntry& entry, const TunedModel& model, std::size_t at) {
+TuningOutcome outcome_of(const Tuning& tuning, const TunedModel& model, std::size_t at) {
   const TuningData& data = tuning.data[at];
   const scene::Scene scene = tuned_scene(data.contact.scene, model);
-  TuningOutcome out{at, judge(entry, *entry.set_up(scene), scene, data.surface, data.result.instants), {}};
+  TuningOutcome out{at, judge(model.entry, *model.entry.set_up(scene), scene, data.surface, data.result.instants), {}};
   out.regime = regime_of(tuning, data, out.errors);
   return out;
 }
 
-ShapeParts shape_parts_of(const TuningData& data, const ModelEntry& entry, const TunedModel& model) {
-  // A beam area of a million square metres: the beams do not deform.
-  constexpr double stiff_s_c_m2 = 1e6;
+std::vector<double> shape_parts_of(const TuningData& data, const TunedModel& model) {
   const scene::Scene whole = tuned_scene(data.contact.scene, model);
-  const std::unique_ptr<ModelReplay> replay = replay_of(entry, whole);
-  const auto with = [&](bool factor, bool anchors) {
-    scene::Scene scene = whole;
-    if (!factor) scene.fast.C_n = 0.0;
-    if (!anchors) scene.fast.s_c_m2 = stiff_s_c_m2;
-    return shape_error_rel(data, scene, *replay);
-  };
-  return {with(true, true), with(false, true), with(true, false), with(false, false)};
+  std::vector<double> errors;
+  if (model.entry.account.parts.empty()) return errors;
+  const std::unique_ptr<ModelReplay> replay = replay_of(model.entry, whole);
+  for (const ModelParts& parts : model.entry.account.parts)
+    errors.push_back(shape_error_rel(data, parts.change(whole), *replay));
+  return errors;
 }
 
 }  // namespace touchstone::compare

@@ -7,10 +7,9 @@
 namespace touchstone::compare {
 
 /// @param at  of the contact in Tuning::data
-[[nodiscard]] TuningOutcome outcome_of(const Tuning& tuning, const ModelEntry& entry, const TunedModel& model,
-                                       std::size_t at);
+[[nodiscard]] TuningOutcome outcome_of(const Tuning& tuning, const TunedModel& model, std::size_t at);
 
-/// On one contact. @param entry  with a skeleton
-[[nodiscard]] ShapeParts shape_parts_of(const TuningData& data, const ModelEntry& entry, const TunedModel& model);
+/// On one contact, as of TunedModel
+[[nodiscard]] std::vector<double> shape_parts_of(const TuningData& data, const TunedModel& model);
 
 }  // namespace touchstone::compare

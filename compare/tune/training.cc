@@ -30,14 +30,13 @@ double at_least(double uncertainty, double floor) {
 class Training {
  public:
   /// @param deepest_m  largest depth of all contacts, up to which the law must be valid
-  Training(const Tuning& tuning, const ModelEntry& entry, const TunedModel& model, double deepest_m)
-      : deepest_m_(deepest_m) {
+  Training(const Tuning& tuning, const TunedModel& model, double deepest_m) : deepest_m_(deepest_m) {
     for (const TuningData& data : tuning.data) {
       if (data.held_out()) continue;
       Contact& one = contacts_.emplace_back();
       one.data = &data;
       one.scene = tuned_scene(data.contact.scene, model);
-      one.replay = replay_of(entry, one.scene);
+      one.replay = replay_of(model.entry, one.scene);
       one.force_floor_n = tuning.study.force_floor * peak_force_n(data);
       one.shape_uncertainty = at_least(data.result.shape_uncertainty_rel.value_or(INFINITY), tuning.study.shape_floor);
       for (std::size_t t = 0; t < data.instants.size(); ++t) {
@@ -131,8 +130,7 @@ class Training {
 
 }  // namespace
 
-StageFit fit_stage(const Tuning& tuning, const ModelEntry& entry, const TunedModel& model, TuningStage stage,
-                   double deepest_m) {
+StageFit fit_stage(const Tuning& tuning, const TunedModel& model, TuningStage stage, double deepest_m) {
   StageFit out;
   out.stage = stage;
   for (const TuningParameter& one : tuning.study.parameters) {
@@ -141,7 +139,7 @@ StageFit fit_stage(const Tuning& tuning, const ModelEntry& entry, const TunedMod
     out.searched.push_back({one.key, one.low, one.high, one.start, one.log});
   }
   if (out.parameters.empty()) return out;
-  Training training(tuning, entry, model, deepest_m);
+  Training training(tuning, model, deepest_m);
   const Residuals residuals = [&](const Eigen::VectorXd& values) {
     return stage == TuningStage::force ? training.force(out.parameters, values)
                                        : training.shape(out.parameters, values);

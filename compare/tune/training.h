@@ -7,9 +7,8 @@
 namespace touchstone::compare {
 
 /// Fits what is free in a stage, with the stages of the model that were fitted before. No parameters: nothing is free.
-/// @param entry      the model; @param deepest_m  of all contacts, on which the laws must have an answer
+/// @param deepest_m  of all contacts, on which the laws must have an answer
 /// @throws std::runtime_error when the model has no answer at any start
-[[nodiscard]] StageFit fit_stage(const Tuning& tuning, const ModelEntry& entry, const TunedModel& model,
-                                 TuningStage stage, double deepest_m);
+[[nodiscard]] StageFit fit_stage(const Tuning& tuning, const TunedModel& model, TuningStage stage, double deepest_m);
 
 }  // namespace touchstone::compare

@@ -19,8 +19,7 @@ double deepest_m(const TuningData& data) {
 
 }  // namespace
 
-Tuning tune(const TuningStudy& study, const SolveReference& solve, const std::function<void(const std::string&)>& say,
-            const ModelEntry& entry) {
+Tuning tune(const TuningStudy& study, const SolveReference& solve, const Say& say, const ModelOf& model_of) {
   const auto tell = [&](const std::string& line) {
     if (say) say(line);
   };
@@ -34,21 +33,22 @@ Tuning tune(const TuningStudy& study, const SolveReference& solve, const std::fu
     }
   }
   for (const scene::Formulation formulation : study.formulations) {
-    const bool response = formulation == scene::Formulation::response;
     for (const scene::ContactLaw law : study.laws) {
-      if (response && law != study.laws.front()) continue;
-      TunedModel model{
-          .formulation = formulation, .law = law, .stages = {}, .outcomes = {}, .shape_parts = {}, .limits = {}};
+      TunedModel model;
+      model.formulation = formulation;
+      model.law = law;
+      model.entry = model_of(tuned_scene(study.training.front().scene, model));
+      // A model without a law of this kind is tuned once.
+      const auto same = [&](const TunedModel& other) { return other.entry.key == model.entry.key; };
+      if (std::ranges::any_of(tuning.models, same)) continue;
       for (const TuningStage stage : {TuningStage::force, TuningStage::shape}) {
         tell(fmt::format("{}: fitting the {}", model.name(), stage == TuningStage::force ? "force" : "shape"));
-        StageFit fitted = fit_stage(tuning, entry, model, stage, deepest);
+        StageFit fitted = fit_stage(tuning, model, stage, deepest);
         if (!fitted.parameters.empty()) model.stages.push_back(std::move(fitted));
       }
       tell(model.name() + ": errors on every contact");
-      for (std::size_t k = 0; k < tuning.data.size(); ++k)
-        model.outcomes.push_back(outcome_of(tuning, entry, model, k));
-      if (has_skeleton(entry.family) && !response)
-        model.shape_parts = shape_parts_of(tuning.data.front(), entry, model);
+      for (std::size_t k = 0; k < tuning.data.size(); ++k) model.outcomes.push_back(outcome_of(tuning, model, k));
+      model.shape_parts = shape_parts_of(tuning.data.front(), model);
       model.limits = limits_of(tuning, model);
       tuning.models.push_back(std::move(model));
     }

@@ -2,19 +2,20 @@
 // saw. The force does not depend on the shape's parameters, so it is fitted first, then the shape with it.
 #pragma once
 
-#include "compare/model/skeleton_model.h"
+#include "compare/model/registry.h"
 #include "compare/tune/tuning.h"
 
 #include <functional>
-#include <string>
 
 namespace touchstone::compare {
 
-/// @param say    called with one line about what begins; may be empty
-/// @param model  whose numbers are fitted
+/// The model of a scene with the formulation and the law that are tuned.
+using ModelOf = std::function<ModelEntry(const scene::Scene&)>;
+
+/// @param model_of  whose numbers are fitted
 /// @throws what `solve` and the model throw, std::runtime_error when the model has no answer at any start of a fit
-[[nodiscard]] Tuning tune(const TuningStudy& study, const SolveReference& solve,
-                          const std::function<void(const std::string&)>& say = {},
-                          const ModelEntry& model = fast_model());
+[[nodiscard]] Tuning tune(
+    const TuningStudy& study, const SolveReference& solve, const Say& say = {},
+    const ModelOf& model_of = [](const scene::Scene& scene) { return fast_model(scene); });
 
 }  // namespace touchstone::compare

@@ -149,8 +149,9 @@ std::string parameter_table(const StageFit& stage) {
   for (std::size_t k = 0; k < stage.parameters.size(); ++k) {
     const TuningParameter& one = stage.parameters[k];
     const Determination& found = stage.fit.parameters[k];
-    out += "<tr>" + cell(one.key) + number_cell(unit_text(found.value, one.unit)) +
-           number_cell(error_text(one, found, bound)) +
+    const std::string meaning(scene::tunable_field(one.key)->doc);
+    out += "<tr><td>" + escape_xml(one.key) + tag("span", meaning, "class=\"under\"") + "</td>" +
+           number_cell(unit_text(found.value, one.unit)) + number_cell(error_text(one, found, bound)) +
            number_cell(number_text(one.low) + " to " + unit_text(one.high, one.unit)) +
            cell(one.log ? "in its logarithm" : "evenly") + "</tr>\n";
   }
@@ -289,11 +290,18 @@ std::string within_text(const std::vector<RegimePoint>& regime, double limit) {
 
 std::string regime_section(const Tuning& tuning, const TunedModel& model) {
   std::string out = tag("h3", "Regime map: where the force is within 5, 10 and 20 %") + "\n<div class=\"plots\">\n";
-  out += figure(
-      to_svg(regime_plot(model, "from the trained place [mm]", [](const RegimePoint& p) { return 1e3 * p.place_m; })),
-      "One point per instant above 10 % of its contact's depth; distance of the contact from the nearest trained one.");
+  // Contacts at the trained place alone have no distance to show.
+  constexpr double same_place_m = 1e-6;
+  const bool elsewhere = std::ranges::any_of(model.outcomes, [](const TuningOutcome& outcome) {
+    return std::ranges::any_of(outcome.regime, [](const RegimePoint& p) { return p.place_m > same_place_m; });
+  });
+  if (elsewhere) {
+    out += figure(
+        to_svg(regime_plot(model, "from the trained place [mm]", [](const RegimePoint& p) { return 1e3 * p.place_m; })),
+        "Distance of the contact from the nearest trained one.");
+  }
   out += figure(to_svg(regime_plot(model, "contact area [mm²]", [](const RegimePoint& p) { return 1e6 * p.area_m2; })),
-                "The same over the reference's contact area.");
+                "One point per instant above 10 % of its contact's depth; area of the reference's contact.");
   out +=
       "</div>\n<div class=\"scroll\"><table>\n<tr><th>Contact</th><th class=\"n\">from the trained place</th><th "
       "class=\"n\">"

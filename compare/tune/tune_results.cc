@@ -77,12 +77,8 @@ scene::Figures model_figures(const Tuning& tuning, const TunedModel& model) {
     add(out, group, worst_figures(contacts));
     out.insert(out.end(), each.begin(), each.end());
   }
-  if (const std::optional<ShapeParts>& parts = model.shape_parts) {
-    out.push_back({"training.shape_parts.whole", parts->whole, "", ""});
-    out.push_back({"training.shape_parts.without_local_factor", parts->without_local_factor, "", ""});
-    out.push_back({"training.shape_parts.anchors_at_rest", parts->anchors_at_rest, "", ""});
-    out.push_back({"training.shape_parts.hat_alone", parts->hat_alone, "", ""});
-  }
+  for (std::size_t k = 0; k < model.shape_parts.size(); ++k)
+    out.push_back({"training.shape_parts." + model.entry.account.parts[k].key, model.shape_parts[k], "", ""});
   for (const StageFit& stage : model.stages) {
     for (std::size_t k = 0; k < stage.parameters.size(); ++k) {
       const TuningParameter& one = stage.parameters[k];
@@ -141,7 +137,7 @@ std::vector<scene::Column> tuning_columns(const Tuning& tuning) {
 
 scene::Figures tuning_figures(const Tuning& tuning) {
   scene::Figures out = model_figures(tuning, tuning.models.front());
-  for (const TunedModel& model : tuning.models) add(out, model.key() + ".", model_figures(tuning, model));
+  for (const TunedModel& model : tuning.models) add(out, model.entry.key + ".", model_figures(tuning, model));
   return out;
 }
 
@@ -161,11 +157,12 @@ std::string parameters_toml(const Tuning& tuning, const TunedModel& model) {
   const auto written = [&](const Field& field) {
     if (!field.tunable || !scene::applies(field, values)) return false;
     if (tuned.contains(&field)) return true;
-    if (model.formulation == scene::Formulation::response) return field.key == "fast.formulation";
-    if (!scene::in_optional_table(field))
-      return scene::must_be_given(field) || field.tunable->stage == scene::TuningStage::model;
-    return std::ranges::any_of(
-        tuned, [&](const Field* one) { return one->only_when && one->only_when->key == field.only_when->key; });
+    if (scene::in_optional_table(field)) {
+      return std::ranges::any_of(
+          tuned, [&](const Field* one) { return one->only_when && one->only_when->key == field.only_when->key; });
+    }
+    return scene::tunable_in(field, model.formulation) &&
+           (scene::must_be_given(field) || field.tunable->stage == scene::TuningStage::model);
   };
   std::string keys, shared;
   std::string section;
@@ -192,7 +189,7 @@ std::string parameters_toml(const Tuning& tuning, const TunedModel& model) {
 void write_tuning(const std::filesystem::path& folder, const Tuning& tuning, const scene::Manifest& manifest) {
   scene::write_file(folder / "parameters.toml", parameters_toml(tuning, tuning.models.front()));
   for (const TunedModel& model : tuning.models) {
-    scene::write_file(folder / ("parameters-" + model.key() + ".toml"), parameters_toml(tuning, model));
+    scene::write_file(folder / ("parameters-" + model.entry.key + ".toml"), parameters_toml(tuning, model));
   }
   scene::write_csv(folder / "curve.csv", tuning_columns(tuning));
   scene::write_summary(folder / "summary.json", tuning_figures(tuning));

@@ -50,16 +50,6 @@ void set_values(scene::Scene& scene, const std::vector<TuningParameter>& paramet
   }
 }
 
-std::string TunedModel::name() const {
-  if (formulation == scene::Formulation::response) return "response";
-  return std::string(scene::name_of(formulation)) + " " + std::string(scene::name_of(law).title);
-}
-
-std::string TunedModel::key() const {
-  if (formulation == scene::Formulation::response) return "response";
-  return std::string(scene::name_of(formulation)) + "-" + std::string(scene::name_of(law).word);
-}
-
 scene::Scene tuned_scene(const scene::Scene& scene, const TunedModel& model) {
   scene::Scene out = scene;
   out.fast.formulation = model.formulation;

@@ -3,11 +3,11 @@
 
 #include "compare/errors/errors.h"
 #include "compare/input/tuning_study.h"
+#include "compare/model/model.h"
 #include "compare/tune/fit.h"
 #include "reference/solver.h"
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,26 +52,19 @@ struct TuningOutcome {
   std::vector<RegimePoint> regime;  ///< deep instants
 };
 
-/// Shape error on the first training contact, over the instants that count as shape.rel_l2 is, with parts of the tuned
-/// model switched off and nothing fitted again: which shows the effect of each part.
-struct ShapeParts {
-  double whole = 0.0;
-  double without_local_factor = 0.0;  ///< C_n = 0
-  double anchors_at_rest = 0.0;       ///< beams too stiff to move them
-  double hat_alone = 0.0;             ///< neither: the contact point's kernel function alone
-};
-
 /// One formulation and law, tuned.
 struct TunedModel {
   scene::Formulation formulation = scene::Formulation::corrected;
   scene::ContactLaw law = scene::ContactLaw::duffing;
+  ModelEntry entry;
   std::vector<StageFit> stages;
-  std::vector<TuningOutcome> outcomes;    ///< in the order of the data
-  std::optional<ShapeParts> shape_parts;  ///< of a skeleton
-  std::vector<std::string> limits;        ///< what limits it on its held-out contacts, a sentence each
+  std::vector<TuningOutcome> outcomes;  ///< in the order of the data
+  /// Shape error on the first training contact, over the instants that count as shape.rel_l2 is, with each of the
+  /// entry's parts switched off and nothing fitted again: which shows the effect of each part.
+  std::vector<double> shape_parts;
+  std::vector<std::string> limits;  ///< what limits it on its held-out contacts, a sentence each
 
-  [[nodiscard]] std::string name() const;  ///< "corrected area-aware"; "response", which has no such law
-  [[nodiscard]] std::string key() const;   ///< "corrected-area_aware", for files and figures; "response"
+  [[nodiscard]] const std::string& name() const { return entry.account.name.empty() ? entry.name : entry.account.name; }
 };
 
 struct Tuning {

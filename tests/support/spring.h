@@ -3,6 +3,8 @@
 
 #include "compare/model/request.h"
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <vector>
 
@@ -29,13 +31,26 @@ class Spring final : public ContactModel {
 
 /// One spring with the scene's k1, and one that cannot be set up.
 [[nodiscard]] inline std::vector<ModelEntry> springs(const ModelRequest&) {
-  return {{.name = "spring",
-           .key = "spring",
-           .label = "spring",
-           .set_up = [](const scene::Scene& scene) { return std::make_unique<Spring>(scene.contact.k1_n_per_m); }},
-          {.name = "broken spring",
-           .key = "broken",
-           .set_up = [](const scene::Scene&) -> std::unique_ptr<ContactModel> { throw Unavailable("it broke"); }}};
+  return {
+      {.name = "spring",
+       .key = "spring",
+       .label = "spring",
+       .set_up = [](const scene::Scene& scene) { return std::make_unique<Spring>(scene.contact.k1_n_per_m); },
+       .account = {.name = "one spring",
+                   .far_shape = ", and a spring is nowhere else",
+                   .parts = {{"whole", [](const scene::Scene& scene) { return scene; }}},
+                   .parts_sentence = "{0} with the spring",
+                   .cause = [](const scene::Scene&,
+                               const Errors&) { return Reason{.about = "Likely cause", .brief = "It is a spring."}; },
+                   .advise =
+                       [](Advice& advice) {
+                         const double twice_n_per_m = 2.0 * advice.scene().contact.k1_n_per_m;
+                         advice.again("Take another spring.",
+                                      fmt::format(" --set contact.k1_n_per_m={:.1f}", twice_n_per_m));
+                       }}},
+      {.name = "broken spring", .key = "broken", .set_up = [](const scene::Scene&) -> std::unique_ptr<ContactModel> {
+         throw Unavailable("it broke");
+       }}};
 }
 
 }  // namespace touchstone::compare::testing

@@ -2,6 +2,7 @@
 
 #include "compare/errors/compute_errors.h"
 #include "compare/errors/figures.h"
+#include "compare/model/registry.h"
 #include "compare/report/report.h"
 #include "fast/command/results.h"
 #include "scene/input/scene_io.h"
@@ -181,7 +182,7 @@ Sides pressed_by_mallet(const std::filesystem::path& folder, int instants) {
 std::string report_of(const Sides& sides) {
   const Errors errors = compute_errors(sides.scene, sides.run, sides.result.instants);
   const scene::Figures figures = make_figures(errors, sides.result, fast::figures(sides.run));
-  const Verdict told = verdict(sides.scene, sides.run, sides.result, errors, sides.call);
+  const Verdict told = verdict(sides.scene, sides.run, sides.result, errors, sides.call, fast_model(sides.scene));
   const ComparisonDrawings drawings = comparison_drawings(sides.scene, sides.run, sides.result, errors);
   return report_html(
       {sides.scene, sides.run, sides.result, errors, figures, told, drawings, sides.plans, sides.manifest});

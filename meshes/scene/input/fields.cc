@@ -104,7 +104,7 @@ std::vector<Field<Scene>> make_scene_fields() {
   const std::optional<std::string_view> required, absent;
   constexpr Side both = Side::both, fast = Side::fast, reference = Side::reference, refinement = Side::refinement,
                  live = Side::live, none = Side::none;
-  const std::optional<Tunable> model = Tunable{TuningStage::model}, force = Tunable{TuningStage::force},
+  const std::optional<Tunable> law = Tunable{TuningStage::model}, force = Tunable{TuningStage::force},
                                shape = Tunable{TuningStage::shape}, rough_shape = Tunable{TuningStage::shape, true}, no;
   const Range any;
   std::vector<Field<S>> fields = {
@@ -142,7 +142,7 @@ std::vector<Field<Scene>> make_scene_fields() {
            "Mass centre, from the shape's centre or in the mesh's own axes; a track gives its poses. Absent: that of a uniform solid."},
 
       {"contact.law", "", any, "\"duffing\"", fast, choice(law_words(), +[](S& s) -> ContactLaw& { return s.contact.law; }), always,
-           "Contact law of the fast model.", model},
+           "Contact law of the fast model.", law},
       {"contact.k1_n_per_m", "N/m", between(0.0, 1e12), required, fast, +[](S& s) -> double& { return s.contact.k1_n_per_m; }, duffing,
            "Linear constant k1 = m w0^2 of F = k1 D + k3 D^3.", Tunable{.stage = TuningStage::force, .per_mass = PerMass{"contact.omega0_squared_per_s2", "1/s^2", 1.0}}},
       {"contact.k1_per_radius_n_per_m2", "N/m^2", between(0.0, 1e15), required, fast, +[](S& s) -> double& { return s.contact.k1_per_radius_n_per_m2; }, area_aware,
@@ -159,10 +159,10 @@ std::vector<Field<Scene>> make_scene_fields() {
       {"contact.friction.mu_D", "", between(0.0, 10.0), required, both, +[](S& s) -> double& { return s.contact.friction->mu_D; }, friction,
            "Dynamic friction coefficient.", force},
       {"contact.friction.stiffness_ratio", "", between(1e-3, 1e3), "1.0", fast, +[](S& s) -> double& { return s.contact.friction->stiffness_ratio; }, friction,
-           "kappa: stiffness F_t / D_t of the sticking contact over F_n / D_n; 1 as in the paper. Only the corrected formulation allows other values.", Tunable{.stage = TuningStage::force, .formulation = Formulation::corrected}},
+           "kappa: stiffness F_t / D_t of the sticking contact over F_n / D_n; 1 as in the paper. Only the corrected formulation allows other values.", Tunable{.stage = TuningStage::force, .formulations = {Formulation::corrected}}},
 
       {"fast.formulation", "", any, "\"corrected\"", fast, choice({std::begin(formulation_words), std::end(formulation_words)}, +[](S& s) -> Formulation& { return s.fast.formulation; }), always,
-           "The paper's printed method, its corrected form, or the response model, which reads what `touchstone prepare` computes.", model},
+           "The paper's printed method, its corrected form, or the response model, which reads what `touchstone prepare` computes.", Tunable{.stage = TuningStage::model, .formulations = {Formulation::published, Formulation::corrected, Formulation::response}}},
       {"fast.triangles", "", between(12, 1e5), "3952", fast, +[](S& s) -> int& { return s.fast.triangles; }, always,
            "Triangles of the body's surface; their corners are the rest points compared. Times compare.instants at most 1e7."},
       {"fast.tool_samples", "", between(1, 1e5), "2000", fast, +[](S& s) -> int& { return s.fast.tool_samples; }, always,
@@ -184,7 +184,7 @@ std::vector<Field<Scene>> make_scene_fields() {
            "s_c: cross-section area of all beams together.", shape,
            +[](const S& s) { return three_digits(body_size_m(s.body) * body_size_m(s.body) / 3.6); }, "L^2 / 3.6"},
       {"fast.body_falloff_per_m", "1/m", between(0.0, 1e5), "0.0", fast, +[](S& s) -> double& { return s.fast.body_falloff_per_m; }, inclusions,
-           "Response model: kappa of the body's compliance C / sqrt(1 + (kappa a)^4), a the radius of Hertz's contact of the same force and indentation; 0: C.", Tunable{.stage = TuningStage::force, .formulation = Formulation::response}},
+           "Response model: kappa of the body's compliance C / sqrt(1 + (kappa a)^4), a the radius of Hertz's contact of the same force and indentation; 0: C.", Tunable{.stage = TuningStage::force, .formulations = {Formulation::response}}},
 
       {"live.force_max_n", "N", above(0.0, 1e4), "40.0", live, +[](S& s) -> double& { return s.live.force_max_n; }, always,
            "Device loop: largest norm of the force sent to the device."},
@@ -269,6 +269,18 @@ const Field<Scene>* tunable_field(std::string_view name) {
     return field.tunable && (field.key == name || (field.tunable->per_mass && field.tunable->per_mass->key == name));
   });
   return found == scene_fields().end() ? nullptr : &*found;
+}
+
+bool tunable_in(const Field<Scene>& field, Formulation formulation) {
+  return field.tunable && std::ranges::count(field.tunable->formulations, formulation) != 0;
+}
+
+std::vector<const Field<Scene>*> tunable_fields(const Scene& scene) {
+  std::vector<const Field<Scene>*> list;
+  for (const Field<Scene>& field : scene_fields()) {
+    if (tunable_in(field, scene.fast.formulation) && applies(field, scene)) list.push_back(&field);
+  }
+  return list;
 }
 
 std::string former_name_message(std::string_view key) {

@@ -41,8 +41,8 @@ struct PerMass {
 /// Properties of a key that tuning may change; its limits are the key's range.
 struct Tunable {
   TuningStage stage;
-  bool rough = false;                           ///< the fit may have corners or steps in it
-  std::optional<Formulation> formulation = {};  ///< the only one in which it has a meaning; absent: both
+  bool rough = false;  ///< the fit may have corners or steps in it
+  std::vector<Formulation> formulations = {Formulation::published, Formulation::corrected};  ///< that have it
   std::optional<PerMass> per_mass = {};
 };
 
@@ -110,6 +110,12 @@ struct Field {
 
 /// The constant or choice of model that a tuning has under this name, its key or that per mass; null where none has it.
 [[nodiscard]] const Field<Scene>* tunable_field(std::string_view name);
+
+/// Is it a constant or choice of this formulation of the fast model that a tuning may change?
+[[nodiscard]] bool tunable_in(const Field<Scene>& field, Formulation formulation);
+
+/// Those that are in force in a scene, of its formulation.
+[[nodiscard]] std::vector<const Field<Scene>*> tunable_fields(const Scene& scene);
 
 /// The former name's message, "x is y now, ..."; empty for any other. Former names are refused, not read.
 [[nodiscard]] std::string former_name_message(std::string_view key);

@@ -76,9 +76,10 @@ class Reader {
     if (faults_.empty()) fill_in_defaults(scene);
     if (faults_.empty()) place_tool(rows, scene);
     if (faults_.empty()) report(broken_rules(scene));
-    if (faults_.empty() && scene.fast.formulation == Formulation::response) {
-      if (const std::string needs = response_needs(scene); !needs.empty())
-        add_fault("fast.formulation", "the response model needs that " + needs);
+    if (faults_.empty()) {
+      if (const std::string needs = formulation_needs(scene); !needs.empty())
+        add_fault("fast.formulation",
+                  "the " + std::string(name_of(scene.fast.formulation)) + " model needs that " + needs);
     }
     if (!faults_.empty()) throw InputError(sorted(faults_));
     return scene;

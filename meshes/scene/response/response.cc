@@ -31,6 +31,10 @@ LoadKinds load_kinds(const Scene& scene) {
 
 std::string response_needs(const Scene& scene) { return load_grid(scene).why; }
 
+std::string formulation_needs(const Scene& scene) {
+  return scene.fast.formulation == Formulation::response ? response_needs(scene) : "";
+}
+
 std::string response_identity(const Body& body, const LoadGrid& grid, const Surface& surface, const LoadKinds& loads) {
   std::ostringstream text;
   text << std::setprecision(17) << method_version << '\n' << body_text(body);

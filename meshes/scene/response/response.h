@@ -47,6 +47,9 @@ struct Response {
 /// Why the response model cannot answer a scene, completing "the response model needs that ..."; empty when it can.
 [[nodiscard]] std::string response_needs(const Scene& scene);
 
+/// The same of the scene's own formulation, which may need nothing.
+[[nodiscard]] std::string formulation_needs(const Scene& scene);
+
 /// Everything that a response depends on, as text that a reader can compare; its hash names the file.
 /// @param surface  whose points are the rest points
 [[nodiscard]] std::string response_identity(const Body& body, const LoadGrid& grid, const Surface& surface,

@@ -179,7 +179,7 @@ TEST_F(TuningStudyTest, OfTheResponseModelOnlyTheBodysFalloffIsTuned) {
   const auto with = [&](const std::string& set, const std::string& parameter) {
     return refusal(response + contact(train, soft, set) + contact(judge, rubber) + parameter);
   };
-  EXPECT_THAT(with("", stiffness), HasSubstr("of the response model only fast.body_falloff_per_m can be tuned"));
+  EXPECT_THAT(with("", stiffness), HasSubstr("has no meaning under the models of this study"));
   EXPECT_THAT(with(", \"track[0].position_m[2]\" = 0.2, \"track[1].position_m[2]\" = 0.2", falloff),
               HasSubstr("the response model needs that the tool touches the body; contact \"above\""));
   EXPECT_THAT(refusal(response + contact(train, rubber) + contact(judge, rubber) + falloff),

@@ -3,6 +3,7 @@
 #include "compare/errors/compute_errors.h"
 #include "compare/gate/stored_reference.h"
 #include "compare/input/tuning_study.h"
+#include "compare/model/registry.h"
 #include "compare/model/skeleton_model.h"
 #include "scene/base/error.h"
 #include "scene/base/files.h"
@@ -158,7 +159,7 @@ TEST_F(JudgeModels, TheUntunedLawFollowsFromTheMaterial) {
 
 TEST(FastModel, TellsAllOfItsRun) {
   const scene::Scene scene = testing::ball_on_cube(3, 200);
-  const std::unique_ptr<ContactModel> model = fast_model().set_up(scene);
+  const std::unique_ptr<ContactModel> model = fast_model(scene).set_up(scene);
   const std::optional<fast::Run> run = model->track();
   scene::Answer answer = unanswered(scene);
   model->answer(answer);

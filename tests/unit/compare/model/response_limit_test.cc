@@ -1,7 +1,7 @@
 // As the depth goes to zero the response model is the body's linear finite-element answer; and what computing the
 // body's response says.
 #include "compare/errors/compute_errors.h"
-#include "compare/model/engine_model.h"
+#include "compare/model/registry.h"
 #include "compare/model/response_model.h"
 #include "fast/run/run.h"
 #include "reference/run/options.h"

@@ -3,27 +3,33 @@
 #include "compare/errors/compute_errors.h"
 #include "compare/format/text.h"
 #include "compare/input/tuning_study.h"
+#include "compare/model/registry.h"
 #include "fast/step/state.h"
 #include "scene/base/files.h"
 #include "support/source_folder.h"
+#include "support/spring.h"
 #include "support/synthetic.h"
 #include "support/temporary_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <memory>
 #include <regex>
 
 namespace touchstone::compare {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-std::vector<NextStep> steps_of(const testing::Sides& sides) {
+std::vector<NextStep> steps_of(const testing::Sides& sides, const ModelEntry& model) {
   return next_steps(sides.scene, sides.run, sides.result, compute_errors(sides.scene, sides.run, sides.result.instants),
-                    sides.call);
+                    sides.call, model);
 }
+std::vector<NextStep> steps_of(const testing::Sides& sides) { return steps_of(sides, fast_model(sides.scene)); }
 
 /// The first step whose reason or command contains this part; an empty one if there is none.
 NextStep find(const std::vector<NextStep>& steps, const std::string& part) {
@@ -146,6 +152,52 @@ TEST(NextSteps, NameTheStudyThatTrainsOnTheScene) {
   EXPECT_THAT(find(steps_of(sides), "Tune").command, ::testing::EndsWith("/meshes/studies/ball-on-cube.toml"));
   sides.call.compare.parameters = "tuned.toml";
   EXPECT_EQ(find(steps_of(sides), "Tune").why, "");
+}
+
+TEST(NextSteps, AreTheModelsOwn) {
+  const testing::Sides sides = really_run();
+  const std::vector<NextStep> steps = steps_of(sides, testing::springs({.scene = sides.scene}).front());
+  EXPECT_THAT(find(steps, "another spring").command, HasSubstr(" --set contact.k1_n_per_m=80.0"));
+  EXPECT_EQ(find(steps, "area-aware").command, "");
+}
+
+/// A run that is given.
+class Given final : public ContactModel {
+ public:
+  explicit Given(fast::Run run) : run_(std::move(run)) {}
+  void step(const scene::Pose&) override {}
+  void answer(scene::Answer&) override {}
+  [[nodiscard]] int size() const override { return 1; }
+  [[nodiscard]] std::optional<fast::Run> track() override { return run_; }
+
+ private:
+  fast::Run run_;
+};
+
+TEST(NextSteps, TuneTheResponseModelsFalloffWhereOneGivesSmallerErrors) {
+  testing::Sides sides = testing::pressed(5, 200);
+  sides.scene.fast.formulation = scene::Formulation::response;
+  sides.scene.body.inclusions.emplace_back();
+  sides.call.scene_file = source_folder() + "/meshes/scenes/ellipsoid-pvc-inside.toml";
+  ModelEntry model = fast_model(sides.scene);
+  model.set_up = [&](const scene::Scene& scene) {
+    fast::Run run = sides.run;
+    if (scene.fast.body_falloff_per_m > 500.0) {
+      run.instants.assign(sides.result.instants.begin(), sides.result.instants.end());
+    }
+    return std::make_unique<Given>(run);
+  };
+  const NextStep step = find(steps_of(sides, model), "Tune");
+  EXPECT_THAT(step.why, AllOf(HasSubstr("Tune fast.body_falloff_per_m to the reference on this and other contacts. "),
+                              HasSubstr("% to 0\u00a0%, shape error from"), ::testing::EndsWith("% to 0\u00a0%.")));
+  EXPECT_THAT(step.command, ::testing::EndsWith("/meshes/studies/soft-ball.toml"));
+  // A study of the same scene that fits nothing of this model is not named.
+  sides.call.scene_file = source_folder() + "/meshes/scenes/ball-on-cube-press.toml";
+  EXPECT_THAT(find(steps_of(sides, model), "Tune").why, HasSubstr("meshes/studies/soft-ball.toml is an example."));
+  model.set_up = [&](const scene::Scene&) { return std::make_unique<Given>(sides.run); };
+  EXPECT_EQ(find(steps_of(sides, model), "Tune").why, "") << "no value is better";
+  sides.scene.body.inclusions.clear();
+  EXPECT_EQ(find(steps_of(sides, fast_model(sides.scene)), "Tune").why, "") << "it has no other constant";
 }
 
 TEST(NextSteps, SayHowFarTheTrackPassesTheBody) {

@@ -1,7 +1,10 @@
 #include "compare/report/verdict.h"
 
 #include "compare/errors/compute_errors.h"
+#include "compare/model/registry.h"
+#include "compare/model/skeleton_model.h"
 #include "fast/step/state.h"
+#include "support/spring.h"
 #include "support/synthetic.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +21,7 @@ using testing::set_force;
 /// All paragraphs in one line, ordinary spaces.
 std::string told(const testing::Sides& sides) {
   const Errors errors = compute_errors(sides.scene, sides.run, sides.result.instants);
-  const Verdict all = verdict(sides.scene, sides.run, sides.result, errors, {});
+  const Verdict all = verdict(sides.scene, sides.run, sides.result, errors, {}, fast_model(sides.scene));
   std::string text = all.force + "\n" + all.shape + "\n";
   for (const Reason& reason : all.reasons) text += reason.about + ": " + reason.text() + "\n";
   for (std::size_t at = text.find("\u00a0"); at != std::string::npos; at = text.find("\u00a0"))
@@ -288,12 +291,21 @@ TEST(Verdict, IsShortOnATerminal) {
     if (!sides.result.instants[t].regions.empty())
       sides.result.instants[t].regions[0].friction_n = scene::Vec3(-10.0, 0.0, 0.0);
   }
-  const Verdict all = verdict(sides.scene, sides.run, sides.result,
-                              compute_errors(sides.scene, sides.run, sides.result.instants), sides.call);
+  const Verdict all =
+      verdict(sides.scene, sides.run, sides.result, compute_errors(sides.scene, sides.run, sides.result.instants),
+              sides.call, fast_model(sides.scene));
   const std::string text = all.text();
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 20) << text;
   for (const char* part : {"Status: ", "Likely cause: ", "Friction: ", "Next: "}) EXPECT_TRUE(says(text, part)) << part;
   EXPECT_FALSE(says(text, "Cost: ")) << text;
+}
+
+TEST(Verdict, CauseIsTheModelsOwn) {
+  const testing::Sides sides = testing::pressed(3, 200);
+  const Verdict all =
+      verdict(sides.scene, sides.run, sides.result, compute_errors(sides.scene, sides.run, sides.result.instants), {},
+              testing::springs({.scene = sides.scene}).front());
+  EXPECT_TRUE(says(all.text(), "Likely cause: It is a spring.")) << all.text();
 }
 
 TEST(Verdict, WithoutContactSaysSo) {

@@ -23,13 +23,14 @@ namespace touchstone::compare::testing {
 }
 
 /// Results of a model with these constants, as a reference with a small uncertainty.
-[[nodiscard]] inline SolveReference made_with(const std::map<std::string, double>& constants,
-                                              const ModelEntry& model = fast_model()) {
-  return [constants, model](const scene::Scene& asked, const scene::Surface& surface) {
+[[nodiscard]] inline SolveReference made_with(
+    const std::map<std::string, double>& constants,
+    const ModelOf& model_of = [](const scene::Scene& scene) { return fast_model(scene); }) {
+  return [constants, model_of](const scene::Scene& asked, const scene::Surface& surface) {
     scene::Scene scene = asked;
     for (const auto& [key, value] : constants) set_parameter(scene, key, value);
     scene::Answer answer = unanswered(scene);
-    model.set_up(scene)->answer(answer);
+    model_of(scene).set_up(scene)->answer(answer);
     reference::Result result;
     result.levels.push_back({});
     for (const scene::InstantRecord& record : answer.instants) {

@@ -20,10 +20,12 @@ using namespace testing;
 using ::testing::HasSubstr;
 
 TEST(TunedModelName, IsTheLawInWordsAndKeepsItsKeyForFiles) {
+  scene::Scene scene = small();
+  scene.contact.law = scene::ContactLaw::area_aware;
   TunedModel model;
-  model.law = scene::ContactLaw::area_aware;
+  model.entry = fast_model(scene);
   EXPECT_EQ(model.name(), "corrected area-aware");
-  EXPECT_EQ(model.key(), "corrected-area_aware");
+  EXPECT_EQ(model.entry.key, "corrected-area_aware");
 }
 
 TEST(TuningFigures, HeldOutFiguresAreTheWorstContactsAndNoneOfTraining) {

@@ -130,12 +130,13 @@ TEST(Tune, BringsBackTheConstantsOfForceAndShape) {
 
 TEST(Tune, BringsBackTheConstantOfAModelThatNobodyHereKnows) {
   const ModelEntry spring = testing::springs({.scene = small()}).front();
+  const ModelOf springs = [&](const scene::Scene&) { return spring; };
   const Tuning tuning = tune(study({free("contact.k1_n_per_m", 1e1, 1e5)}),
-                             made_with({{"contact.k1_n_per_m", 900.0}}, spring), {}, spring);
+                             made_with({{"contact.k1_n_per_m", 900.0}}, springs), {}, springs);
   const TunedModel& model = tuning.models.at(0);
   EXPECT_NEAR(found(model, "contact.k1_n_per_m").value, 900.0, 0.5);
   for (const TuningOutcome& outcome : model.outcomes) EXPECT_LT(*outcome.errors.force_nrmse.value, 1e-3);
-  EXPECT_FALSE(model.shape_parts) << "those of a skeleton";
+  EXPECT_EQ(model.name(), "one spring");
 }
 
 TEST(Tune, BringsBackTheResponseModelsFalloffAndNothingElse) {
@@ -166,7 +167,7 @@ TEST(Tune, BringsBackTheResponseModelsFalloffAndNothingElse) {
   ASSERT_EQ(tuning.models.size(), 1u);
   const TunedModel& model = tuning.models.front();
   EXPECT_EQ(model.name(), "response");
-  EXPECT_FALSE(model.shape_parts.has_value());
+  EXPECT_TRUE(model.shape_parts.empty());
   ASSERT_EQ(model.stages.size(), 1u);
   ASSERT_EQ(model.stages[0].parameters.size(), 1u);
   const Determination& falloff = found(model, "fast.body_falloff_per_m");
