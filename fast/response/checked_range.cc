@@ -35,7 +35,7 @@ CheckedRange checked_range(const scene::Scene& scene) {
 std::string_view pressure_errors(const scene::Scene& scene) {
   const std::vector<scene::ToolTip> tips = scene::tool_tips(scene).tips;
   if (!scene.body.inclusions.empty()) return "NOT GOOD above a soft inclusion, up to 50 % off";
-  if (tips.size() > 1) return "18 % off under two pins";
+  if (tips.size() > 1) return "5 % off under two pins";
   if (tips.front().line()) return "4 % off under a capsule's side, 9 % near an edge";
   if (!tips.front().ball()) return "5 % off under a pin, NOT GOOD under a wide disc with a narrow rim, 35 %";
   if (scene.contact.friction) return "9 % off on a flat face with friction";
