@@ -7,6 +7,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace touchstone::reference {
@@ -25,6 +26,8 @@ template <int dim>
 struct FineSet {
   std::function<double(const Eigen::Matrix<double, dim, 1>&)> distance_m;
   double size_m = 0.0;
+  /// Cells with a side between vertices on it are coarse ones divided at least so many times.
+  int divisions = 0;
 };
 
 /// Cell size as a function of place: cell edge <= max(size_m, growth * distance) for every disc and set, and
@@ -70,5 +73,15 @@ struct MappedSpec {
 };
 template <int dim>
 [[nodiscard]] Discretisation<dim> mapped_mesh(const MappedSpec<dim>& spec);
+
+/// The same block's coarse cells, halved.
+[[nodiscard]] MappedSpec<3> block_cells(const BlockSpec& spec);
+
+/// A mesh on a coarse grid that follows inclusions, with their materials' numbers.
+template <int dim>
+struct FollowingGrid;
+template <int dim>
+[[nodiscard]] Discretisation<dim> following_mesh(std::shared_ptr<const FollowingGrid<dim>> coarse,
+                                                 const Grading<dim>& grading);
 
 }  // namespace touchstone::reference
