@@ -532,16 +532,35 @@ std::shared_ptr<const FollowingGrid<dim>> following_grid(const MappedSpec<dim>& 
     grid->shapes.push_back(solid_shape(inclusion, inclusion.center_m));
     grid->radius_m.push_back(-grid->shapes.back()->signed_distance_m(inclusion.center_m));
   }
-  for (int parts = 1; static_cast<double>(body_cells.cells.size()) * std::pow(parts, dim) <= most_cells; ++parts) {
+  const auto count = static_cast<double>(body_cells.cells.size());
+  for (int parts = 1; count > 0.0 && count * std::pow(parts, dim) <= most_cells; ++parts) {
     if (Maker<dim>(*grid, parts)()) return grid;
   }
   why_not = "an inclusion is too small, or too near to the surface, the support or another one";
   return nullptr;
 }
 
+template <int dim>
+Discretisation<dim> following_mesh(const std::shared_ptr<const FollowingGrid<dim>>& coarse,
+                                   const Grading<dim>& grading) {
+  CellMappedSpec<dim> spec;
+  for (const auto& vertex : coarse->vertices) spec.vertices_m.push_back(vertex.place_m);
+  for (const auto& cell : coarse->cells) {
+    spec.cells.push_back(cell.corners);
+    spec.materials.push_back(cell.material);
+  }
+  // The mesh keeps the map, to be refined by.
+  spec.place_m = [coarse](const auto& corners, const auto& xi) { return coarse->place_m(corners, xi); };
+  spec.boundary = [&](const auto& side) { return coarse->boundary(side); };
+  spec.grading = grading;
+  return mapped_mesh(spec);
+}
+
 template struct FollowingGrid<2>;
 template struct FollowingGrid<3>;
 template std::shared_ptr<const FollowingGrid<2>> following_grid(const MappedSpec<2>&, const scene::Body&, std::string&);
 template std::shared_ptr<const FollowingGrid<3>> following_grid(const MappedSpec<3>&, const scene::Body&, std::string&);
+template Discretisation<2> following_mesh(const std::shared_ptr<const FollowingGrid<2>>&, const Grading<2>&);
+template Discretisation<3> following_mesh(const std::shared_ptr<const FollowingGrid<3>>&, const Grading<3>&);
 
 }  // namespace touchstone::reference

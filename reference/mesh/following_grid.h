@@ -57,4 +57,8 @@ template <int dim>
 [[nodiscard]] std::shared_ptr<const FollowingGrid<dim>> following_grid(const MappedSpec<dim>& body_cells,
                                                                        const scene::Body& body, std::string& why_not);
 
+template <int dim>
+[[nodiscard]] Discretisation<dim> following_mesh(const std::shared_ptr<const FollowingGrid<dim>>& coarse,
+                                                 const Grading<dim>& grading);
+
 }  // namespace touchstone::reference

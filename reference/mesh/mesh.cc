@@ -1,7 +1,6 @@
 #include "reference/mesh/mesh.h"
 
 #include "reference/discretisation/coarse_cell.h"
-#include "reference/mesh/following_grid.h"
 #include "reference/mesh/mesh_limit.h"
 
 #include <deal.II/base/geometry_info.h>
@@ -183,7 +182,7 @@ Discretisation<2> cylinder_mesh(const CylinderSpec& spec) {
 MappedSpec<3> block_cells(const BlockSpec& spec) {
   const Eigen::Vector3d size_m = spec.upper_m - spec.lower_m;
   const Eigen::Array3d ratio = (size_m / size_m.minCoeff()).array().round();
-  if (ratio.prod() > most_cells) throw MeshTooLarge("the block is too thin for cells of its own height");
+  if (ratio.prod() > most_cells) return {};
   const Eigen::Array3i count = ratio.cast<int>();
   MappedSpec<3> mapped;
   const auto number = [&](int i, int j, int k) { return i + (count[0] + 1) * (j + (count[1] + 1) * k); };
@@ -246,37 +245,27 @@ Discretisation<dim> mapped_mesh(const MappedSpec<dim>& spec) {
 }
 
 template <int dim>
-Discretisation<dim> following_mesh(std::shared_ptr<const FollowingGrid<dim>> coarse, const Grading<dim>& grading) {
-  using Point = Eigen::Matrix<double, dim, 1>;
-  std::vector<Point> places_m;
-  for (const auto& vertex : coarse->vertices) places_m.push_back(vertex.place_m);
-  std::vector<dealii::CellData<dim>> cells(coarse->cells.size());
+Discretisation<dim> mapped_mesh(const CellMappedSpec<dim>& spec) {
+  std::vector<dealii::CellData<dim>> cells(spec.cells.size());
   for (std::size_t c = 0; c < cells.size(); ++c) {
-    cells[c].vertices.assign(coarse->cells[c].corners.begin(), coarse->cells[c].corners.end());
-    cells[c].material_id = static_cast<dealii::types::material_id>(coarse->cells[c].material);
+    cells[c].vertices.assign(spec.cells[c].begin(), spec.cells[c].end());
+    cells[c].material_id = static_cast<dealii::types::material_id>(spec.materials[c]);
   }
-  const auto grid = coarse_grid<dim>(places_m, std::move(cells), [&](const auto& face) {
-    typename FollowingGrid<dim>::Side side;
+  const auto grid = coarse_grid<dim>(spec.vertices_m, std::move(cells), [&](const auto& face) {
+    std::array<int, 1 << (dim - 1)> side;
     for (const unsigned int v : face->vertex_indices()) side[v] = static_cast<int>(face->vertex_index(v));
-    return coarse->boundary(side);
+    return spec.boundary(side);
   });
-  const auto place_m = [coarse](const std::array<int, 1 << dim>& corners, const Point& xi) {
-    return coarse->place_m(corners, xi);
-  };
-  // Those that moved a little are not too large for it.
-  constexpr double about = 1.3;
-  Grading<dim> sizes = grading;
-  sizes.largest_m *= about;
-  refine(*grid, sizes, [&](const auto& cell, unsigned int v) {
+  refine(*grid, spec.grading, [&](const auto& cell, unsigned int v) {
     const auto [corners, xi] = in_coarse_cell<dim>(cell, dealii::GeometryInfo<dim>::unit_cell_vertex(v));
-    return place_m(corners, xi);
+    return spec.place_m(corners, xi);
   });
-  return Discretisation<dim>(grid, typename Discretisation<dim>::CellMap(place_m));
+  return Discretisation<dim>(grid, spec.place_m);
 }
 
 template Discretisation<2> mapped_mesh(const MappedSpec<2>&);
 template Discretisation<3> mapped_mesh(const MappedSpec<3>&);
-template Discretisation<2> following_mesh(std::shared_ptr<const FollowingGrid<2>>, const Grading<2>&);
-template Discretisation<3> following_mesh(std::shared_ptr<const FollowingGrid<3>>, const Grading<3>&);
+template Discretisation<2> mapped_mesh(const CellMappedSpec<2>&);
+template Discretisation<3> mapped_mesh(const CellMappedSpec<3>&);
 
 }  // namespace touchstone::reference

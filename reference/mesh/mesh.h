@@ -7,7 +7,6 @@
 
 #include <array>
 #include <functional>
-#include <memory>
 #include <vector>
 
 namespace touchstone::reference {
@@ -74,14 +73,21 @@ struct MappedSpec {
 template <int dim>
 [[nodiscard]] Discretisation<dim> mapped_mesh(const MappedSpec<dim>& spec);
 
-/// The same block's coarse cells, halved.
+/// The same block's coarse cells where they halve it; none where they are too many.
 [[nodiscard]] MappedSpec<3> block_cells(const BlockSpec& spec);
 
-/// A mesh on a coarse grid that follows inclusions, with their materials' numbers.
+/// The same with a map of each coarse cell and cells of several materials.
 template <int dim>
-struct FollowingGrid;
+struct CellMappedSpec {
+  using Point = Eigen::Matrix<double, dim, 1>;
+  std::vector<Point> vertices_m;
+  std::vector<std::array<int, 1 << dim>> cells;
+  std::vector<int> materials;  ///< of the cells: numbers as in Discretisation::materials
+  typename Discretisation<dim>::CellMap place_m;
+  std::function<Boundary(const std::array<int, 1 << (dim - 1)>&)> boundary;  ///< of the coarse face with these vertices
+  Grading<dim> grading;
+};
 template <int dim>
-[[nodiscard]] Discretisation<dim> following_mesh(std::shared_ptr<const FollowingGrid<dim>> coarse,
-                                                 const Grading<dim>& grading);
+[[nodiscard]] Discretisation<dim> mapped_mesh(const CellMappedSpec<dim>& spec);
 
 }  // namespace touchstone::reference

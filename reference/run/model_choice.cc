@@ -212,6 +212,8 @@ void follow_inclusions(const Scene& scene, ModelChoice& choice) {
   auto& [in_plane, in_space] = choice.following;
   if (scene.body.shape == BodyShape::box) {
     in_space = following_grid<3>(block_cells(block_spec(scene, choice)), scene.body, choice.why_cut);
+  } else if (!round_fault(round_spec(scene.body)).empty()) {
+    choice.why_cut = "the body has no mesh";
   } else if (choice.dim == 2) {
     in_plane = following_grid<2>(round_cells<2>(mirrored_round_spec(scene, choice)), scene.body, choice.why_cut);
   } else {
