@@ -30,7 +30,7 @@ double weight_of(int corner, const double* xi, int directions) {
 
 template <int dim>
 Point<dim> onto(const scene::Shape& shape, const Point<dim>& x_m) {
-  const scene::Vec3 foot_m = shape.query(scene::in_space<dim>(x_m)).point_m;
+  scene::Vec3 foot_m = shape.query(scene::in_space<dim>(x_m)).point_m;
   if constexpr (dim == 3) {
     return foot_m;
   } else {
