@@ -102,7 +102,10 @@ LinearResponse linear_response(const scene::Scene& scene, const Eigen::Matrix3Xd
   if (scene.contact.friction) throw scene::InputError("a linear response has no friction");
   ModelChoice choice = choose_model(scene);
   if (choice.dim == 2) return condense<2>(scene, choice, rest_points_m, options, progress);
-  if (options.whole_body) choice.mirror_x = choice.mirror_y = false;
+  if (options.whole_body) {
+    choice.mirror_x = choice.mirror_y = false;
+    follow_inclusions(scene, choice);
+  }
   return condense<3>(scene, choice, rest_points_m, options, progress);
 }
 

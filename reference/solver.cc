@@ -153,7 +153,9 @@ scene::Plan plan(const Scene& scene) {
     add("inclusions", false, "the body is of one material");
   } else {
     add("inclusions", true,
-        std::to_string(inclusions) + " of another material, each integration point has the material at its place",
+        std::to_string(inclusions) + " of another material, " +
+            (choice.follows() ? "whose surfaces the cells of all meshes follow"
+                              : "each integration point has the material at its place, since " + choice.why_cut),
         "small cells at their surfaces");
   }
   if (!scene.probes.empty()) {

@@ -51,6 +51,9 @@ struct LowerTriangle {
   LowerTriangle(const SymmetricMatrix& pattern_in, const std::vector<int>& unknown_in, std::vector<double>& value_in)
       : pattern(pattern_in), unknown(unknown_in), value(value_in) {}
   virtual ~LowerTriangle() = default;  // deal.II asks for the dynamic type
+  // deal.II's debug library asks for the sizes.
+  [[nodiscard]] std::size_t m() const { return unknown.size(); }
+  [[nodiscard]] std::size_t n() const { return unknown.size(); }
   /// @param dofs  ascending, and so their unknowns
   void add(Dof row, Dof count, const Dof* dofs, const double* values, bool /*elide_zeros*/, bool /*sorted*/) {
     std::int64_t k = pattern.column_begin[unknown[row]];

@@ -1,5 +1,6 @@
 #include "reference/discretisation/discretisation.h"
 
+#include "reference/discretisation/coarse_cell.h"
 #include "reference/linear/record.h"
 
 #include <deal.II/base/multithread_info.h>
@@ -71,6 +72,29 @@ Discretisation<dim>::Discretisation(std::shared_ptr<dealii::Triangulation<dim>> 
   use_one_thread();
   parts_ = std::make_shared<Parts>(std::move(grid));
   const dealii::MappingQ<dim> flat(1);
+  number([&](const auto& cell, const dealii::Point<dim>& unit) {
+    return place_m(to_eigen<dim>(flat.transform_unit_to_real_cell(cell, unit)));
+  });
+}
+
+template <int dim>
+Discretisation<dim>::Discretisation(std::shared_ptr<dealii::Triangulation<dim>> grid, const CellMap& place_m)
+    : place_in_cell_m_(place_m) {
+  use_one_thread();
+  parts_ = std::make_shared<Parts>(std::move(grid));
+  number([&](const auto& cell, const dealii::Point<dim>& unit) {
+    const auto [corners, xi] = in_coarse_cell<dim>(cell, unit);
+    return place_m(corners, xi);
+  });
+  for (const auto& cell : parts_->grid->active_cell_iterators()) {
+    materials.emplace_back().fill(static_cast<std::uint8_t>(cell->material_id()));
+  }
+}
+
+/// @param place_m  of a point of a cell, in its unit coordinates
+template <int dim>
+template <class Place>
+void Discretisation<dim>::number(const Place& place_m) {
   const auto& places = parts_->scalar.get_unit_support_points();
   Nodal points(dim, parts_->dofs.n_dofs() / dim);
   std::vector<dealii::types::global_dof_index> dofs(parts_->element.n_dofs_per_cell());
@@ -85,7 +109,7 @@ Discretisation<dim>::Discretisation(std::shared_ptr<dealii::Triangulation<dim>> 
         }
       }
       nodes[parts_->to_lexicographic[a]] = node;
-      points.col(node) = place_m(to_eigen<dim>(flat.transform_unit_to_real_cell(cell, places[a])));
+      points.col(node) = place_m(cell, places[a]);
     }
     cells.push_back(nodes);
     for (const unsigned int f : cell->face_indices()) {

@@ -49,6 +49,8 @@ class Discretisation {
   using Point = Eigen::Matrix<double, dim, 1>;
   using Nodal = Eigen::Matrix<double, dim, Eigen::Dynamic>;  ///< one column per node
   using Map = std::function<Point(const Point&)>;
+  /// From a coarse cell's vertices, as the grid numbers them, and unit coordinates in it.
+  using CellMap = std::function<Point(const std::array<int, 1 << dim>&, const Point&)>;
 
   struct Face {
     std::array<int, nodes_per_face> nodes;
@@ -64,12 +66,16 @@ class Discretisation {
   explicit Discretisation(
       std::shared_ptr<dealii::Triangulation<dim, dim>> grid, const Map& place_m = [](const Point& x) { return x; });
 
+  /// Every node is placed by its coarse cell's map, and cells have the materials of the grid.
+  Discretisation(std::shared_ptr<dealii::Triangulation<dim, dim>> grid, const CellMap& place_m);
+
   /// Everything as bytes, for other processes on the same machine or alike, and back.
   [[nodiscard]] std::string bytes() const;
   [[nodiscard]] static Discretisation from_bytes(std::string_view bytes);
 
   /// The same body with these cells divided, one flag per cell, and those that would otherwise differ from a neighbour
-  /// by more than one division. Without materials. Not for a moved mesh, nor one from bytes.
+  /// by more than one division. Without materials that the grid does not have. Not for a moved mesh, nor one from
+  /// bytes.
   [[nodiscard]] Discretisation refined(const std::vector<char>& divided) const;
 
   /// The same grid with its nodes moved.
@@ -122,9 +128,12 @@ class Discretisation {
 
  private:
   struct Parts;
+  template <class Place>
+  void number(const Place& place_m);
   void place(Nodal places_m);
 
   Map place_m_;
+  CellMap place_in_cell_m_;  // in its place, if any
   std::shared_ptr<Parts> parts_;
 };
 

@@ -48,7 +48,7 @@ Discretisation<dim> Discretisation<dim>::refined(const std::vector<char>& divide
     if (divided[cell->active_cell_index()]) cell->set_refine_flag();
   }
   grid->execute_coarsening_and_refinement();
-  return Discretisation(grid, place_m_);
+  return place_in_cell_m_ ? Discretisation(grid, place_in_cell_m_) : Discretisation(grid, place_m_);
 }
 
 template Discretisation<2> Discretisation<2>::refined(const std::vector<char>&) const;

@@ -5,6 +5,7 @@
 #include "scene/model/solid_kinds.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <tuple>
 
@@ -39,6 +40,7 @@ void embed_inclusions(const scene::Body& body, Discretisation<dim>& mesh) {
     shapes.push_back(solid_shape(inclusion, inclusion.center_m));
     mesh.inclusion_materials.push_back(inclusion.material);
   }
+  if (!mesh.materials.empty()) return;  // the cells follow
   for (const CellGeometry<dim>& cell : mesh.cell_geometry()) {
     auto& materials = mesh.materials.emplace_back();
     for (std::size_t q = 0; q < materials.size(); ++q) {
@@ -58,6 +60,23 @@ void refine_at_inclusions(const scene::Body& body, double cells, Grading<dim>& g
                               return shape->signed_distance_m(scene::in_space<dim>(x_m));
                             },
                             -shape->signed_distance_m(inclusion.center_m) / cells});
+  }
+}
+
+template <int dim>
+void refine_at_inclusions(const FollowingGrid<dim>& coarse, double cells, int more, Grading<dim>& grading) {
+  // Bent parts of a cell are not exactly half as large.
+  constexpr double about = 1.2;
+  for (std::size_t k = 0; k < coarse.shapes.size(); ++k) {
+    if (coarse.edge_m[k] == 0.0) continue;  // its mirror image is meshed
+    const std::shared_ptr<const scene::Shape> shape = coarse.shapes[k];
+    const double wished_m = coarse.radius_m[k] / cells;
+    const int first = std::max(0, static_cast<int>(std::ceil(std::log2(coarse.edge_m[k] / (about * wished_m)))));
+    const int divisions = first + more;
+    grading.sets.push_back({[shape](const Eigen::Matrix<double, dim, 1>& x_m) {
+                              return shape->signed_distance_m(scene::in_space<dim>(x_m));
+                            },
+                            about * coarse.edge_m[k] / std::exp2(divisions), divisions});
   }
 }
 
@@ -82,5 +101,7 @@ template void embed_inclusions(const scene::Body&, Discretisation<2>&);
 template void embed_inclusions(const scene::Body&, Discretisation<3>&);
 template void refine_at_inclusions(const scene::Body&, double, Grading<2>&);
 template void refine_at_inclusions(const scene::Body&, double, Grading<3>&);
+template void refine_at_inclusions(const FollowingGrid<2>&, double, int, Grading<2>&);
+template void refine_at_inclusions(const FollowingGrid<3>&, double, int, Grading<3>&);
 
 }  // namespace touchstone::reference

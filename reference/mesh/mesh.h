@@ -25,6 +25,8 @@ template <int dim>
 struct FineSet {
   std::function<double(const Eigen::Matrix<double, dim, 1>&)> distance_m;
   double size_m = 0.0;
+  /// Cells with a side between vertices on it are coarse ones divided at least so many times.
+  int divisions = 0;
 };
 
 /// Cell size as a function of place: cell edge <= max(size_m, growth * distance) for every disc and set, and
@@ -70,5 +72,22 @@ struct MappedSpec {
 };
 template <int dim>
 [[nodiscard]] Discretisation<dim> mapped_mesh(const MappedSpec<dim>& spec);
+
+/// The same block's coarse cells where they halve it; none where they are too many.
+[[nodiscard]] MappedSpec<3> block_cells(const BlockSpec& spec);
+
+/// The same with a map of each coarse cell and cells of several materials.
+template <int dim>
+struct CellMappedSpec {
+  using Point = Eigen::Matrix<double, dim, 1>;
+  std::vector<Point> vertices_m;
+  std::vector<std::array<int, 1 << dim>> cells;
+  std::vector<int> materials;  ///< of the cells: numbers as in Discretisation::materials
+  typename Discretisation<dim>::CellMap place_m;
+  std::function<Boundary(const std::array<int, 1 << (dim - 1)>&)> boundary;  ///< of the coarse face with these vertices
+  Grading<dim> grading;
+};
+template <int dim>
+[[nodiscard]] Discretisation<dim> mapped_mesh(const CellMappedSpec<dim>& spec);
 
 }  // namespace touchstone::reference

@@ -375,7 +375,7 @@ std::string round_fault(const RoundSpec& spec) {
 }
 
 template <int dim>
-Discretisation<dim> round_mesh(const RoundSpec& spec, const Grading<dim>& grading) {
+MappedSpec<dim> round_cells(const RoundSpec& spec) {
   const Meridian meridian(spec);
   MappedSpec<dim> mapped;
   Collector<dim> collector(mapped);
@@ -390,15 +390,24 @@ Discretisation<dim> round_mesh(const RoundSpec& spec, const Grading<dim>& gradin
     }
   };
   const double held_m = spec.support_height_m + 1e-9 * meridian.shape().bounds().upper_m.x();
-  mapped.boundary = [&](const Eigen::Matrix<double, dim, 1>& middle) {
+  mapped.boundary = [spec, held_m, place_m = mapped.place_m](const Eigen::Matrix<double, dim, 1>& middle) {
     constexpr double in_plane = 1e-9;
     if (std::abs(middle[0]) < in_plane && (dim == 2 || spec.symmetric_x)) return Boundary::plane_x;
     if (dim == 3 && std::abs(middle[1]) < in_plane && spec.symmetric_y) return Boundary::plane_y;
-    return mapped.place_m(middle)[dim - 1] <= held_m ? Boundary::held : Boundary::free;
+    return place_m(middle)[dim - 1] <= held_m ? Boundary::held : Boundary::free;
   };
+  return mapped;
+}
+
+template <int dim>
+Discretisation<dim> round_mesh(const RoundSpec& spec, const Grading<dim>& grading) {
+  MappedSpec<dim> mapped = round_cells<dim>(spec);
   mapped.grading = grading;
   return mapped_mesh(mapped);
 }
+
+template MappedSpec<2> round_cells(const RoundSpec&);
+template MappedSpec<3> round_cells(const RoundSpec&);
 
 template Discretisation<2> round_mesh(const RoundSpec&, const Grading<2>&);
 template Discretisation<3> round_mesh(const RoundSpec&, const Grading<3>&);

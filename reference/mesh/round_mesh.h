@@ -29,6 +29,8 @@ struct RoundSpec {
 /// A core of frustums about the axis and a shell around it. Every corner of the profile, every joint of its pieces and
 /// the support's edge are rings of vertices. Instantiated for 2 (the meridian half-plane) and 3.
 template <int dim>
+[[nodiscard]] MappedSpec<dim> round_cells(const RoundSpec& spec);
+template <int dim>
 [[nodiscard]] Discretisation<dim> round_mesh(const RoundSpec& spec, const Grading<dim>& grading);
 
 }  // namespace touchstone::reference

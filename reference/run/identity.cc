@@ -20,6 +20,9 @@ constexpr const char* method_version = "touchstone reference 4: Q2-P1disc u-p, p
 /// Raised alike, for scenes with friction alone.
 constexpr const char* friction_method = "3";
 
+/// Raised alike, for bodies with inclusions alone: whether cells follow them depends on the scene and nothing else.
+constexpr const char* inclusion_method = "2: cells along balls and ellipsoids";
+
 /// Raised alike, for meshes refined by the estimator alone.
 constexpr const char* adaptive_method = "1";
 
@@ -64,6 +67,7 @@ std::string identity_text(const Scene& scene) {
        << "kinematics " << (scene.reference.kinematics == scene::Kinematics::finite ? "finite" : "small") << " element "
        << (scene.reference.element_size_m ? std::to_string(*scene.reference.element_size_m * 1e9) + " nm" : "automatic")
        << '\n';
+  if (!scene.body.inclusions.empty()) text << "inclusions " << inclusion_method << '\n';
   if (const auto share = scene.reference.adaptive_share)
     text << "adaptive " << adaptive_method << ' ' << *share << '\n';
   if (const auto& friction = scene.contact.friction) {

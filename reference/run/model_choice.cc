@@ -56,7 +56,8 @@ void expect_contacts(const Scene& scene, ModelChoice& choice) {
 /// its mirror planes.
 template <int dim>
 Grading<dim> level_grading(const Scene& scene, const ModelChoice& choice, int level, const MeshChange& change) {
-  constexpr double coarsest_cells = dim == 2 ? 8.0 : 1.0;  // to the radius of an inclusion
+  // To the radius of an inclusion.
+  constexpr double coarsest_cells = dim == 2 ? 8.0 : 1.0, coarsest_following_cells = dim == 2 ? 4.0 : 1.0;
   const double finer = refinement(level);
   Grading<dim> grading;
   grading.halves_the_block = true;
@@ -85,7 +86,12 @@ Grading<dim> level_grading(const Scene& scene, const ModelChoice& choice, int le
       add(place_m, patch.normal, 0.0, rim_m);
     }
   }
-  refine_at_inclusions(scene.body, coarsest_cells * finer / change.inclusions, grading);
+  if (const auto& coarse = choice.following_grid<dim>()) {
+    const auto more = static_cast<int>(std::lround(std::log2(finer / change.inclusions)));
+    refine_at_inclusions<dim>(*coarse, coarsest_following_cells, more, grading);
+  } else {
+    refine_at_inclusions(scene.body, coarsest_cells * finer / change.inclusions, grading);
+  }
   return grading;
 }
 
@@ -94,25 +100,35 @@ Grading<dim> level_grading(const Scene& scene, const ModelChoice& choice, int le
 template <int dim>
 constexpr double growth = dim == 2 ? 0.5 : 1.3;
 
-Discretisation<3> box_mesh(const Scene& scene, const ModelChoice& choice, int level, const MeshChange& change) {
+BlockSpec block_spec(const Scene& scene, const ModelChoice& choice) {
   const Vec3 size_m = scene.body.size_m;
   BlockSpec spec;
   spec.lower_m = {choice.mirror_x ? 0.0 : -0.5 * size_m.x(), choice.mirror_y ? 0.0 : -0.5 * size_m.y(), 0.0};
   spec.upper_m = {0.5 * size_m.x(), 0.5 * size_m.y(), size_m.z()};
   spec.symmetric_x = choice.mirror_x;
   spec.symmetric_y = choice.mirror_y;
+  return spec;
+}
+
+Discretisation<3> box_mesh(const Scene& scene, const ModelChoice& choice, int level, const MeshChange& change) {
+  BlockSpec spec = block_spec(scene, choice);
   const double far = change.far_field * far_share(level);
   spec.grading = level_grading<3>(scene, choice, level, change);
   spec.grading.growth = growth<3> * far;
-  spec.grading.largest_m = 0.125 * size_m.maxCoeff() * far;
-  return block_mesh(spec);
+  spec.grading.largest_m = 0.125 * scene.body.size_m.maxCoeff() * far;
+  return choice.following_grid<3>() ? following_mesh<3>(choice.following_grid<3>(), spec.grading) : block_mesh(spec);
+}
+
+RoundSpec mirrored_round_spec(const Scene& scene, const ModelChoice& choice) {
+  RoundSpec spec = round_spec(scene.body);
+  spec.symmetric_x = choice.mirror_x;
+  spec.symmetric_y = choice.mirror_y;
+  return spec;
 }
 
 template <int dim>
 Discretisation<dim> round_level(const Scene& scene, const ModelChoice& choice, int level, const MeshChange& change) {
-  RoundSpec spec = round_spec(scene.body);
-  spec.symmetric_x = choice.mirror_x;
-  spec.symmetric_y = choice.mirror_y;
+  const RoundSpec spec = mirrored_round_spec(scene, choice);
   const scene::Bounds bounds = scene::body_shape(scene.body)->bounds();
   const double half_m = 0.5 * (bounds.upper_m - bounds.lower_m).maxCoeff();
   const double far = change.far_field * far_share(level);
@@ -128,7 +144,8 @@ Discretisation<dim> round_level(const Scene& scene, const ModelChoice& choice, i
                             return std::hypot((r_m - edge_m.x()) * stretch.maxCoeff(), x_m[dim - 1] - edge_m.y());
                           },
                           half_m / (dim == 2 ? 32.0 : 8.0) / refinement(level)});
-  return round_mesh(spec, grading);
+  const auto& coarse = choice.following_grid<dim>();
+  return coarse ? following_mesh<dim>(coarse, grading) : round_mesh(spec, grading);
 }
 
 /// Times at which a symmetry is looked at: those with a pose of their own, and one in between, not in the middle.
@@ -159,7 +176,8 @@ std::string ModelChoice::name(scene::Kinematics kinematics) const {
   } else {
     text = mirror_x && mirror_y ? "quarter 3D" : (mirror_x || mirror_y ? "half 3D" : "full 3D");
   }
-  return text + " u-p " + (kinematics == scene::Kinematics::finite ? "finite strain" : "small strain");
+  text += std::string(" u-p ") + (kinematics == scene::Kinematics::finite ? "finite strain" : "small strain");
+  return text + (follows() ? ", cells along inclusions" : "");
 }
 
 ModelChoice choose_model(const Scene& scene) {
@@ -183,7 +201,24 @@ ModelChoice choose_model(const Scene& scene) {
   }
   choice.tool = tool_distance(scene.tool);
   expect_contacts(scene, choice);
+  follow_inclusions(scene, choice);
   return choice;
+}
+
+void follow_inclusions(const Scene& scene, ModelChoice& choice) {
+  choice.following = {};
+  choice.why_cut.clear();
+  if (scene.body.inclusions.empty()) return;
+  auto& [in_plane, in_space] = choice.following;
+  if (scene.body.shape == BodyShape::box) {
+    in_space = following_grid<3>(block_cells(block_spec(scene, choice)), scene.body, choice.why_cut);
+  } else if (!round_fault(round_spec(scene.body)).empty()) {
+    choice.why_cut = "the body has no mesh";
+  } else if (choice.dim == 2) {
+    in_plane = following_grid<2>(round_cells<2>(mirrored_round_spec(scene, choice)), scene.body, choice.why_cut);
+  } else {
+    in_space = following_grid<3>(round_cells<3>(mirrored_round_spec(scene, choice)), scene.body, choice.why_cut);
+  }
 }
 
 std::vector<scene::Fault> unsupported_parts(const Scene& scene) {

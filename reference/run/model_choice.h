@@ -2,12 +2,15 @@
 #pragma once
 
 #include "reference/discretisation/discretisation.h"
+#include "reference/mesh/following_grid.h"
 #include "reference/run/contact_patch.h"
 #include "scene/base/error.h"
 #include "scene/model/plan.h"
 #include "scene/model/scene.h"
 
+#include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace touchstone::reference {
@@ -19,6 +22,14 @@ struct ModelChoice {
   std::shared_ptr<const ToolDistance> tool;
   std::vector<ContactPatch> contacts;  ///< of all instants, those deeper than a tenth of the deepest
   double half_width_m = 0.0;           ///< of the deepest contact
+  /// The coarse grid of all meshes, of `dim` directions, where their cells follow the inclusions.
+  std::tuple<std::shared_ptr<const FollowingGrid<2>>, std::shared_ptr<const FollowingGrid<3>>> following;
+  std::string why_cut;  ///< why the cells do not follow the inclusions
+  template <int dimension>
+  [[nodiscard]] const std::shared_ptr<const FollowingGrid<dimension>>& following_grid() const {
+    return std::get<dimension - 2>(following);
+  }
+  [[nodiscard]] bool follows() const { return std::get<0>(following) || std::get<1>(following); }
   [[nodiscard]] std::string name(scene::Kinematics kinematics) const;  ///< "quarter 3D u-p finite strain"
 };
 
@@ -27,6 +38,9 @@ struct ModelChoice {
 /// track, are their own mirror image. Tools are compared to a millionth of their size, at the waypoints, the instants,
 /// and a place between any two of them.
 [[nodiscard]] ModelChoice choose_model(const scene::Scene& scene);
+
+/// Finds ModelChoice::following, as choose_model() does; again where `dim` or the mirrors are changed after it.
+void follow_inclusions(const scene::Scene& scene, ModelChoice& choice);
 
 /// What of the scene this solver cannot do.
 /// A cylinder's fillet must be smallest_fillet_share of its radius: sharper pins were seen to stop converging.

@@ -190,6 +190,37 @@ inline double two_ball_stress_pa(const scene::Material& outer, const scene::Mate
   return 3.0 * K * B - 4.0 * mu * c_over_B * B * share;
 }
 
+/// A ball of radius a in an infinite body that is stretched far away by a strain E without change of volume: inside,
+/// the strain is `inside` E; outside, u = (1 + f) E x + g x (x . E x), with f and g of the distance r. J. D. Eshelby,
+/// Proc. R. Soc. A 241 (1957) 376-396; the field outside is that of a couple of forces and of its second derivatives.
+struct BallInStretch {
+  double a_m, inside, f_a, mu_pa, mu_inner_pa, nu;
+  BallInStretch(const scene::Material& outer, const scene::Material& inner, double radius_m)
+      : a_m(radius_m),
+        mu_pa(outer.shear_modulus_pa()),
+        mu_inner_pa(inner.shear_modulus_pa()),
+        nu(outer.poissons_ratio) {
+    const double beta = 2.0 * (4.0 - 5.0 * nu) / (15.0 * (1.0 - nu));
+    inside = 1.0 / (1.0 + beta * (mu_inner_pa / mu_pa - 1.0));
+    f_a = (inside - 1.0) / (3.2 - 4.0 * nu);
+  }
+  [[nodiscard]] double f(double r_m) const {
+    const double t = a_m / r_m;
+    return f_a * (2.0 * (1.0 - 2.0 * nu) * std::pow(t, 3) + 1.2 * std::pow(t, 5));
+  }
+  [[nodiscard]] double g_per_m2(double r_m) const {
+    const double t = a_m / r_m;
+    return 3.0 * f_a * (std::pow(t, 3) - std::pow(t, 5)) / (r_m * r_m);
+  }
+  /// Work of the forces on a ball's surface of radius r > a with the displacement E x, over E : E [N m]; by Betti's
+  /// theorem with the body without a ball inside.
+  [[nodiscard]] double work_nm(double r_m) const {
+    const double sum = (1.0 + f(r_m)) / 3.0 + 2.0 / 15.0 * g_per_m2(r_m) * r_m * r_m;
+    return 2.0 * mu_pa * 4.0 * M_PI * std::pow(r_m, 3) * sum +
+           2.0 * (mu_inner_pa - mu_pa) * inside * 4.0 / 3.0 * M_PI * std::pow(a_m, 3);
+  }
+};
+
 /// Inflation of a thick incompressible neo-Hookean sphere, inner radius A, outer B, outside free: inner pressure at
 /// inner stretch la, p = 2 mu [1/lb - 1/la + (lb^-4 - la^-4) / 4], lb^3 = 1 + (la^3 - 1)(A/B)^3. A. E. Green, W. Zerna,
 /// Theoretical Elasticity (1968), 3.10; from dp/dlam = 2 mu (lam^-2 + lam^-5) between la and lb.

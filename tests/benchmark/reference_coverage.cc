@@ -86,6 +86,7 @@ int measure(int count, char** arguments) {
     one.reference.levels = levels;
     ModelChoice quarter = choice;
     quarter.dim = 3;
+    follow_inclusions(one, quarter);
     Options apart = options;
     apart.store /= "in-space";  // the scene's key is that of the plane
     return run(one, quarter, surface.points_m, apart, scene::Stopwatch());

@@ -111,6 +111,71 @@ TEST(Inclusions, BallInABallConverges) {
   }
 }
 
+/// Error of the work that stretches a ball with a concentric one inside, its surface moved as in an infinite body, over
+/// what the inner one adds to it.
+/// @param cells  to the inner radius
+template <int dim>
+double stretched_error(const scene::Material& outer, const scene::Material& inner, double cells) {
+  using Point = Eigen::Matrix<double, dim, 1>;
+  constexpr double a_m = 0.01, b_m = 0.03, strain = 1e-3;
+  scene::Body body;
+  body.shape = scene::BodyShape::sphere;
+  body.radius_m = b_m;
+  body.support_height_m = 0.005;
+  body.inclusions = {ball(a_m, b_m, inner)};
+  RoundSpec spec = round_spec(body);
+  spec.symmetric_x = spec.symmetric_y = dim == 3;
+  Grading<dim> grading;
+  grading.growth = dim == 2 ? 0.4 : 1.0;
+  grading.largest_m = 0.4 * b_m;
+  std::string why_not;
+  const auto coarse = following_grid<dim>(round_cells<dim>(spec), body, why_not);
+  EXPECT_TRUE(coarse) << why_not;
+  if (!coarse) return NAN;
+  refine_at_inclusions<dim>(*coarse, cells, 0, grading);
+  Discretisation<dim> mesh = following_mesh<dim>(coarse, grading);
+  embed_inclusions(body, mesh);
+  std::vector<char> outside(mesh.node_count(), 0);
+  for (auto& face : mesh.faces) {
+    if (face.boundary == Boundary::plane_x || face.boundary == Boundary::plane_y) continue;
+    face.boundary = Boundary::free;
+    for (const int node : face.nodes) outside[node] = mesh.hangs(node) ? 0 : 1;
+  }
+  ContactProblem<dim> problem(mesh, outer, scene::Kinematics::small, dim == 3, dim == 3, 1);
+  const verification::BallInStretch exact(outer, inner, a_m);
+  Point stretch = Point::Constant(-0.5 * strain);
+  stretch[dim - 1] = strain;
+  const auto from_middle_m = [&](int node) -> Point { return mesh.points_m.col(node) - b_m * Point::Unit(dim - 1); };
+  for (int node = 0; node < mesh.node_count(); ++node) {
+    if (!outside[node]) continue;
+    const Point x_m = from_middle_m(node), Ex_m = stretch.cwiseProduct(x_m);
+    const Point u_m = (1.0 + exact.f(x_m.norm())) * Ex_m + exact.g_per_m2(x_m.norm()) * x_m.dot(Ex_m) * x_m;
+    for (int i = 0; i < dim; ++i) problem.prescribe(node, i, u_m[i]);
+  }
+  State<dim> state = problem.rest();
+  const NewtonReport report = problem.solve(state);
+  EXPECT_TRUE(report.converged) << report.trouble;
+  const auto F = problem.internal_forces(state);
+  double work_nm = 0.0;
+  for (int node = 0; node < mesh.node_count(); ++node) {
+    if (outside[node]) work_nm += F.col(node).dot(stretch.cwiseProduct(from_middle_m(node)));
+  }
+  const double whole_nm = (dim == 3 ? 4.0 : 1.0) * work_nm / (1.5 * strain * strain);
+  const double without_nm = verification::BallInStretch(outer, outer, a_m).work_nm(b_m);
+  return (whole_nm - exact.work_nm(b_m)) / (exact.work_nm(b_m) - without_nm);
+}
+
+TEST(Inclusions, CellsThatFollowABallStretchAsTheClosedForm) {
+  const scene::Material rubber{3e6, 0.3};
+  for (const scene::Material& inner :
+       {scene::Material{3e10, 0.3}, {3e6 * 89.0, 0.2}, {3e6 / 89.0, 0.33}, {300.0, 0.3}}) {
+    SCOPED_TRACE(inner.youngs_modulus_pa);
+    EXPECT_LT(std::abs(stretched_error<2>(rubber, inner, 1.0)), 0.005);
+    EXPECT_LT(std::abs(stretched_error<2>(rubber, inner, 4.0)), 0.0001);
+    EXPECT_LT(std::abs(stretched_error<3>(rubber, inner, 1.0)), 0.005);
+  }
+}
+
 TEST(Inclusions, OfTheBodysOwnMaterialChangesNothing) {
   for (const double nu : {0.3, 0.5}) {
     scene::Body body;
