@@ -18,10 +18,12 @@ int run(const fast::VerbOptions& options, const ReferenceOptions& reference) {
       prepare(scene, reference.store, [&](const std::string& text, bool marked) { line.show(text, marked); });
   line.finish();
   std::cout << fmt::format(
-      "{} columns, {} rest points, {} unknowns, {}\nResponse: {} ({:.3g} MB)\n", prepared.response.own_m_per_n.cols(),
-      prepared.response.rest_points(), prepared.response.unknowns,
+      "{} columns, {} rest points, {} unknowns, {}\nInterpolation between the columns' places: off by {:.2g} % of a "
+      "column\nResponse: {} ({:.3g} MB)\n",
+      prepared.response.own_m_per_n.cols(), prepared.response.rest_points(), prepared.response.unknowns,
       prepared.computed ? fmt::format("computed in {:.3g} s", prepared.seconds) : "from the store",
-      prepared.file.string(), 1e-6 * static_cast<double>(std::filesystem::file_size(prepared.file)));
+      100.0 * prepared.response.interpolation_rel, prepared.file.string(),
+      1e-6 * static_cast<double>(std::filesystem::file_size(prepared.file)));
   return fast::done;
 }
 

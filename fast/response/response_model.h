@@ -29,12 +29,12 @@
 #include "fast/realtime/stage_clock.h"
 #include "fast/response/checked_range.h"
 #include "fast/response/contact_table.h"
-#include "fast/response/grid_weights.h"
 #include "fast/response/slip_springs.h"
 #include "fast/response/spread_load.h"
 #include "fast/surface/normals.h"
 #include "fast/surface/surface_patches.h"
 #include "scene/base/wrench.h"
+#include "scene/response/grid_weights.h"
 #include "scene/response/response.h"
 #include "scene/response/tool_tip.h"
 
@@ -100,7 +100,7 @@ struct ResponseContact {
   scene::Touch at{};           ///< p0
   SpreadLoad load;             ///< F, its place on the rest surface and its patch
   LocalContact law;
-  GridWeights weights;  ///< of p0
+  scene::GridWeights weights;  ///< of p0
   LoadPath path;
   scene::Vec3 sway_m_per_n = scene::Vec3::Zero(), tilt_per_n = scene::Vec3::Zero(), shift_m_per_n = scene::Vec3::Zero();
   double curvature_per_m = 0.0;                   ///< of the body

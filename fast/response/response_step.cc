@@ -2,7 +2,6 @@
 
 #include "fast/realtime/flush_tiny_numbers.h"
 #include "fast/realtime/wide_loops.h"
-#include "fast/response/grid_weights.h"
 
 #include <Eigen/LU>
 
@@ -18,6 +17,7 @@
 namespace touchstone::fast {
 namespace {
 
+using scene::GridWeights;
 using scene::Vec3;
 
 /// Gauss-Legendre with three points on [0, 1]: exact for the cubic C(p) along the load's way.

@@ -7,6 +7,7 @@
 #include "reference/mesh/round_mesh.h"
 #include "reference/mesh/sampling.h"
 #include "scene/base/error.h"
+#include "scene/response/grid_weights.h"
 #include "scene/response/point_load.h"
 
 #include <Eigen/LU>
@@ -152,6 +153,19 @@ scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& 
     out.tilt_per_n.setZero(2, n);
   }
   if (progress) progress({Next::matrix, first});
+  const auto smooth_m = [&](const PointLoad& load) -> Eigen::Matrix3Xd {
+    Nodal force_n = Nodal::Zero(3, mesh.node_count());
+    for (const auto& face : mesh.faces) {
+      if (face.boundary == Boundary::free) add_traction(mesh, face, inside_m, load, material, force_n);
+    }
+    for (int cell = 0; cell < mesh.cell_count(); ++cell) add_inclusions(mesh, cell, load, material, force_n);
+    problem.load(std::move(force_n));
+    for (const int node : held) {
+      const Vec3 u_m = scene::half_space_displacement_m(load, material, mesh.points_m.col(node));
+      for (int i = 0; i < 3; ++i) problem.prescribe(node, i, -u_m[i]);
+    }
+    return sampler.at_points(problem.linear_displacement_m());
+  };
   for (Eigen::Index column = first.done; column < columns; ++column) {
     const bool apart = column >= out.apart(0), along = !apart && column >= n;
     const Eigen::Index k = apart                ? column - out.apart(0)
@@ -166,17 +180,7 @@ scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& 
       load.force_n = 0.0;
       load.along_n = grid.along(static_cast<int>(k)).col((column - n) % 2);
     }
-    Nodal force_n = Nodal::Zero(3, mesh.node_count());
-    for (const auto& face : mesh.faces) {
-      if (face.boundary == Boundary::free) add_traction(mesh, face, inside_m, load, material, force_n);
-    }
-    for (int cell = 0; cell < mesh.cell_count(); ++cell) add_inclusions(mesh, cell, load, material, force_n);
-    problem.load(std::move(force_n));
-    for (const int node : held) {
-      const Vec3 u_m = scene::half_space_displacement_m(load, material, mesh.points_m.col(node));
-      for (int i = 0; i < 3; ++i) problem.prescribe(node, i, -u_m[i]);
-    }
-    const Eigen::Matrix3Xd w_m = sampler.at_points(problem.linear_displacement_m());
+    const Eigen::Matrix3Xd w_m = smooth_m(load);
     out.smooth_m_per_n.col(column) = w_m.leftCols(m).transpose().reshaped().cast<float>();
     out.own_m_per_n.col(column) = w_m.col(m + 5 * k);
     for (int axis = 0; axis < 2 && column < n; ++axis) {
@@ -188,6 +192,18 @@ scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& 
     first.done = column + 1;
     if (progress) progress({Next::column, first});
   }
+  if (m == 0 || grid.counts[0] < 3 || grid.counts[1] < 3) return std::move(out);
+  // One load more, between the grid's points, shows what interpolation costs.
+  const scene::SurfaceQuery between =
+      shape->query(grid.points_m.col(grid.middle()) + 0.5 * grid.spacing_m[0] * grid.axes.col(0) +
+                   0.5 * grid.spacing_m[1] * grid.axes.col(1));
+  const Eigen::Matrix3Xd w_m = smooth_m({between.point_m, between.normal});
+  const Eigen::VectorXd own = w_m.leftCols(m).transpose().reshaped();
+  const Eigen::VectorXd interpolated =
+      scene::GridWeights(grid, grid.place(between.point_m)).sum<Eigen::VectorXd>([&](int k) -> Eigen::VectorXd {
+        return out.smooth_m_per_n.col(k).cast<double>();
+      });
+  out.interpolation_rel = (interpolated - own).norm() / own.norm();
   return std::move(out);
 }
 

@@ -31,6 +31,9 @@ struct Response {
   Eigen::Matrix2Xd tilt_per_n;     ///< slope of the normal component there by a load against the normal, along the
                                    ///< grid's directions, 2 x n
   int unknowns = 0;                ///< of the linear systems
+  /// Error of interpolating between grid points (grid_weights.h), root mean square over the rest points relative to the
+  /// columns, of a load against the normal in the middle of four grid points.
+  double interpolation_rel = 0.0;
 
   [[nodiscard]] Eigen::Index rest_points() const noexcept { return smooth_m_per_n.rows() / 3; }
   // Columns of loads at a point:

@@ -16,7 +16,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "files are little-endian");
 
 // "what it is, checksum, line feed, content". Content: the identity's hash, counts, numbers.
-constexpr std::string_view magic = "touchstone response 3: m, m/N, 1/N\n";
+constexpr std::string_view magic = "touchstone response 4: m, m/N, 1/N\n";
 constexpr std::size_t hash_size = 32;
 constexpr InputKind response_input{"a response file", std::uintmax_t{2} << 30};
 
@@ -69,7 +69,7 @@ std::string response_bytes(const Response& response, const std::string& identity
   content.bytes.append(reinterpret_cast<const char*>(&counts), sizeof counts);
   content.add(grid.middle_m);
   content.add(grid.axes);
-  content.add(Eigen::Vector2d(grid.spacing_m[0], grid.spacing_m[1]));
+  content.add(Eigen::Vector3d(grid.spacing_m[0], grid.spacing_m[1], response.interpolation_rel));
   content.add(grid.points_m);
   content.add(grid.normals);
   content.add(response.own_m_per_n);
@@ -107,11 +107,12 @@ Response response_from(const std::string& bytes, const std::string& identity) {
   const std::int64_t columns = out.loads.columns(static_cast<int>(n));
   const auto needed = static_cast<std::size_t>(n) * 8 * sizeof(double) +
                       static_cast<std::size_t>(columns) * 3 * (sizeof(double) + sizeof(float) * counts.rest_points);
-  if (reader.left() != needed + 14 * sizeof(double)) throw InputError("its size and its counts differ");
-  Eigen::Vector2d spacing_m;
+  if (reader.left() != needed + 15 * sizeof(double)) throw InputError("its size and its counts differ");
+  Eigen::Vector3d spacing_m;
   reader.take(out.grid.middle_m, 3, 1);
   reader.take(out.grid.axes, 3, 3);
-  reader.take(spacing_m, 2, 1);
+  reader.take(spacing_m, 3, 1);
+  out.interpolation_rel = spacing_m[2];
   out.grid.spacing_m = {spacing_m[0], spacing_m[1]};
   reader.take(out.grid.points_m, 3, n);
   reader.take(out.grid.normals, 3, n);

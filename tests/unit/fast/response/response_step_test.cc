@@ -1,7 +1,6 @@
 // The step of the response model on responses that no solver computed.
 #include "fast/response/response_step.h"
 
-#include "fast/response/grid_weights.h"
 #include "support/press.h"
 #include "support/synthetic_response.h"
 
@@ -70,8 +69,9 @@ TEST_F(ResponseStep, FarAwayTheShapeIsTheHalfSpacesAndTheColumns) {
   const SpreadLoad& load = contact.load;
   const scene::LoadGrid& grid = model.response.grid;
   // The columns where the tool is: the load's place at rest has swayed.
-  const GridWeights weights(grid, grid.place(load.center_m + load.force_n * contact.sway_m_per_n));
-  const GridWeights linear = GridWeights::linear(grid, grid.place(load.center_m + load.force_n * contact.sway_m_per_n));
+  const scene::GridWeights weights(grid, grid.place(load.center_m + load.force_n * contact.sway_m_per_n));
+  const scene::GridWeights linear =
+      scene::GridWeights::linear(grid, grid.place(load.center_m + load.force_n * contact.sway_m_per_n));
   // The pressure leans.
   const Eigen::Vector2d along_n = grid.along(grid.middle()).transpose() * load.ball_shear_n;
   EXPECT_GT(along_n.norm(), 1e-3 * load.force_n);
@@ -478,33 +478,6 @@ TEST_F(ResponseStep, SaysWhatItNeeds) {
     waypoint.pose.orientation = Eigen::AngleAxisd(0.1, scene::Vec3::UnitX());
   }
   EXPECT_THAT(scene::response_needs(other), HasSubstr("upright"));
-}
-
-TEST(GridWeights, AreExactForQuadraticsAndSmooth) {
-  for (const int count : {3, 4, 7}) {
-    const auto value = [](double x) { return 3.0 - 2.0 * x + 0.7 * x * x; };
-    double last = 0.0, last_slope = 0.0;
-    for (int k = 0; k <= 100 * (count - 1); ++k) {
-      const double x = 0.01 * k;
-      const LineWeights line(x, count);
-      double sum = 0.0, cubic = 0.0;
-      for (int i = 0; i < 4 && line.first + i < count; ++i) {
-        const double at = line.first + i;
-        sum += line.weight[static_cast<std::size_t>(i)] * value(at);
-        cubic += line.weight[static_cast<std::size_t>(i)] * std::sin(at);
-      }
-      EXPECT_NEAR(sum, value(x), 1e-12) << count << ' ' << x;
-      const double slope = cubic - last;
-      if (k > 1) {
-        EXPECT_NEAR(slope, last_slope, 5e-4) << count << ' ' << x;
-      }
-      last = cubic;
-      last_slope = slope;
-    }
-  }
-  // Outside it is the nearest place.
-  EXPECT_EQ(LineWeights(-5.0, 3).weight, LineWeights(0.0, 3).weight);
-  EXPECT_EQ(LineWeights(9.0, 5).weight, LineWeights(4.0, 5).weight);
 }
 
 }  // namespace

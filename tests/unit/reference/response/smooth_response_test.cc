@@ -134,6 +134,18 @@ TEST(SmoothResponse, IsReciprocalAndTiltsAsItsPlaceChangesIt) {
   const double slope = (response.own_m_per_n(2, 5) - response.own_m_per_n(2, 3)) / (2.0 * grid.spacing_m[0]);
   EXPECT_NEAR(response.tilt_per_n(0, 4), 0.5 * slope, 0.05 * std::abs(slope));
   EXPECT_NEAR(response.tilt_per_n(1, 4), 0.0, 1e-3 * std::abs(slope));
+  // A load between four of the places, interpolated: nearer places are better.
+  EXPECT_LT(response.interpolation_rel, 0.01);
+  scene::Scene wide = scene;
+  wide.track.back() = {1.0, test::pressed(0.002, -0.018)};
+  scene::LoadGrid apart = scene::load_grid(wide).grid.value();
+  apart.counts = {3, 3};
+  apart.spacing_m = {0.018, 0.018};
+  apart.points_m = (apart.middle_m.replicate(1, 9)).eval();
+  for (int k = 0; k < 9; ++k) apart.points_m.col(k) += 0.018 * Vec3(k % 3 - 1, k / 3 - 1, 0.0);
+  apart.normals = Vec3::UnitZ().replicate(1, 9);
+  const scene::Response coarser = smooth_response(scene.body, apart, grid.points_m, {.cells = coarse.cells});
+  EXPECT_GT(coarser.interpolation_rel, 3.0 * response.interpolation_rel);
   // What a load against the normal does sideways, one sideways does against the normal.
   for (Eigen::Index k = 0; k < n; ++k) {
     const Eigen::Matrix3d own = Eigen::Matrix3d(

@@ -26,6 +26,7 @@ class ResponseFile : public ::testing::Test {
     response_.own_m_per_n = Eigen::Matrix3Xd::Random(3, 4 * n);
     response_.tilt_per_n = Eigen::Matrix2Xd::Random(2, n);
     response_.unknowns = 77;
+    response_.interpolation_rel = 0.003;
     bytes_ = response_bytes(response_, "body");
   }
   static void expect_refused(const std::string& bytes, const std::string& why, const std::string& identity = "body") {
@@ -48,6 +49,7 @@ TEST_F(ResponseFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read.grid.counts, response_.grid.counts);
   EXPECT_EQ(read.grid.spacing_m, response_.grid.spacing_m);
   EXPECT_EQ(read.unknowns, 77);
+  EXPECT_EQ(read.interpolation_rel, 0.003);
   EXPECT_EQ(response_bytes(read, "body"), bytes_);
 }
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace touchstone::fast {
+namespace touchstone::scene {
 
 /// Cubic interpolation with a continuous first derivative, the slope at a point that of the parabola through it and
 /// its neighbours: exact for quadratics. Up to four points in each direction.
@@ -49,7 +49,7 @@ struct GridWeights {
   bool inside = true;
 
   GridWeights() noexcept = default;
-  GridWeights(const scene::LoadGrid& grid, const Eigen::Vector2d& place) noexcept {
+  GridWeights(const LoadGrid& grid, const Eigen::Vector2d& place) noexcept {
     constexpr double negligible = 1e-7;
     const LineWeights a(place[0], grid.counts[0]), b(place[1], grid.counts[1]);
     for (int j = 0; j < 4; ++j) {
@@ -66,7 +66,7 @@ struct GridWeights {
   }
 
   /// Between the four points around a place: for what is small, of which a step in the slope does not show.
-  [[nodiscard]] static GridWeights linear(const scene::LoadGrid& grid, const Eigen::Vector2d& place) noexcept {
+  [[nodiscard]] static GridWeights linear(const LoadGrid& grid, const Eigen::Vector2d& place) noexcept {
     GridWeights out;
     std::array<int, 2> low{};
     std::array<double, 2> share{};
@@ -96,4 +96,4 @@ struct GridWeights {
   }
 };
 
-}  // namespace touchstone::fast
+}  // namespace touchstone::scene
