@@ -51,8 +51,9 @@ Discretisation<3> mesh_for(const scene::Body& body, const scene::LoadGrid& grid,
 }
 
 /// Adds -int (sigma_k N) . v over a free face, in parts: more of them where the load is near.
+/// @param near_m  distance from a double force below which its traction fades
 void add_traction(const Discretisation<3>& mesh, const Discretisation<3>::Face& face, const Vec3& inside_m,
-                  const PointLoad& load, const scene::Material& material, Nodal& force_n) {
+                  const PointLoad& load, const scene::Material& material, double near_m, Nodal& force_n) {
   Eigen::Matrix<double, 3, 9> X;
   for (int a = 0; a < 9; ++a) X.col(a) = mesh.points_m.col(face.nodes[static_cast<std::size_t>(a)]);
   const Vec3 middle_m = X.col(4);
@@ -66,8 +67,11 @@ void add_traction(const Discretisation<3>& mesh, const Discretisation<3>::Face& 
       Vec3 area_m2 = Vec3(tangents.col(0)).cross(Vec3(tangents.col(1))) * (point.weight / (parts * parts));
       const Vec3 x_m = X * shape.value;
       if (area_m2.dot(x_m - inside_m) < 0.0) area_m2 = -area_m2;
-      if ((x_m - load.point_m).norm() < 1e-6 * edge_m) continue;
-      const Vec3 f_n = -(scene::half_space_stress_pa(load, material, x_m) * area_m2);
+      const double distance_m = (x_m - load.point_m).norm();
+      if (distance_m < 1e-6 * edge_m) continue;
+      Vec3 f_n = -(scene::half_space_stress_pa(load, material, x_m) * area_m2);
+      // A double force's traction on a curved face grows as 1 / distance^2. It is in balance around the load.
+      if (load.apart_nm != 0.0) f_n *= std::min(std::pow(distance_m / near_m, 3), 1.0);
       for (int a = 0; a < 9; ++a) force_n.col(face.nodes[static_cast<std::size_t>(a)]) += shape.value[a] * f_n;
     }
   }
@@ -130,6 +134,7 @@ scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& 
   const Eigen::Index m = rest_points_m.cols(), n = grid.count();
   const auto shape = scene::body_shape(body);
   const double step_m = 0.01 * scene::body_size_m(body);
+  const double near_m = 0.05 * scene::body_size_m(body);  // about a cell
   Eigen::Matrix3Xd wanted_m(3, m + 5 * n);
   wanted_m.leftCols(m) = rest_points_m;
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -156,7 +161,7 @@ scene::Response smooth_response(const scene::Body& body, const scene::LoadGrid& 
   const auto smooth_m = [&](const PointLoad& load) -> Eigen::Matrix3Xd {
     Nodal force_n = Nodal::Zero(3, mesh.node_count());
     for (const auto& face : mesh.faces) {
-      if (face.boundary == Boundary::free) add_traction(mesh, face, inside_m, load, material, force_n);
+      if (face.boundary == Boundary::free) add_traction(mesh, face, inside_m, load, material, near_m, force_n);
     }
     for (int cell = 0; cell < mesh.cell_count(); ++cell) add_inclusions(mesh, cell, load, material, force_n);
     problem.load(std::move(force_n));

@@ -27,7 +27,7 @@ inline scene::Response synthetic_response(const scene::Scene& scene, const scene
     out.tilt_per_n.col(k) = Eigen::Vector2d(-60.0, 25.0) * C_m_per_n;
     const Eigen::VectorXf height = (surface.points_m.row(2).transpose() / 0.06).cast<float>();
     out.smooth_m_per_n.col(k).tail(m) = static_cast<float>(-C) * height;
-    if (out.loads.ball) out.smooth_m_per_n.col(out.apart(k)).tail(m) = static_cast<float>(30.0 * C) * height;
+    if (out.loads.ball) out.smooth_m_per_n.col(out.apart(k)).tail(m) = static_cast<float>(300.0 * C) * height;
     if (!out.loads.friction && k != out.grid.middle()) continue;
     const Eigen::Matrix<double, 3, 2> along = out.grid.along(k);
     for (int axis = 0; axis < 2; ++axis) {

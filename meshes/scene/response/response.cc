@@ -13,7 +13,7 @@ namespace touchstone::scene {
 namespace {
 
 /// Raised with every change of method that moves a response.
-constexpr const char* method_version = "touchstone response method 2";
+constexpr const char* method_version = "touchstone response method 3";
 
 template <class Matrix>
 std::string hash_of(const Matrix& matrix) {

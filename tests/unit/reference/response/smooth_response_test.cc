@@ -101,6 +101,21 @@ TEST(SmoothResponse, IsTheBodysOwnAwayFromTheLoad) {
   for (const double nu : {0.0, 0.3, 0.5}) expect_the_same_far_away(small_scene(nu).body, 0.02);
 }
 
+TEST(SmoothResponse, ADoubleForceOnACurvedFaceIsSmoothWhereverItIs) {
+  scene::Scene scene = small_scene(0.5);
+  scene.body.shape = scene::BodyShape::sphere;
+  scene.body.radius_m = 0.03;
+  scene.body.support_height_m = 0.005;
+  scene.track.back() = {1.0, test::pressed(0.002, 0.0013, 0.0007)};
+  const scene::LoadGrid grid = scene::load_grid(scene).grid.value();
+  const Eigen::Matrix3Xd points_m = scene::tessellate(*scene::body_shape(scene.body), 600).points_m;
+  const scene::Response response =
+      smooth_response(scene.body, grid, points_m, {.cells = coarse.cells, .loads = {.ball = true}});
+  Eigen::VectorXd sizes(grid.count());
+  for (int k = 0; k < grid.count(); ++k) sizes[k] = response.smooth_m_per_n.col(response.apart(k)).norm();
+  EXPECT_LT(sizes.maxCoeff(), 1.5 * sizes.minCoeff());
+}
+
 TEST(SmoothResponse, KnowsInclusions) {
   scene::Body body = small_scene(0.5).body;
   scene::Inclusion soft;
