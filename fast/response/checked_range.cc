@@ -38,7 +38,7 @@ std::string_view pressure_errors(const scene::Scene& scene) {
   if (tips.size() > 1) return "5 % off under two pins";
   if (tips.front().line()) return "4 % off under a capsule's side, 9 % near an edge";
   if (!tips.front().ball()) return "5 % off under a pin, NOT GOOD under a wide disc with a narrow rim, 35 %";
-  if (scene.contact.friction) return "7 % off on a flat face with friction";
+  if (scene.contact.friction) return "7 % off on a flat face, 20 % on a curved one, with friction";
   return "3 to 4 % off under a ball, up to 9 % near an edge";
 }
 
