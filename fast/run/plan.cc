@@ -8,6 +8,7 @@
 #include "scene/base/index.h"
 #include "scene/model/rest_depth.h"
 #include "scene/response/find_tips.h"
+#include "scene/response/response.h"
 
 #include <fmt/format.h>
 
@@ -200,7 +201,7 @@ scene::Plan response_plan(const scene::Scene& scene) {
   lines.models(
       "body",
       fmt::format("{} columns of its linear response, {:.3g} mm apart{}",
-                  grid.count() * (scene.contact.friction ? 3 : 1), 1e3 * std::max(grid.spacing_m[0], grid.spacing_m[1]),
+                  scene::load_kinds(scene).columns(grid.count()), 1e3 * std::max(grid.spacing_m[0], grid.spacing_m[1]),
                   not_there.empty() ? "" : "; " + not_there),
       "computed once by `touchstone prepare`");
   lines.models("surface",

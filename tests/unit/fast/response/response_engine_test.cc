@@ -237,6 +237,7 @@ TEST_F(ResponseEngineTest, ThePlanSaysHowFarThePressureIsOffAndWhatFallsOff) {
     return std::string();
   };
   EXPECT_THAT(reason("pressure"), HasSubstr("under a ball, up to 9 % near an edge"));
+  EXPECT_THAT(reason("body"), ::testing::StartsWith("20 columns")) << "as many as `prepare` computes";
   EXPECT_THAT(reason("contact force"), ::testing::EndsWith("in series with the body's compliance"));
   scene_.body.inclusions.push_back({});
   EXPECT_THAT(reason("pressure"), HasSubstr("NOT GOOD above a soft inclusion"));
